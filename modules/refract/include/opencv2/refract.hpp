@@ -1,0 +1,504 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_HPP
+#define OPENCV_REFRACT_HPP
+
+#include "opencv2/core.hpp"
+
+/**
+@defgroup refract Cameras that look through a flat window
+
+A camera behind a flat window (safety glass, a pressure vessel's port, an aquarium wall) is not a pinhole: every
+ray is shifted and, with different media on the two sides, bent. This module projects, unprojects, corrects,
+matches, triangulates and calibrates such cameras, with the calls that calib3d has for cameras without a window.
+
+### Conventions
+
+- **Camera frame**: x right, y down, z forward; pixel (0, 0) is the centre of the top-left pixel. `rvec`, `tvec`
+  map object to camera coordinates. Stereo `R`, `T` map camera 1 to camera 2: \f$X_2 = R X_1 + T\f$.
+- **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
+- **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
+  the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
+- **No answer is an answer**: a point without a geometric solution becomes NaN in every output coordinate, and
+  `status` (CV_8U, one per point, see RefractiveStatus) says why. One bad point never throws and never changes
+  its neighbours.
+- **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, zero normal, thickness <= 0,
+  index < 1) throws cv::Exception whose text names the argument and the value. Empty input gives empty output.
+- **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, std::vector;
+  float32 or float64; non-continuous views included. Computation is in double. Outputs are Nx1 with channels and
+  have the input's depth unless the caller fixed the type.
+
+### The model
+
+With the unit normal n, the inner direction w, c = n.w and \f$p = n_{inner}\sin\theta_{inner}\f$, which Snell's law
+keeps through all layers, and \f$q_i = \sqrt{n_i^2 - p^2}\f$, the outgoing ray meets the axis at
+\f[ \tau(p) = \sum_i h_i \left(1 - q_{out}/q_i\right) \f]
+(inner gap and all layers). For one pane in air this is equations (12) and (16) of @cite Plate2024.
+*/
+
+namespace cv { namespace refract {
+
+//! @addtogroup refract
+//! @{
+
+//! Why a point has no answer. 0 = it has one.
+enum RefractiveStatus {
+    REFRACT_OK = 0,
+    REFRACT_NOT_FINITE = 1,         //!< the input point (or its depth) is NaN or infinite
+    REFRACT_BEHIND_CAMERA = 2,      //!< the point lies behind the camera (or, after R, behind the rectified camera)
+    REFRACT_BEHIND_WINDOW = 3,      //!< the point lies before or inside the window, or the ray never reaches it
+    REFRACT_TOTAL_REFLECTION = 4,   //!< no light gets from there to here: total reflection in some layer
+    REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
+    REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
+    REFRACT_PARALLEL_RAYS = 7,      //!< the two rays, or the ray and the plane, are parallel
+    REFRACT_NO_INTERSECTION = 8     //!< the two rays come closest, or the ray meets the plane, behind an origin
+};
+
+//! Flags of triangulateRefractive
+enum TriangulateFlags {
+    TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in both images
+    TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
+};
+
+//! Flags of calibrateGlass and stereoCalibrateGlass; the normal is always free
+enum GlassCalibrationFlags {
+    GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
+    GLASS_FREE_INDEX = 2,           //!< index of every layer
+    GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal inner and outer media, where it has no effect
+    GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
+    GLASS_FREE_INTRINSICS = 16,     //!< lens parameters (overloads with RefractiveCamera only); coefficients that are
+                                    //!< exactly 0 stay 0
+    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass only)
+    GLASS_SHARED_WINDOW = 64        //!< both cameras look through one pane (stereoCalibrateGlass only)
+};
+
+/** @brief A flat window: parallel layers that share one normal.
+
+No layer and equal inner and outer index = no window = plain OpenCV.
+*/
+class CV_EXPORTS_W_SIMPLE GlassWindow
+{
+public:
+    //! No window.
+    CV_WRAP GlassWindow();
+
+    /** @brief One pane, the camera in air.
+    @param normal from the camera to the scene, camera coordinates; it is normalised.
+    @param thickness of the pane, > 0.
+    @param index of the pane, >= 1.
+    @param distance from the centre of projection to the pane, along the normal, >= 0.
+    @param outerIndex index of the scene's medium, >= 1 (1.33 water).
+    */
+    CV_WRAP GlassWindow(const Vec3d& normal, double thickness, double index,
+                        double distance = 0., double outerIndex = 1.);
+
+    CV_PROP_RW Vec3d normal;                   //!< unit, camera coordinates, normal[2] > 0
+    CV_PROP_RW double distance;                //!< centre of projection to the first surface, along the normal
+    CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards
+    CV_PROP_RW std::vector<double> index;      //!< of each layer
+    CV_PROP_RW double innerIndex;              //!< of the medium round the camera
+    CV_PROP_RW double outerIndex;              //!< of the scene's medium
+
+    //! Throws cv::Exception that names the first field that is wrong, and its value.
+    CV_WRAP void check() const;
+
+    void write(FileStorage& fs) const;
+    void read(const FileNode& node);
+};
+
+CV_EXPORTS void write(FileStorage& fs, const String& name, const GlassWindow& window);
+CV_EXPORTS void read(const FileNode& node, GlassWindow& window, const GlassWindow& defaultValue = GlassWindow());
+
+/** @brief A lens plus a window.
+
+Made once, used for many calls; every function of the module takes it in place of (cameraMatrix, distCoeffs, window).
+*/
+class CV_EXPORTS_W RefractiveCamera
+{
+public:
+    /** @brief OpenCV's lens model behind a window.
+    @param cameraMatrix 3x3 float32/float64, no skew.
+    @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients in OpenCV's order; may be empty.
+    @param window see GlassWindow.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> create(InputArray cameraMatrix, InputArray distCoeffs,
+                                                const GlassWindow& window = GlassWindow());
+
+    /** @brief cv::fisheye's lens model behind a window.
+    @param cameraMatrix 3x3 float32/float64; K(0,1) = alpha * fx is used as cv::fisheye does.
+    @param distCoeffs 4 coefficients; may be empty.
+    @param window see GlassWindow.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> createFisheye(InputArray cameraMatrix, InputArray distCoeffs,
+                                                       const GlassWindow& window = GlassWindow());
+
+    /** @brief A lens of mrcal behind a window.
+    @param lensModel LENSMODEL_PINHOLE, LENSMODEL_OPENCV4, _OPENCV5, _OPENCV8 or _OPENCV12.
+    @param intrinsics fx, fy, cx, cy and the model's coefficients, as in a .cameramodel file.
+    @param window see GlassWindow.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> createMrcal(const String& lensModel, InputArray intrinsics,
+                                                     const GlassWindow& window = GlassWindow());
+
+    /** @brief Reads a camera from OpenCV YAML/XML/JSON (`camera_matrix`, `distortion_coefficients` as OpenCV's
+    calibration sample writes them, `lens_model`, `glass_window` as refract_calib adds) or from an mrcal .cameramodel.
+    @param filename path.
+    @param name of the map inside the file (`camera2`); empty: the top level or, if there is no camera, `camera1`.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> read(const String& filename, const String& name = String());
+
+    virtual ~RefractiveCamera();
+
+    //! Writes the camera's keys into the map that is open in fs.
+    virtual void write(FileStorage& fs) const = 0;
+
+    CV_WRAP virtual Mat cameraMatrix() const = 0;        //!< 3x3 CV_64F
+    CV_WRAP virtual Mat distCoeffs() const = 0;          //!< Nx1 CV_64F, as given
+    CV_WRAP virtual String lensModel() const = 0;        //!< `opencv`, `fisheye` or mrcal's name
+    CV_WRAP virtual GlassWindow window() const = 0;
+    CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;
+    //! Lens parameters fx, fy, cx, cy and coefficients in the order of the jacobian's columns, Nx1 CV_64F.
+    CV_WRAP virtual Mat lensParameters() const = 0;
+    CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;
+    CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
+    CV_WRAP virtual void setImageSize(Size size) = 0;
+};
+
+/** @brief Projects object points through lens and window.
+
+The refracted path is found by Newton's method in the tangent of the angle in the rarest medium, where the function is
+increasing and concave (no polynomial, no bracketing), to the accuracy of double.
+
+@param objectPoints N 3-D points, object coordinates.
+@param rvec rotation vector (or 3x3 matrix) object -> camera.
+@param tvec translation object -> camera.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param imagePoints N pixels in the raw (distorted, refracted) image, Nx1 2-channel.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        OutputArray imagePoints, OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
+        const Ptr<RefractiveCamera>& camera, OutputArray imagePoints, OutputArray status = noArray());
+
+/** @brief refractiveProjectPoints with all derivatives.
+@param objectPoints N 3-D points, object coordinates.
+@param rvec rotation vector (or 3x3 matrix) object -> camera.
+@param tvec translation object -> camera.
+@param camera lens and window.
+@param imagePoints N pixels, Nx1 2-channel.
+@param status Nx1 CV_8U.
+@param jacobian 2N x (6 + lens + window) CV_64F, rows u, v of each point; columns rvec (3), tvec (3), lens parameters
+(fx, fy, cx, cy, coefficients as given), normal (3, of the unnormalised vector: orthogonal to n), distance,
+thickness of each layer, index of each layer, innerIndex, outerIndex. NaN where status is not 0.
+*/
+CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
+        InputArray objectPoints, InputArray rvec, InputArray tvec, const Ptr<RefractiveCamera>& camera,
+        OutputArray imagePoints, OutputArray status, OutputArray jacobian);
+
+/** @brief Rays in the scene that pixels look along. Closed form but for the lens.
+@param imagePoints N raw pixels.
+@param origins N points on the window's axis, camera coordinates: tau * normal.
+@param directions N unit vectors in the outer medium, camera coordinates.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, OutputArray directions,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, OutputArray directions,
+        const Ptr<RefractiveCamera>& camera, OutputArray status = noArray());
+
+/** @brief Where a pinhole camera without window and lens distortion would see the same scene points.
+
+As cv::undistortPoints: without P the result is normalised coordinates, with P pixels.
+
+@param src N raw pixels.
+@param dst N corrected points, Nx1 2-channel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z of the scene points, camera frame: one number for all, or N numbers; infinity is allowed; omitted =
+infinitely far.
+@param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
+@param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, InputArray depth = noArray(),
+        InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
+        InputArray depth = noArray(), InputArray R = noArray(), InputArray P = noArray(),
+        OutputArray status = noArray());
+
+/** @brief Where the refracted rays of pixels meet a plane (@cite Plate2024, section 3.1.3).
+@param imagePoints N raw pixels.
+@param points3D N points, camera coordinates, Nx1 3-channel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param plane (a, b, c, d): a x + b y + c z = d, camera coordinates; (a, b, c) not zero.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        const Vec4d& plane, OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
+        const Ptr<RefractiveCamera>& camera, const Vec4d& plane, OutputArray status = noArray());
+
+/** @brief Maps for cv::remap that turn a raw image into the one a pinhole without window would take of a plane.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth one number: the plane z = depth (camera frame); four numbers: the plane (a, b, c, d); empty: infinitely far.
+@param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
+@param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
+@param size of the new image.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap.
+@param map1 first map; pixels with no answer map to (-1, -1).
+@param map2 second map; empty for CV_32FC2.
+*/
+CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputArray depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
+        OutputArray map1, OutputArray map2);
+
+//! @overload
+CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera,
+        InputArray depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
+        OutputArray map1, OutputArray map2);
+
+/** @brief The curve of possible partners of each point in the other raw image (@cite Plate2024, section 3.2).
+@param points N raw pixels of image whichImage.
+@param whichImage 1 or 2.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param depthRange z of the scene, near and far, in the frame of camera whichImage; far may be infinity.
+@param lines N polylines, each Mx1 2-channel, raw pixels of the other image in order of growing depth. Parts with no
+image are left out; a point without any partner gives an empty Mat.
+@param tolerance largest distance in pixels between polyline and exact curve.
+@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty.
+*/
+CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, const Vec2d& depthRange,
+        OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, const Vec2d& depthRange,
+        OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
+
+/** @brief Triangulates points seen by two cameras, each behind its own window (@cite Plate2024, section 3.3).
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+*/
+CV_EXPORTS_W void triangulateRefractive(
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, InputArray points1, InputArray points2,
+        OutputArray points3D, OutputArray status = noArray(), int flags = 0);
+
+//! @overload
+CV_EXPORTS_W void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, InputArray points1, InputArray points2,
+        OutputArray points3D, OutputArray status = noArray(), int flags = 0);
+
+/** @brief triangulateRefractive with the covariance of each point.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+@param pixelSigma standard deviation of each pixel coordinate.
+@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
+@param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
+*/
+CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, InputArray points1, InputArray points2,
+        OutputArray points3D, OutputArray status, int flags,
+        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+
+/** @brief The window's normal from image pairs taken without and with the window, the board not moved
+(@cite Plate2024, section 3.1.1).
+
+Direct bearing, refracted bearing and normal are coplanar for every point at any depth when inner and outer medium are
+equal; the normal is the vector closest to all these planes. Works on bearings, so the distortion centre may lie at
+infinity; each pair is weighted by its propagated noise, iterated. The lens model is undone first. Thickness and index
+need not be known.
+
+@param imagePointsDirect one array of N_i points per view, seen without the window.
+@param imagePointsRefracted the same points through the window. A pair with a NaN coordinate is left out.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param normal 3x1 CV_64F, unit, camera coordinates, normal[2] > 0.
+@param distortionCenter 2x1 CV_64F, pixels of the ideal image: (cx + fx n_x/n_z, cy + fy n_y/n_z).
+@param normalCovariance 3x3 CV_64F, rank 2 (tangent to the normal), scaled by the residuals.
+@return RMS in pixels of the points' distance to the lines through the centre.
+
+Throws if the data do not determine the normal (no displacement between the views, or all lines the same).
+*/
+CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
+        InputArray cameraMatrix, InputArray distCoeffs,
+        OutputArray normal, OutputArray distortionCenter = noArray(), OutputArray normalCovariance = noArray());
+
+//! @overload
+CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
+        const Ptr<RefractiveCamera>& camera,
+        OutputArray normal, OutputArray distortionCenter = noArray(), OutputArray normalCovariance = noArray());
+
+/** @brief Joint maximum-likelihood refinement of the window and the board poses.
+
+@param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
+@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
+view is allowed where the direct one is not empty.
+@param imagePointsDirect the same points of the same, unmoved target seen without the window: noArray() or an empty view
+where there is none. A NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window in: the known values and, for glass-only views, the start of the normal. With pairs and equal media the
+start of the normal comes from the data. Out: the estimate.
+@param rvecs object -> camera rotation vector of each view.
+@param tvecs object -> camera translation of each view.
+@param flags see GlassCalibrationFlags; 0: only the normal is free.
+@param criteria iterations and relative change of the cost at which to stop.
+@return RMS reprojection error in pixels, by cv::calibrateCamera's definition, over all observed points.
+
+Throws where the data cannot determine what is free; the text names the direction that is undetermined.
+*/
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
+        InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
+        CV_IN_OUT GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+//! @overload The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
+        InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
+        OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+/** @brief calibrateGlass with what the estimate is worth.
+@param objectPoints as above.
+@param imagePointsRefracted as above.
+@param imagePointsDirect as above.
+@param camera start and result.
+@param rvecs as above.
+@param tvecs as above.
+@param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
+refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex); 0 where fixed.
+@param covariance PxP CV_64F in the same order, scaled by the residuals.
+@param perViewErrors Vx2 CV_64F: RMS of each view through the window and direct; NaN where there is none.
+@param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, refracted before direct;
+columns parameters, then the pose (rvec, tvec) of each view; fixed parameters are 0.
+@param flags as above.
+@param criteria as above.
+*/
+CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
+        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
+        int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+/** @overload The same for (cameraMatrix, distCoeffs, window).
+*/
+CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
+        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        InputArray cameraMatrix, InputArray distCoeffs, CV_IN_OUT GlassWindow& window,
+        OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
+        int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+/** @brief calibrateGlass for a rigid pair of cameras: one board pose serves all images of a moment.
+
+@param objectPoints one array of N_i 3-D points per view.
+@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
+@param imagePointsDirect1 per view, camera 1 without window, or noArray().
+@param imagePointsRefracted2 per view, camera 2 through its window.
+@param imagePointsDirect2 per view, camera 2 without window, or noArray().
+@param camera1 start and result.
+@param camera2 start and result.
+@param R 3x3, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS.
+@param T 3x1.
+@param rvecs object -> camera 1 of each view.
+@param tvecs object -> camera 1 of each view.
+@param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
+@param covariance PxP in the same order, scaled by the residuals.
+@param perViewErrors Vx4: RMS of each view: refracted 1, direct 1, refracted 2, direct 2; NaN where there is none.
+@param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the start and camera 2's
+normal and distance follow from R and T.
+@param criteria iterations and relative change of the cost at which to stop.
+@return RMS reprojection error in pixels over all observed points.
+*/
+CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
+        InputArrayOfArrays imagePointsRefracted1, InputArrayOfArrays imagePointsDirect1,
+        InputArrayOfArrays imagePointsRefracted2, InputArrayOfArrays imagePointsDirect2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+/** @brief Pose of a known target seen through the window (maximum likelihood).
+@param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess).
+@param imagePoints N raw pixels; a NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvec object -> camera rotation vector.
+@param tvec object -> camera translation.
+@param useExtrinsicGuess rvec, tvec are the start.
+@return RMS reprojection error in pixels; NaN (and rvec, tvec NaN) if no pose was found.
+*/
+CV_EXPORTS_W double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false);
+
+//! @overload
+CV_EXPORTS_W double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        bool useExtrinsicGuess = false);
+
+//! @}
+
+}} // namespace cv::refract
+
+#endif // OPENCV_REFRACT_HPP
