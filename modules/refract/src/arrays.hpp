@@ -1,0 +1,69 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_ARRAYS_HPP
+#define OPENCV_REFRACT_ARRAYS_HPP
+
+#include "precomp.hpp"
+#include <functional>
+
+/* InputArray <-> blocks of structure-of-arrays. The only file that knows both. */
+
+namespace cv { namespace refract {
+
+//! Lanes of one block: small enough that all arrays of a chain of kernels stay in the first-level cache.
+const int BLOCK = 128;
+
+//! N points of 2 or 3 coordinates, read in blocks.
+class PointReader
+{
+public:
+    PointReader(InputArray points, int channels, const char* name);
+    int size() const { return size_; }
+    int depth() const { return depth_; }    //!< CV_32F or CV_64F
+    //! Points begin ... begin + n - 1; z is null for 2-D points. A non-finite lane gets REFRACT_NOT_FINITE.
+    void load(int begin, int n, double* x, double* y, double* z, uchar* status) const;
+private:
+    Mat points_;
+    int size_, depth_;
+};
+
+//! N points of 2 or 3 coordinates, written in blocks; a lane with status != 0 becomes NaN.
+class PointWriter
+{
+public:
+    //! Depth: the caller's if fixed, else `depth`. Nx1 with channels.
+    PointWriter(OutputArray points, int size, int channels, int depth);
+    void store(int begin, int n, const double* x, const double* y, const double* z, const uchar* status);
+private:
+    Mat points_;
+};
+
+//! The status array, or nothing if the caller does not want it.
+class StatusWriter
+{
+public:
+    StatusWriter(OutputArray status, int size);
+    void store(int begin, int n, const uchar* status);
+private:
+    Mat status_;
+};
+
+//! Calls body(begin, n) over [0, size) in blocks of at most BLOCK, in parallel.
+void forEachBlock(int size, const std::function<void(int begin, int n)>& body);
+
+// Small arguments. Each throws with the argument's name and value.
+Matx33d readCameraMatrix(InputArray m, const char* name);
+std::vector<double> readDistCoeffs(InputArray d, const char* name);     //!< 0, 4, 5, 8, 12 or 14 values
+Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector; empty = identity
+Vec3d readVec3(InputArray v, const char* name);
+Matx33d readProjection(InputArray p, const char* name);                 //!< 3x3 or 3x4; empty = identity
+std::vector<double> readNumbers(InputArray a, const char* name);        //!< any shape, one channel or a Vec; empty = none
+//! A vector of points (N x 3 or N x 2 coordinates) as plain structures; NaN allowed.
+std::vector<Point2d> readPoints2(InputArray a, const char* name);
+std::vector<Point3d> readPoints3(InputArray a, const char* name);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_ARRAYS_HPP

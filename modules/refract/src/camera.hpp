@@ -1,0 +1,72 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_CAMERA_HPP
+#define OPENCV_REFRACT_CAMERA_HPP
+
+#include "layers.hpp"
+#include "lens.hpp"
+
+namespace cv { namespace refract {
+
+/* Lens + window: the only place where the two meet. The arrows of the data flow:
+
+    pixel --lens--> direction --window--> ray          unproject
+    point --window--> direction --lens--> pixel        project, projectJacobian
+
+Lanes with status != REFRACT_OK keep it; their results are not meaningful until the writer turns them to NaN. */
+class Camera : public RefractiveCamera
+{
+public:
+    Camera(const Ptr<Lens>& lens, const GlassWindow& window);
+
+    //! Homogeneous camera-frame points (w null: 1; w = 0: infinitely far) -> pixels.
+    void project(int n, const double* x, const double* y, const double* z, const double* w,
+                 double* u, double* v, uchar* status) const;
+
+    //! Pixels -> rays: origin = tau * normal, unit direction.
+    void unproject(int n, const double* u, const double* v,
+                   double* tau, double* dx, double* dy, double* dz, uchar* status) const;
+
+    //! Number of lens parameters, of window parameters, and both: the columns of dPixel_dParameters.
+    int lensCount() const { return (int)lens_->parameters().size(); }
+    int windowCount() const { return layers_.parameterCount(); }
+    int parameterCount() const { return lensCount() + windowCount(); }
+
+    /** One finite camera-frame point. dPixel_dPoint 2x3, dPixel_dParameters 2 x parameterCount(), row-major; the latter
+    may be null. */
+    uchar projectJacobian(const Vec3d& point, Vec2d& pixel,
+                          double* dPixel_dPoint, double* dPixel_dParameters) const;
+
+    const Lens& lens() const { return *lens_; }
+    const Layers& layers() const { return layers_; }
+    //! All parameters, in the order of the columns of dPixel_dParameters; setParameters normalises the normal.
+    std::vector<double> parameters() const;
+    void setParameters(const std::vector<double>& parameters);
+
+    // RefractiveCamera
+    void write(FileStorage& fs) const CV_OVERRIDE;
+    Mat cameraMatrix() const CV_OVERRIDE { return lens_->cameraMatrix(); }
+    Mat distCoeffs() const CV_OVERRIDE { return lens_->distCoeffs(); }
+    String lensModel() const CV_OVERRIDE { return lens_->model(); }
+    GlassWindow window() const CV_OVERRIDE { return window_; }
+    void setWindow(const GlassWindow& window) CV_OVERRIDE;
+    Mat lensParameters() const CV_OVERRIDE { return Mat(lens_->parameters(), true); }
+    void setLensParameters(InputArray parameters) CV_OVERRIDE;
+    Size imageSize() const CV_OVERRIDE { return size_; }
+    void setImageSize(Size size) CV_OVERRIDE { size_ = size; }
+
+private:
+    Ptr<Lens> lens_;
+    GlassWindow window_;
+    Layers layers_;
+    Size size_;
+};
+
+//! The implementation behind the public handle; throws if it is empty.  goes into the text.
+Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_CAMERA_HPP

@@ -1,0 +1,70 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_LAYERS_HPP
+#define OPENCV_REFRACT_LAYERS_HPP
+
+#include "precomp.hpp"
+
+namespace cv { namespace refract {
+
+/* The physics of parallel layers. With n the unit normal, c = n.w the cosine of the inner direction w, and
+p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_i = sqrt(n_i^2 - p^2):
+
+    tau(p) = sum_i h_i (1 - q_out / q_i) = sum_i h_i (n_i^2 - n_out^2) / (q_i (q_i + q_out))
+
+is where the outgoing line meets the axis O + tau n; the second form does not cancel, and vanishes exactly for a gap
+whose medium is the scene's. For one pane in air: equations (12) and (16) of Plate2024.
+
+The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
+results are not meaningful. */
+class Layers
+{
+public:
+    Layers() {}
+    explicit Layers(const GlassWindow& window);
+
+    //! False: no window; directions pass unchanged and origins are the centre of projection.
+    bool refracts() const { return refracts_; }
+
+    //! Inner directions (unit) -> height tau of the outgoing line on the axis, outer directions (unit).
+    void traceOut(int n, const double* wx, const double* wy, const double* wz,
+                  double* tau, double* dx, double* dy, double* dz, uchar* status) const;
+
+    /** Homogeneous scene points (x, y, z, w), w >= 0 (0 = infinitely far; null = all 1) -> inner directions, not unit:
+    n + kappa (X - (n.X) n). Domain: beyond the last surface. */
+    void solveIn(int n, const double* x, const double* y, const double* z, const double* w,
+                 double* dx, double* dy, double* dz, uchar* status) const;
+
+    //! Number of window parameters: normal (3), distance, thickness[], index[], innerIndex, outerIndex.
+    int parameterCount() const { return 6 + 2 * ((int)height_.size() - 1); }
+
+    /** solveIn for one finite point with derivatives of the returned direction.
+    @param dDirection_dX 3x3 row-major
+    @param dDirection_dWindow 3 x parameterCount() row-major, by the *unnormalised* normal (orthogonal to n) */
+    uchar solveInJacobian(const Vec3d& point, Vec3d& direction,
+                          double* dDirection_dX, double* dDirection_dWindow) const;
+
+    //! True where the point lies beyond the last surface (always true without window).
+    bool isBeyond(double x, double y, double z) const
+    { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > total_; }
+
+    const Vec3d& normal() const { return normal_; }
+
+private:
+    //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
+    uchar solveTangent(double U, double V, double w, double& ratio) const;
+
+    bool refracts_ = false;
+    Vec3d normal_ = Vec3d(0, 0, 1);
+    std::vector<double> height_;    //!< inner gap, then the layers
+    std::vector<double> index_;     //!< of the same
+    double outer_ = 1.;             //!< index of the scene's medium
+    double total_ = 0.;             //!< sum of the heights
+    double rarest_ = 1.;            //!< smallest index of inner medium, layers of positive height, outer medium
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_LAYERS_HPP

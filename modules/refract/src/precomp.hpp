@@ -1,0 +1,26 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_PRECOMP_HPP
+#define OPENCV_REFRACT_PRECOMP_HPP
+
+#include "opencv2/refract.hpp"
+
+#ifdef __OPENCV_BUILD
+#include "opencv2/core/private.hpp"
+#else
+// OpenCV does not install private.hpp; the trace macro behind CV_INSTRUMENT_REGION is public.
+#include "opencv2/core/utils/trace.hpp"
+#define CV_INSTRUMENT_REGION() CV_TRACE_FUNCTION()
+#endif
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#endif // OPENCV_REFRACT_PRECOMP_HPP
