@@ -64,7 +64,7 @@ private:
     Size size_;
 };
 
-//! The implementation behind the public handle; throws if it is empty.  goes into the text.
+//! The implementation behind the public handle; throws if it is empty, naming the argument.
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");
 
 }} // namespace
