@@ -1,0 +1,55 @@
+#ifndef REFRACT_TOOLS_CALIB_FILE_HPP
+#define REFRACT_TOOLS_CALIB_FILE_HPP
+
+#include <opencv2/refract.hpp>
+#include <string>
+#include <vector>
+
+/* calib.yml: one camera at top level, two under `camera1`, `camera2` with `R`, `T` beside them.
+
+Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
+thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
+rms. At top level also rms (over all cameras), covariance, and command, refract_version, opencv_version,
+calibration_time. */
+namespace tools {
+
+//! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
+struct WindowStd
+{
+    std::vector<double> normalDeg;      //!< two principal ones, larger first, degrees
+    double distance = 0.;
+    std::vector<double> thickness, index;
+    double outerIndex = 0.;
+};
+
+struct CameraCalibration
+{
+    cv::Ptr<cv::refract::RefractiveCamera> camera;
+    WindowStd windowStd;
+    double rms = -1.;                   //!< px; negative where unknown
+};
+
+struct Calibration
+{
+    std::vector<CameraCalibration> cameras;     //!< one or two
+    cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
+    cv::Vec3d T;
+    double rms = -1.;                           //!< px, over all cameras; negative where unknown
+    cv::Mat covariance;     //!< of calibrateGlass or stereoCalibrateGlass, in their order; empty where unknown
+    std::string command;    //!< the command line that made it
+
+    bool stereo() const { return cameras.size() == 2; }
+};
+
+//! Throws cv::Exception or Failure that names the file.
+Calibration readCalibration(const std::string& filename);
+
+//! Complete or not at all. Adds versions and the time (that of SOURCE_DATE_EPOCH, if set).
+void writeCalibration(const std::string& filename, const Calibration& calibration);
+
+//! The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, for reproducible files.
+std::string timeStamp();
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CALIB_FILE_HPP

@@ -1,0 +1,68 @@
+#ifndef REFRACT_TOOLS_CLI_HPP
+#define REFRACT_TOOLS_CLI_HPP
+
+#include <CLI/CLI.hpp>
+#include <opencv2/core.hpp>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/* What every tool shares: exit codes, errors as one plain sentence, --help, --version, --quiet.
+
+    static const char MANUAL[] = R"(What the tool does. ...)";
+
+    int main(int argc, char** argv)
+    {
+        return tools::runTool(argc, argv, MANUAL, [](tools::Command& command) {
+            std::string out;
+            command.app.add_option("--out", out, "the file to write")->required();
+            command.parse();
+            ...
+            return tools::DONE;
+        });
+    } */
+namespace tools {
+
+enum ExitCode {
+    DONE = 0,           //!< done and within limits
+    CANNOT = 1,         //!< could not do it; one sentence on stderr says why and what to do
+    LIMIT_NOT_MET = 2   //!< done, but a limit that the caller set was not met
+};
+
+//! Could not do it. what() is one sentence that says what is wrong and what to do.
+class Failure : public std::runtime_error
+{
+public:
+    using std::runtime_error::runtime_error;
+};
+
+class Command
+{
+public:
+    Command(int argc, char** argv, const std::string& manual);
+
+    CLI::App app;       //!< add options here, before parse()
+    void parse();       //!< to be called by the body once, after the options are added
+
+    bool quiet() const { return quiet_; }                   //!< after parse()
+    const std::string& line() const { return line_; }       //!< the command line, quoted for a shell
+
+private:
+    std::vector<std::string> arguments_;
+    std::string line_;
+    bool quiet_ = false;
+};
+
+//! Runs the body; turns every exception into exit code 1 and one sentence on stderr.
+int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body);
+
+//! "6x5" -> Size(6, 5); `option` names the option in the error text.
+cv::Size parseSize(const std::string& text, const std::string& option);
+
+//! "a,b,c" -> numbers; all finite.
+std::vector<double> parseNumbers(const std::string& text, const std::string& option);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CLI_HPP

@@ -1,0 +1,26 @@
+#ifndef REFRACT_TOOLS_TABLE_HPP
+#define REFRACT_TOOLS_TABLE_HPP
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+//! A plain text table: the first column flush left, the others flush right.
+class Table
+{
+public:
+    explicit Table(const std::vector<std::string>& heading);
+    void add(const std::vector<std::string>& row);      //!< missing cells are empty
+    void print(std::ostream& out) const;
+private:
+    std::vector<std::vector<std::string>> rows_;
+};
+
+//! printf for a cell.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TABLE_HPP
