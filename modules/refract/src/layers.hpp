@@ -22,8 +22,7 @@ results are not meaningful. */
 class Layers
 {
 public:
-    Layers() {}
-    explicit Layers(const GlassWindow& window);
+    explicit Layers(const GlassWindow& window = GlassWindow());
 
     //! False: no window; directions pass unchanged and origins are the centre of projection.
     bool refracts() const { return refracts_; }
@@ -40,7 +39,7 @@ public:
     //! Number of window parameters: normal (3), distance, thickness[], index[], innerIndex, outerIndex.
     int parameterCount() const { return 6 + 2 * ((int)height_.size() - 1); }
 
-    /** solveIn for one finite point with derivatives of the returned direction.
+    /** solveIn for one finite point with derivatives of the direction.
     @param dDirection_dX 3x3 row-major
     @param dDirection_dWindow 3 x parameterCount() row-major, by the *unnormalised* normal (orthogonal to n) */
     uchar solveInJacobian(const Vec3d& point, Vec3d& direction,

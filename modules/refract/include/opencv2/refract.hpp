@@ -24,7 +24,7 @@ matches, triangulates and calibrates such cameras, with the calls that calib3d h
 - **No answer is an answer**: a point without a geometric solution becomes NaN in every output coordinate, and
   `status` (CV_8U, one per point, see RefractiveStatus) says why. One bad point never throws and never changes
   its neighbours.
-- **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, zero normal, thickness <= 0,
+- **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
   index < 1) throws cv::Exception whose text names the argument and the value. Empty input gives empty output.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, std::vector;
   float32 or float64; non-continuous views included. Computation is in double. Outputs are Nx1 with channels and

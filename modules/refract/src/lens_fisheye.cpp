@@ -1,0 +1,161 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "lens.hpp"
+#include "monotone.hpp"
+
+/* cv::fisheye's model (Kannala and Brandt), theta = angle to the z axis:
+
+    theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
+    u = fx (x + alpha y) + cx,  v = fy y + cy,  (x, y) = theta_d (X, Y)/|(X, Y)|
+
+Domain: theta below the first maximum of theta_d, at most pi. The model goes on beyond 90 degrees, where cv::fisheye
+itself does not. */
+
+namespace cv { namespace refract {
+
+namespace {
+
+class FisheyeLens : public Lens
+{
+public:
+    FisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs);
+
+    void project(int n, const double* x, const double* y, const double* z,
+                 double* u, double* v, uchar* status) const CV_OVERRIDE;
+    void unproject(int n, const double* u, const double* v,
+                   double* x, double* y, double* z, uchar* status) const CV_OVERRIDE;
+    uchar projectJacobian(const Vec3d& direction, Vec2d& pixel, double* dDirection, double* dParameters) const CV_OVERRIDE;
+
+    String model() const CV_OVERRIDE { return "fisheye"; }
+    Mat cameraMatrix() const CV_OVERRIDE { return Mat(K_, true); }
+    Mat distCoeffs() const CV_OVERRIDE { return Mat(4, 1, CV_64F, (void*)k_).clone(); }
+    std::vector<double> parameters() const CV_OVERRIDE;
+    Ptr<Lens> withParameters(const std::vector<double>& parameters) const CV_OVERRIDE;
+
+private:
+    double bend(double theta, double& slope) const;     //!< theta -> theta_d
+
+    Matx33d K_;
+    double fx_, fy_, cx_, cy_, alpha_;
+    double k_[4];
+    double thetaMax_;
+};
+
+FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs)
+    : K_(K), fx_(K(0, 0)), fy_(K(1, 1)), cx_(K(0, 2)), cy_(K(1, 2)), alpha_(K(0, 1)/K(0, 0))
+{
+    if (!distCoeffs.empty() && distCoeffs.size() != 4)
+        CV_Error_(Error::StsBadArg, ("distCoeffs has %d values; the fisheye model has 4", (int)distCoeffs.size()));
+    std::fill(k_, k_ + 4, 0.);
+    std::copy(distCoeffs.begin(), distCoeffs.end(), k_);
+    const double slope[] = { 1, 3*k_[0], 5*k_[1], 7*k_[2], 9*k_[3] };
+    thetaMax_ = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slope, slope + 5))));
+}
+
+double FisheyeLens::bend(double theta, double& slope) const
+{
+    const double s = theta*theta;
+    slope = 1 + s*(3*k_[0] + s*(5*k_[1] + s*(7*k_[2] + s*9*k_[3])));
+    return theta*(1 + s*(k_[0] + s*(k_[1] + s*(k_[2] + s*k_[3]))));
+}
+
+void FisheyeLens::project(int n, const double* X, const double* Y, const double* Z,
+                          double* u, double* v, uchar* status) const
+{
+    for (int i = 0; i < n; ++i)
+    {
+        const double r = std::sqrt(X[i]*X[i] + Y[i]*Y[i]), theta = std::atan2(r, Z[i]);
+        double slope;
+        const double scale = bend(theta, slope)/std::max(r, DBL_MIN);
+        const double x = X[i]*scale, y = Y[i]*scale;
+        u[i] = fx_*(x + alpha_*y) + cx_;
+        v[i] = fy_*y + cy_;
+        if (status[i] == REFRACT_OK && !(theta < thetaMax_))
+            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
+    }
+}
+
+void FisheyeLens::unproject(int n, const double* u, const double* v,
+                            double* x, double* y, double* z, uchar* status) const
+{
+    for (int i = 0; i < n; ++i)
+    {
+        if (status[i] != REFRACT_OK)
+            continue;
+        const double yd = (v[i] - cy_)/fy_, xd = (u[i] - cx_)/fx_ - alpha_*yd, target = std::sqrt(xd*xd + yd*yd);
+        const double theta = invertMonotone([this](double t, double& slope) { return bend(t, slope); },
+                                            target, thetaMax_);
+        if (!std::isfinite(theta))
+            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
+        const double scale = target > 0 ? std::sin(theta)/target : 1;
+        x[i] = xd*scale;
+        y[i] = yd*scale;
+        z[i] = std::cos(theta);
+    }
+}
+
+uchar FisheyeLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirection, double* dParameters) const
+{
+    uchar status = REFRACT_OK;
+    project(1, &d[0], &d[1], &d[2], &pixel[0], &pixel[1], &status);
+    if (status != REFRACT_OK)
+        return status;
+
+    // With e = (X, Y)/r: d(x, y) = theta_d/r (I - e e^T) + e theta_d' dtheta, dtheta = (Z e, -r)/|d|^2. On the axis
+    // theta_d/r and theta_d' Z/|d|^2 are both 1/Z and e drops out.
+    const double r = std::sqrt(d[0]*d[0] + d[1]*d[1]), l2 = r*r + d[2]*d[2], theta = std::atan2(r, d[2]);
+    double slope;
+    const double thetaD = bend(theta, slope), side = r > 0 ? thetaD/r : 1/d[2], along = slope*d[2]/l2;
+    const double e[2] = { d[0]/std::max(r, DBL_MIN), d[1]/std::max(r, DBL_MIN) };
+    double J[2][3];
+    for (int a = 0; a < 2; ++a)
+    {
+        for (int b = 0; b < 2; ++b)
+            J[a][b] = (a == b ? side : 0) + (along - side)*e[a]*e[b];
+        J[a][2] = -slope*r/l2*e[a];
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+        dDirection[c] = fx_*(J[0][c] + alpha_*J[1][c]);
+        dDirection[3 + c] = fy_*J[1][c];
+    }
+    if (!dParameters)
+        return status;
+
+    std::fill(dParameters, dParameters + 16, 0.);
+    const double x = thetaD*e[0] + alpha_*thetaD*e[1], y = thetaD*e[1];
+    dParameters[0] = x; dParameters[2] = 1;
+    dParameters[9] = y; dParameters[11] = 1;
+    double power = theta;
+    for (int c = 0; c < 4; ++c)
+    {
+        power *= theta*theta;
+        dParameters[4 + c] = fx_*power*(e[0] + alpha_*e[1]);
+        dParameters[12 + c] = fy_*power*e[1];
+    }
+    return status;
+}
+
+std::vector<double> FisheyeLens::parameters() const
+{
+    std::vector<double> p = { fx_, fy_, cx_, cy_ };
+    p.insert(p.end(), k_, k_ + 4);
+    return p;
+}
+
+Ptr<Lens> FisheyeLens::withParameters(const std::vector<double>& p) const
+{
+    return makeFisheyeLens(Matx33d(p[0], alpha_*p[0], p[2], 0, p[1], p[3], 0, 0, 1),
+                           std::vector<double>(p.begin() + 4, p.end()));
+}
+
+} // namespace
+
+Ptr<Lens> makeFisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs)
+{
+    return makePtr<FisheyeLens>(cameraMatrix, distCoeffs);
+}
+
+}} // namespace

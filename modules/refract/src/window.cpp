@@ -1,0 +1,120 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "precomp.hpp"
+
+namespace cv { namespace refract {
+
+GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1) {}
+
+GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
+    : normal(normal_), distance(distance_), thickness(1, thickness_), index(1, index_), innerIndex(1),
+      outerIndex(outerIndex_)
+{
+    const double length = cv::norm(normal);
+    if (!(length > 0) || !std::isfinite(length))
+        CV_Error_(Error::StsBadArg, ("normal is (%g, %g, %g); it must be finite and not zero",
+                                     normal[0], normal[1], normal[2]));
+    normal /= length;
+    check();
+}
+
+static void checkAtLeast(const char* name, double value, double least)
+{
+    if (!(value >= least) || !std::isfinite(value))
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be finite and at least %g", name, value, least));
+}
+
+void GlassWindow::check() const
+{
+    const double length = cv::norm(normal);
+    // Room for a normal that was stored as float or printed with six digits; the kernels normalise once more.
+    if (!(std::abs(length - 1) < 1e-5))
+        CV_Error_(Error::StsBadArg, ("window.normal is (%g, %g, %g) with length %g; it must be a unit vector",
+                                     normal[0], normal[1], normal[2], length));
+    if (!(normal[2] > 0))
+        CV_Error_(Error::StsBadArg, ("window.normal is (%g, %g, %g); it must point from the camera to the scene, "
+                                     "normal[2] > 0", normal[0], normal[1], normal[2]));
+    checkAtLeast("window.distance", distance, 0);
+    checkAtLeast("window.innerIndex", innerIndex, 1);
+    checkAtLeast("window.outerIndex", outerIndex, 1);
+    if (thickness.size() != index.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("window.thickness has %d layers, window.index %d; they must agree",
+                                             (int)thickness.size(), (int)index.size()));
+    for (size_t i = 0; i < thickness.size(); ++i)
+    {
+        checkAtLeast(format("window.thickness[%d]", (int)i).c_str(), thickness[i], 0);
+        checkAtLeast(format("window.index[%d]", (int)i).c_str(), index[i], 1);
+    }
+}
+
+void GlassWindow::write(FileStorage& fs) const
+{
+    // Vectors as plain sequences: readable by hand and by any YAML parser.
+    fs << "{" << "normal" << "[:" << normal[0] << normal[1] << normal[2] << "]"
+       << "distance" << distance << "thickness" << "[:";
+    for (double t : thickness) fs << t;
+    fs << "]" << "index" << "[:";
+    for (double n : index) fs << n;
+    fs << "]" << "inner_index" << innerIndex << "outer_index" << outerIndex << "}";
+}
+
+static double readNumber(const FileNode& map, const char* key, double missing)
+{
+    const FileNode node = map[key];
+    if (node.empty())
+        return missing;
+    if (!node.isReal() && !node.isInt())
+        CV_Error_(Error::StsParseError, ("glass_window.%s is not a number", key));
+    return (double)node;
+}
+
+static std::vector<double> readSequence(const FileNode& map, const char* key)
+{
+    std::vector<double> values;
+    const FileNode node = map[key];
+    if (node.isReal() || node.isInt())      // a single layer may be given without brackets
+        return std::vector<double>(1, (double)node);
+    for (FileNodeIterator it = node.begin(); it != node.end(); ++it)
+    {
+        const FileNode item = *it;
+        if (!item.isReal() && !item.isInt())
+            CV_Error_(Error::StsParseError, ("glass_window.%s holds something that is not a number", key));
+        values.push_back((double)item);
+    }
+    return values;
+}
+
+void GlassWindow::read(const FileNode& node)
+{
+    if (!node.isMap())
+        CV_Error(Error::StsParseError, "glass_window is not a map of normal, distance, thickness, index");
+    const std::vector<double> n = readSequence(node, "normal");
+    if (n.size() != 3)
+        CV_Error_(Error::StsParseError, ("glass_window.normal has %d numbers; it must have 3", (int)n.size()));
+    GlassWindow window;
+    window.normal = Vec3d(n[0], n[1], n[2]);
+    const double length = cv::norm(window.normal);
+    if (length > 0)
+        window.normal /= length;
+    window.distance = readNumber(node, "distance", 0);
+    window.thickness = readSequence(node, "thickness");
+    window.index = readSequence(node, "index");
+    window.innerIndex = readNumber(node, "inner_index", 1);
+    window.outerIndex = readNumber(node, "outer_index", 1);
+    window.check();
+    *this = window;
+}
+
+void write(FileStorage& fs, const String&, const GlassWindow& window) { window.write(fs); }
+
+void read(const FileNode& node, GlassWindow& window, const GlassWindow& defaultValue)
+{
+    if (node.empty())
+        window = defaultValue;
+    else
+        window.read(node);
+}
+
+}} // namespace
