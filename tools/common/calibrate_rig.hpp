@@ -1,0 +1,121 @@
+#ifndef REFRACT_TOOLS_CALIBRATE_RIG_HPP
+#define REFRACT_TOOLS_CALIBRATE_RIG_HPP
+
+#include "calib_file.hpp"
+#include "views.hpp"
+
+/* From views of a target to a calibrated rig of one or two cameras: which images belong together, the lens from the
+direct images, the start of R and T, and the joint fit of windows, rig and board poses. Geometry is the library's. */
+namespace tools {
+
+//! One pose of the board, and what each camera saw of it. An empty array: no image, or the board was not found.
+struct Moment
+{
+    std::string stem;
+    std::vector<cv::Point2d> direct[2], glass[2];
+
+    bool hasDirect(int camera) const { return !direct[camera].empty(); }
+    bool hasGlass(int camera) const { return !glass[camera].empty(); }
+    bool hasGlass() const { return hasGlass(0) || hasGlass(1); }
+    bool isPair(int camera) const { return hasDirect(camera) && hasGlass(camera); }
+};
+
+struct RigData
+{
+    int cameraCount = 1;
+    std::vector<cv::Point3d> objectPoints;      //!< of the target, the same at every moment
+    std::vector<Moment> moments;
+    cv::Size imageSize[2];
+
+    int countGlass(int camera) const;
+    int countDirect(int camera) const;
+    int countPairs(int camera) const;
+};
+
+/** Sorts views into moments. Equal stems are one moment; with `unpaired` a direct and a glass image never are, while
+the two cameras of a rig still are. Points are renumbered where the target's symmetry makes two images of a moment
+disagree. glass[c] must not be null; direct[c] may be. */
+RigData pairViews(const Target& target, const ViewSet* const direct[2], const ViewSet* const glass[2], bool unpaired);
+
+struct RigOptions
+{
+    cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
+    int flags = 0;                                          //!< GlassCalibrationFlags
+    int lensCoefficients = 5;                               //!< of the lens that the images determine
+    cv::Ptr<cv::refract::RefractiveCamera> known[2];        //!< lens from a file; null: from the images
+};
+
+//! Lenses, windows and their places: the start of a fit and its result.
+struct Rig
+{
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
+    cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
+    cv::Vec3d T;
+
+    Rig clone() const;
+};
+
+//! Where the lens of a camera came from.
+struct LensSource
+{
+    enum Kind { FROM_FILE, FROM_DIRECT, FROM_GLASS } kind = FROM_FILE;
+    int views = 0;
+    double rms = 0.;            //!< cv::calibrateCamera's
+};
+
+//! The outcome of one joint fit.
+struct Fit
+{
+    Rig rig;
+    std::vector<int> moments;                   //!< that took part, as indices into RigData::moments
+    std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
+    cv::Mat perViewErrors;                      //!< one row each: glass 1, direct 1 (, glass 2, direct 2), px, NaN: none
+    cv::Mat stdDeviations, covariance;
+    double rms = 0.;
+};
+
+//! One observed corner: where it was seen, and seen minus modelled.
+struct Residual
+{
+    int camera, moment;
+    bool glass;
+    cv::Point2d pixel, error;
+};
+
+//! Same lens, other window.
+cv::Ptr<cv::refract::RefractiveCamera> withWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+                                                  const cv::refract::GlassWindow& window);
+
+//! cv::calibrateCamera on the seen points of all views that are not empty.
+cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<cv::Point3d>& objectPoints,
+        const std::vector<std::vector<cv::Point2d>>& views, cv::Size imageSize, int coefficients, double& rms);
+
+//! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
+Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
+
+//! The moments that a fit with these flags learns from.
+std::vector<int> usefulMoments(const RigData& data, int flags);
+
+//! calibrateGlass or stereoCalibrateGlass on some of the moments.
+Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
+
+//! All corners of the moments that took part.
+std::vector<Residual> residualsOf(const RigData& data, const Fit& fit);
+
+//! Board -> camera `camera` of the k-th moment of a fit.
+void poseInCamera(const Fit& fit, size_t k, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
+
+/* Which column of Fit::covariance is what. */
+struct ParameterColumns
+{
+    int lens, normal, distance, thickness, index, innerIndex, outerIndex, end;
+    int lensCount, layers;
+};
+ParameterColumns columnsOf(const Rig& rig, int camera);
+
+//! One standard deviation of what was free in the window of a camera.
+WindowStd windowStd(const Fit& fit, int camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CALIBRATE_RIG_HPP
