@@ -49,6 +49,8 @@ public:
     const std::string& line() const { return line_; }       //!< the command line, quoted for a shell
 
 private:
+    static std::string stripFolder(const std::string& path);
+
     std::vector<std::string> arguments_;
     std::string line_;
     bool quiet_ = false;

@@ -1,6 +1,7 @@
 #ifndef REFRACT_TOOLS_TABLE_HPP
 #define REFRACT_TOOLS_TABLE_HPP
 
+#include <opencv2/core.hpp>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -18,8 +19,7 @@ private:
     std::vector<std::vector<std::string>> rows_;
 };
 
-//! printf for a cell.
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+using cv::format;   //!< printf for a cell
 
 } // namespace tools
 

@@ -1,6 +1,7 @@
 #ifndef REFRACT_TOOLS_VIEWS_HPP
 #define REFRACT_TOOLS_VIEWS_HPP
 
+#include "images.hpp"
 #include "target.hpp"
 
 namespace tools {
@@ -30,18 +31,6 @@ struct ViewSet
 @param quiet no progress.
 Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
 ViewSet readViews(const std::string& source, const Target& target, cv::Size imageSize, bool quiet);
-
-//! Files that match, sorted; throws Failure if there are none.
-std::vector<std::string> expandGlob(const std::string& glob);
-
-//! The whole image, 8-bit grey; throws Failure that names the file if it is missing, cut or not an image.
-cv::Mat readGrey(const std::string& path);
-
-//! The same in colour where it has any (CV_8UC1 or CV_8UC3).
-cv::Mat readImage(const std::string& path);
-
-//! File name without folder and extension.
-std::string stemOf(const std::string& path);
 
 } // namespace tools
 

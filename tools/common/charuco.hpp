@@ -1,0 +1,20 @@
+#ifndef REFRACT_TOOLS_CHARUCO_HPP
+#define REFRACT_TOOLS_CHARUCO_HPP
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+/* ChArUco moved from contrib's aruco to objdetect, with another interface, in OpenCV 4.7. Only this pair knows. */
+namespace tools {
+
+//! Number of a dictionary by OpenCV's name ("DICT_4X4_250"); throws Failure if there is none.
+int charucoDictionary(const std::string& name);
+
+//! Pixels of all inner corners, NaN where not seen; empty if fewer than four were.
+std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
+                                       int dictionary);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHARUCO_HPP
