@@ -45,9 +45,9 @@ public:
     uchar solveInJacobian(const Vec3d& point, Vec3d& direction,
                           double* dDirection_dX, double* dDirection_dWindow) const;
 
-    //! True where the point lies beyond the last surface (always true without window).
-    bool isBeyond(double x, double y, double z) const
-    { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > total_; }
+    //! True where the homogeneous point lies beyond the last surface (always true without window).
+    bool isBeyond(double x, double y, double z, double w = 1.) const
+    { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*total_; }
 
     const Vec3d& normal() const { return normal_; }
 

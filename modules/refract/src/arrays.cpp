@@ -1,0 +1,260 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays.hpp"
+#include "rotation.hpp"
+
+namespace cv { namespace refract {
+
+static String describe(const Mat& m)
+{
+    String shape;
+    for (int i = 0; i < m.dims; ++i)
+        shape += format(i ? "x%d" : "%d", m.size[i]);
+    return shape + " " + typeToString(m.type());
+}
+
+//! The points of an array as a continuous Mat, and how many there are.
+static Mat pointsOf(InputArray a, int channels, const char* name, int& size)
+{
+    Mat m = a.getMat();
+    size = 0;
+    if (m.empty())
+        return m;
+    if (m.depth() != CV_32F && m.depth() != CV_64F)
+        CV_Error_(Error::StsUnsupportedFormat, ("%s is %s; it must be float32 or float64", name, describe(m).c_str()));
+    size = m.checkVector(channels, -1, false);
+    if (size < 0)
+        CV_Error_(Error::StsBadSize, ("%s is %s; it must be Nx1 or 1xN with %d channels, or Nx%d with one",
+                                      name, describe(m).c_str(), channels, channels));
+    return m.isContinuous() ? m : m.clone();
+}
+
+PointReader::PointReader(InputArray points, int channels, const char* name)
+{
+    points_ = pointsOf(points, channels, name, size_);
+    depth_ = points_.empty() ? (points.depth() == CV_32F ? CV_32F : CV_64F) : points_.depth();
+}
+
+template<typename T>
+static void loadBlock(const T* p, int n, double* x, double* y, double* z, uchar* status)
+{
+    for (int i = 0; i < n; ++i)
+    {
+        x[i] = *p++;
+        y[i] = *p++;
+        double sum = x[i] + y[i];
+        if (z)
+            sum += z[i] = *p++;
+        status[i] = std::isfinite(sum) ? REFRACT_OK : REFRACT_NOT_FINITE;
+    }
+}
+
+void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar* status) const
+{
+    const int channels = z ? 3 : 2;
+    if (depth_ == CV_32F)
+        loadBlock(points_.ptr<float>() + (size_t)begin*channels, n, x, y, z, status);
+    else
+        loadBlock(points_.ptr<double>() + (size_t)begin*channels, n, x, y, z, status);
+}
+
+PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
+{
+    if (!points.needed())
+        return;
+    if (points.fixedType())
+        depth = CV_MAT_DEPTH(points.type());
+    points.create(size, 1, CV_MAKETYPE(depth, channels), -1, true);
+    points_ = points.getMat();
+    if (size && !points_.isContinuous())
+        CV_Error(Error::StsBadArg, "an output array is not continuous; pass an empty one");
+}
+
+template<typename T>
+static void storeBlock(T* p, int n, const double* x, const double* y, const double* z, const uchar* status)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (int i = 0; i < n; ++i)
+    {
+        const bool ok = status[i] == REFRACT_OK;
+        *p++ = (T)(ok ? x[i] : nan);
+        *p++ = (T)(ok ? y[i] : nan);
+        if (z)
+            *p++ = (T)(ok ? z[i] : nan);
+    }
+}
+
+void PointWriter::store(int begin, int n, const double* x, const double* y, const double* z, const uchar* status)
+{
+    if (points_.empty())
+        return;
+    const int channels = z ? 3 : 2;
+    if (points_.depth() == CV_32F)
+        storeBlock(points_.ptr<float>() + (size_t)begin*channels, n, x, y, z, status);
+    else
+        storeBlock(points_.ptr<double>() + (size_t)begin*channels, n, x, y, z, status);
+}
+
+StatusWriter::StatusWriter(OutputArray status, int size)
+{
+    if (!status.needed())
+        return;
+    status.create(size, 1, CV_8U, -1, true);
+    status_ = status.getMat();
+}
+
+void StatusWriter::store(int begin, int n, const uchar* status)
+{
+    if (!status_.empty())
+        std::copy(status, status + n, status_.ptr<uchar>() + begin);
+}
+
+void forEachBlock(int size, const std::function<void(int begin, int n)>& body)
+{
+    const int blocks = (size + BLOCK - 1)/BLOCK;
+    const auto run = [&](const Range& range)
+    {
+        for (int b = range.start; b < range.end; ++b)
+            body(b*BLOCK, std::min(BLOCK, size - b*BLOCK));
+    };
+    if (blocks <= 1)
+        run(Range(0, blocks));
+    else
+        parallel_for_(Range(0, blocks), run, size/16384.);
+}
+
+//! A small numeric argument as doubles, row by row.
+static Mat doubles(InputArray a, const char* name)
+{
+    const Mat m = a.getMat();
+    if (m.depth() != CV_32F && m.depth() != CV_64F && !m.empty())
+        CV_Error_(Error::StsUnsupportedFormat, ("%s is %s; it must be float32 or float64", name, describe(m).c_str()));
+    Mat values;
+    m.convertTo(values, CV_64F);
+    return values;
+}
+
+//! The same; must be finite.
+static Mat smallMatrix(InputArray a, const char* name)
+{
+    const Mat values = doubles(a, name);
+    for (size_t i = 0; i < values.total()*values.channels(); ++i)
+        if (!std::isfinite(values.ptr<double>()[i]))
+            CV_Error_(Error::StsBadArg, ("%s[%d] is %g; it must be finite", name, (int)i, values.ptr<double>()[i]));
+    return values;
+}
+
+static void wrongShape(InputArray a, const char* name, const char* wanted)
+{
+    CV_Error_(Error::StsBadSize, ("%s is %s; it must be %s", name,
+                                  a.empty() ? "empty" : describe(a.getMat()).c_str(), wanted));
+}
+
+Matx33d readCameraMatrix(InputArray a, const char* name)
+{
+    const Mat m = smallMatrix(a, name);
+    if (m.dims != 2 || m.rows != 3 || m.cols != 3 || m.channels() != 1)
+        wrongShape(a, name, "3x3");
+    const Matx33d K(m.ptr<double>());
+    if (!(K(0, 0) > 0) || !(K(1, 1) > 0))
+        CV_Error_(Error::StsBadArg, ("%s has focal lengths (%g, %g); they must be positive", name, K(0, 0), K(1, 1)));
+    if (K(1, 0) != 0 || K(2, 0) != 0 || K(2, 1) != 0 || K(2, 2) != 1)
+        CV_Error_(Error::StsBadArg, ("%s is not upper triangular with (2, 2) = 1; (2, 2) is %g", name, K(2, 2)));
+    return K;
+}
+
+std::vector<double> readNumbers(InputArray a, const char* name)
+{
+    if (a.empty())
+        return std::vector<double>();
+    const Mat m = smallMatrix(a, name);
+    return std::vector<double>(m.ptr<double>(), m.ptr<double>() + m.total()*m.channels());
+}
+
+std::vector<double> readDepths(InputArray a, int size, const char* name)
+{
+    if (a.empty())
+        return std::vector<double>(1, std::numeric_limits<double>::infinity());
+    const Mat m = doubles(a, name);
+    const int n = (int)(m.total()*m.channels());
+    const double* p = m.ptr<double>();
+    if (size >= 0 && n != 1 && n != size)
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d values; it must have 1 or one per point (%d)", name, n, size));
+    if (n == 1 && !(p[0] > 0))
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, p[0]));
+    return std::vector<double>(p, p + n);
+}
+
+std::vector<double> readDistCoeffs(InputArray a, const char* name)
+{
+    const std::vector<double> d = readNumbers(a, name);
+    const size_t n = d.size();
+    if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
+        CV_Error_(Error::StsBadSize, ("%s has %d values; it must have 0, 4, 5, 8, 12 or 14", name, (int)n));
+    return d;
+}
+
+Matx33d readRotation(InputArray a, const char* name)
+{
+    const std::vector<double> r = readNumbers(a, name);
+    if (r.empty())
+        return Matx33d::eye();
+    Matx33d R;
+    if (r.size() == 9)
+        R = Matx33d(r.data());
+    else if (r.size() == 3)
+        R = rotationMatrix(Vec3d(r.data()));
+    else
+        wrongShape(a, name, "3x3 or a rotation vector of 3");
+    if (cv::norm(R*R.t() - Matx33d::eye()) > 1e-3 || determinant(R) < 0)
+        CV_Error_(Error::StsBadArg, ("%s is not a rotation: |R R^T - I| = %g", name,
+                                     cv::norm(R*R.t() - Matx33d::eye())));
+    // Printed matrices are rotations to a few digits only; inverses by the transpose need one to all digits.
+    const SVD svd(Mat(R), SVD::MODIFY_A);
+    return Matx33d(Mat(svd.u*svd.vt).ptr<double>());
+}
+
+Vec3d readVec3(InputArray a, const char* name)
+{
+    const std::vector<double> v = readNumbers(a, name);
+    if (v.size() != 3)
+        wrongShape(a, name, "a vector of 3");
+    return Vec3d(v.data());
+}
+
+Matx33d readProjection(InputArray a, const char* name)
+{
+    if (a.empty())
+        return Matx33d::eye();
+    const Mat m = smallMatrix(a, name);
+    if (m.dims != 2 || m.rows != 3 || (m.cols != 3 && m.cols != 4) || m.channels() != 1)
+        wrongShape(a, name, "3x3 or 3x4");
+    Matx33d P;
+    for (int i = 0; i < 9; ++i)
+        P(i/3, i%3) = m.at<double>(i/3, i%3);
+    return P;
+}
+
+std::vector<Point2d> readPoints2(InputArray a, const char* name)
+{
+    int n;
+    const Mat m = pointsOf(a, 2, name, n);
+    std::vector<Point2d> points(n);
+    for (int i = 0; i < n; ++i)
+        points[i] = m.depth() == CV_32F ? Point2d(m.ptr<Point2f>()[i]) : m.ptr<Point2d>()[i];
+    return points;
+}
+
+std::vector<Point3d> readPoints3(InputArray a, const char* name)
+{
+    int n;
+    const Mat m = pointsOf(a, 3, name, n);
+    std::vector<Point3d> points(n);
+    for (int i = 0; i < n; ++i)
+        points[i] = m.depth() == CV_32F ? Point3d(m.ptr<Point3f>()[i]) : m.ptr<Point3d>()[i];
+    return points;
+}
+
+}} // namespace

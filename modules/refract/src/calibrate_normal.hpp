@@ -1,0 +1,26 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_CALIBRATE_NORMAL_HPP
+#define OPENCV_REFRACT_CALIBRATE_NORMAL_HPP
+
+#include "camera.hpp"
+#include "views.hpp"
+
+namespace cv { namespace refract {
+
+struct NormalEstimate
+{
+    Vec3d normal;
+    Matx33d covariance;     //!< rank 2; NaN where two pairs leave no residual to scale it by
+    double rms;             //!< pixels
+};
+
+/** The normal from pairs; see calibrate_normal.cpp. Only the lens of the camera is used. Views that are empty in one of
+the two, and pairs that are not seen in both, are left out. Throws if the pairs do not determine the normal. */
+NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_CALIBRATE_NORMAL_HPP

@@ -1,0 +1,100 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays.hpp"
+#include "camera.hpp"
+#include "cameramodel.hpp"
+
+/* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
+
+namespace cv { namespace refract {
+
+void Camera::write(FileStorage& fs) const
+{
+    fs << "image_width" << size_.width << "image_height" << size_.height;
+    fs << "camera_matrix" << cameraMatrix() << "distortion_coefficients" << distCoeffs();
+    fs << "lens_model" << lensModel();
+    fs << "glass_window";
+    window_.write(fs);
+}
+
+static Mat readMatrix(const FileNode& node, const char* key, const String& filename)
+{
+    Mat m;
+    try
+    {
+        node[key] >> m;
+    }
+    catch (const cv::Exception& e)
+    {
+        CV_Error_(Error::StsParseError, ("%s: %s is not a matrix (%s)", filename.c_str(), key, e.err.c_str()));
+    }
+    return m;
+}
+
+static Ptr<Lens> readLens(const FileNode& node, const String& filename)
+{
+    const Mat K = readMatrix(node, "camera_matrix", filename);
+    const Mat D = readMatrix(node, "distortion_coefficients", filename);
+    if (K.empty())
+        CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
+    const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
+    const Matx33d cameraMatrix = readCameraMatrix(K, "camera_matrix");
+    if (model == "opencv")
+        return makeOpenCVLens(cameraMatrix, readDistCoeffs(D, "distortion_coefficients"));
+    if (model == "fisheye")
+        return makeFisheyeLens(cameraMatrix, readNumbers(D, "distortion_coefficients"));
+    std::vector<double> intrinsics = { cameraMatrix(0, 0), cameraMatrix(1, 1), cameraMatrix(0, 2), cameraMatrix(1, 2) };
+    const std::vector<double> d = readNumbers(D, "distortion_coefficients");
+    intrinsics.insert(intrinsics.end(), d.begin(), d.end());
+    return makeMrcalLens(model, intrinsics);
+}
+
+static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filename)
+{
+    GlassWindow window;
+    if (!node["glass_window"].empty())
+        window.read(node["glass_window"]);
+    Ptr<RefractiveCamera> camera = makePtr<Camera>(readLens(node, filename), window);
+    if (node["image_width"].isInt() && node["image_height"].isInt())
+        camera->setImageSize(Size((int)node["image_width"], (int)node["image_height"]));
+    return camera;
+}
+
+Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const String& name)
+{
+    CV_INSTRUMENT_REGION();
+
+    const String suffix = ".cameramodel";
+    if (filename.size() > suffix.size() && filename.substr(filename.size() - suffix.size()) == suffix)
+    {
+        const CameraModel model = readCameraModel(filename);
+        Ptr<RefractiveCamera> camera = createMrcal(model.lensModel, model.intrinsics);
+        camera->setImageSize(model.imageSize);
+        return camera;
+    }
+    FileStorage fs;
+    try
+    {
+        fs.open(filename, FileStorage::READ);
+    }
+    catch (const cv::Exception& e)
+    {
+        CV_Error_(Error::StsParseError, ("%s is not YAML, XML or JSON that OpenCV reads (%s)", filename.c_str(),
+                                         e.err.c_str()));
+    }
+    if (!fs.isOpened())
+        CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
+    FileNode node = fs.root();
+    if (!name.empty())
+        node = fs[name];
+    else if (!node.isMap() || node["camera_matrix"].empty())
+        node = fs["camera1"];
+    if (!node.isMap())
+        CV_Error_(Error::StsParseError, ("%s holds no camera%s%s: camera_matrix and distortion_coefficients are missing",
+                                         filename.c_str(), name.empty() ? "" : " ", name.c_str()));
+    return readNode(node, filename);
+}
+
+}} // namespace

@@ -1,0 +1,27 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_CAMERAMODEL_HPP
+#define OPENCV_REFRACT_CAMERAMODEL_HPP
+
+#include "precomp.hpp"
+
+namespace cv { namespace refract {
+
+//! What a .cameramodel file of mrcal says of the camera.
+struct CameraModel
+{
+    String lensModel;                   //!< LENSMODEL_...
+    std::vector<double> intrinsics;
+    std::vector<double> extrinsics;     //!< rvec, tvec, reference -> camera
+    Size imageSize;
+};
+
+/** Reads an mrcal .cameramodel: one Python dict of strings, numbers and nested lists, with # comments. Unknown keys (the
+optimization inputs) are passed over. Throws with the file's name. */
+CameraModel readCameraModel(const String& filename);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_CAMERAMODEL_HPP

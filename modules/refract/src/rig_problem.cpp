@@ -1,0 +1,298 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "rig_problem.hpp"
+#include <ceres/manifold.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <ceres/sphere_manifold.h>
+
+namespace cv { namespace refract {
+
+namespace {
+
+// A layer's thickness stays above this part of its start, a focal length too.
+const double SMALLEST_PART = 1e-6;
+
+std::array<double, 6> sixOf(const Pose& pose)
+{
+    std::array<double, 6> six;
+    std::copy(pose.rvec.val, pose.rvec.val + 3, six.begin());
+    std::copy(pose.tvec.val, pose.tvec.val + 3, six.begin() + 3);
+    return six;
+}
+
+Pose poseOf(const double* six)
+{
+    Pose pose;
+    pose.rvec = Vec3d(six);
+    pose.tvec = Vec3d(six + 3);
+    pose.found = true;
+    return pose;
+}
+
+//! GlassCalibrationFlags -> which of distance, thickness[], index[], innerIndex, outerIndex are free.
+std::vector<bool> freeMedia(int layers, int flags)
+{
+    std::vector<bool> isFree(1, (flags & GLASS_FREE_DISTANCE) != 0);
+    isFree.insert(isFree.end(), layers, (flags & GLASS_FREE_THICKNESS) != 0);
+    isFree.insert(isFree.end(), layers, (flags & GLASS_FREE_INDEX) != 0);
+    isFree.push_back(false);
+    isFree.push_back((flags & GLASS_FREE_OUTER_INDEX) != 0);
+    return isFree;
+}
+
+//! Coefficients that are exactly 0 stay 0.
+std::vector<bool> freeLens(const std::vector<double>& lens, int flags)
+{
+    std::vector<bool> isFree(lens.size(), (flags & GLASS_FREE_INTRINSICS) != 0);
+    for (size_t i = 4; i < lens.size(); i++)
+        if (lens[i] == 0)
+            isFree[i] = false;
+    return isFree;
+}
+
+void addToProblem(ceres::Problem& problem, RigBlock& block)
+{
+    double* values = block.values.data();
+    const int size = (int)block.values.size();
+    std::vector<int> fixed;
+    for (int i = 0; i < size; i++)
+        if (!block.isFree[i])
+            fixed.push_back(i);
+    if (!problem.HasParameterBlock(values))
+        return;
+    if ((int)fixed.size() == size)
+    {
+        problem.SetParameterBlockConstant(values);
+        return;
+    }
+    if (block.kind == RigBlock::NORMAL)
+        problem.SetManifold(values, new ceres::SphereManifold<3>());
+    else if (!fixed.empty())
+        problem.SetManifold(values, new ceres::SubsetManifold(size, fixed));
+
+    const int layers = (size - 3)/2;
+    for (int i = 0; i < size; i++)
+    {
+        if (!block.isFree[i])
+            continue;
+        if (block.kind == RigBlock::LENS && i < 2)
+            problem.SetParameterLowerBound(values, i, SMALLEST_PART*values[i]);
+        if (block.kind == RigBlock::MEDIA)
+            problem.SetParameterLowerBound(values, i, i == 0 ? 0. : i <= layers ? SMALLEST_PART*values[i] : 1.);
+    }
+}
+
+} // namespace
+
+RigProblem::RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
+                       const std::vector<Pose>& poses, int flags)
+    : cameras_(cameras), shared_((flags & GLASS_SHARED_WINDOW) != 0)
+{
+    for (int c = 0; c < (int)cameras_.size(); c++)
+    {
+        const Camera& camera = cameras_[c];
+        const std::vector<double> all = camera.parameters();
+        const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
+        const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
+        addBlock(RigBlock::LENS, c, lens, freeLens(lens, flags));
+        if (c == 1 && shared_)
+            continue;
+        addBlock(RigBlock::NORMAL, c, std::vector<double>(lensEnd, lensEnd + 3), std::vector<bool>(3, true));
+        addBlock(RigBlock::MEDIA, c, media, freeMedia(((int)media.size() - 3)/2, flags));
+    }
+    if (isStereo())
+    {
+        const std::array<double, 6> six = sixOf(extrinsics);
+        addBlock(RigBlock::EXTRINSICS, 1, std::vector<double>(six.begin(), six.end()),
+                 std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
+    }
+    for (const Pose& pose : poses)
+        poses_.push_back(sixOf(pose));
+    addImages(views);
+}
+
+void RigProblem::addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values,
+                          const std::vector<bool>& isFree)
+{
+    RigBlock block;
+    block.kind = kind;
+    block.camera = camera;
+    block.values = values;
+    block.isFree = isFree;
+    blocks_.push_back(block);
+}
+
+void RigProblem::addImages(const RigViews& views)
+{
+    for (int view = 0; view < views.count(); view++)
+        for (int c = 0; c < (int)views.cameras.size(); c++)
+            for (bool refracted : { true, false })
+            {
+                const CameraViews& seen = views.cameras[c];
+                const std::vector<Point2d>& pixels = (refracted ? seen.refracted : seen.direct)[view];
+                RigImage image;
+                image.view = view;
+                image.camera = c;
+                image.refracted = refracted;
+                for (size_t i = 0; i < pixels.size(); i++)
+                    if (isSeen(pixels[i]))
+                    {
+                        image.points.object.push_back(views.object[view][i]);
+                        image.points.pixel.push_back(pixels[i]);
+                    }
+                if (!image.points.pixel.empty())
+                    images_.push_back(image);
+            }
+}
+
+int RigProblem::blockOf(RigBlock::Kind kind, int camera) const
+{
+    if (shared_ && (kind == RigBlock::NORMAL || kind == RigBlock::MEDIA))
+        camera = 0;
+    for (int i = 0; i < (int)blocks_.size(); i++)
+        if (blocks_[i].kind == kind && blocks_[i].camera == camera)
+            return i;
+    return -1;
+}
+
+//! In the order of ImageResidual's blocks after the pose.
+std::vector<int> RigProblem::blocksOf(const RigImage& image) const
+{
+    std::vector<int> blocks;
+    if (image.camera == 1)
+        blocks.push_back(blockOf(RigBlock::EXTRINSICS, 1));
+    blocks.push_back(blockOf(RigBlock::LENS, image.camera));
+    if (image.refracted)
+    {
+        blocks.push_back(blockOf(RigBlock::NORMAL, image.camera));
+        blocks.push_back(blockOf(RigBlock::MEDIA, image.camera));
+    }
+    return blocks;
+}
+
+ceres::CostFunction* RigProblem::makeCost(const RigImage& image) const
+{
+    const bool isCamera2 = image.camera == 1;
+    const ImageResidual::Window window = !image.refracted ? ImageResidual::WITHOUT :
+        isCamera2 && shared_ ? ImageResidual::OF_CAMERA_1 : ImageResidual::OWN;
+    return ImageResidual::Create(cameras_[isCamera2 && shared_ ? 1 : image.camera], image.points, isCamera2, window);
+}
+
+void RigProblem::checkStart() const
+{
+    for (const RigImage& image : images_)
+    {
+        Camera seenBy = camera(image.camera);
+        if (!image.refracted)
+            seenBy.setWindow(GlassWindow());
+        const Rotation object(poses_[image.view].data());
+        const Pose toCamera2 = image.camera == 1 ? extrinsics() : Pose();
+        for (const Point3d& point : image.points.object)
+        {
+            const Vec3d inCamera1 = object.R*Vec3d(point) + pose(image.view).tvec;
+            Vec2d pixel;
+            double byPoint[6];
+            const int status = seenBy.projectJacobian(Rotation(toCamera2.rvec.val).R*inCamera1 + toCamera2.tvec, pixel,
+                                                      byPoint, nullptr);
+            if (status != REFRACT_OK)
+                CV_Error_(Error::StsBadArg, ("view %d of camera %d, point (%g, %g, %g): no image %s at the start "
+                                             "(RefractiveStatus %d); check the window's distance and thickness, the "
+                                             "lens and the units", image.view, image.camera + 1, point.x, point.y,
+                                             point.z, image.refracted ? "through the window" : "without window",
+                                             status));
+        }
+    }
+}
+
+void RigProblem::solve(const TermCriteria& criteria)
+{
+    checkStart();
+    ceres::Problem problem;
+    const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (const RigImage& image : images_)
+    {
+        std::vector<double*> values(1, poses_[image.view].data());
+        for (int i : blocksOf(image))
+            values.push_back(blocks_[i].values.data());
+        problem.AddResidualBlock(makeCost(image), nullptr, values);
+        ordering->AddElementToGroup(values[0], 0);
+    }
+    for (RigBlock& block : blocks_)
+    {
+        addToProblem(problem, block);
+        ordering->AddElementToGroup(block.values.data(), 1);
+    }
+
+    const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_SCHUR;
+    options.linear_solver_ordering = ordering;
+    options.max_num_iterations = (criteria.type & TermCriteria::COUNT) ? criteria.maxCount : 1000;
+    options.function_tolerance = stopsByChange ? criteria.epsilon : 1e-12;
+    options.gradient_tolerance = options.parameter_tolerance = 1e-14;
+    options.num_threads = 1;        // sums in one order: the same result every time
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    if (!summary.IsSolutionUsable())
+        CV_Error_(Error::StsNoConv, ("the calibration failed: %s", summary.message.c_str()));
+    // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
+    if (stopsByChange && summary.termination_type == ceres::NO_CONVERGENCE)
+        CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or "
+                                     "fix a parameter that the views hardly determine", options.max_num_iterations));
+}
+
+Camera RigProblem::camera(int c) const
+{
+    const int window = shared_ ? 0 : c;
+    const std::vector<double>& normal = blocks_[blockOf(RigBlock::NORMAL, window)].values;
+    const std::vector<double>& media = blocks_[blockOf(RigBlock::MEDIA, window)].values;
+    std::vector<double> all = blocks_[blockOf(RigBlock::LENS, c)].values;
+    const size_t lensCount = all.size();
+    all.insert(all.end(), normal.begin(), normal.end());
+    all.insert(all.end(), media.begin(), media.end());
+    if (shared_ && c == 1)
+    {
+        const Pose toCamera2 = extrinsics();
+        Vec3d n(normal.data());
+        double distance = media[0];
+        windowInCamera2(Rotation(toCamera2.rvec.val).R, toCamera2.tvec, n, distance);
+        if (!(n[2] > 0))
+            CV_Error_(Error::StsBadArg, ("GLASS_SHARED_WINDOW: camera 2 looks away from the window, whose normal is "
+                                         "(%g, %g, %g) in its frame", n[0], n[1], n[2]));
+        if (distance < 0 && media[media.size() - 2] != media.back())
+            CV_Error_(Error::StsBadArg, ("GLASS_SHARED_WINDOW: camera 2 lies beyond the window, at distance %g",
+                                         distance));
+        std::copy(n.val, n.val + 3, all.begin() + lensCount);
+        all[lensCount + 3] = std::max(distance, 0.);
+    }
+    Camera result(cameras_[c]);
+    result.setParameters(all);
+    return result;
+}
+
+Pose RigProblem::pose(int view) const { return poseOf(poses_[view].data()); }
+
+Pose RigProblem::extrinsics() const { return poseOf(blocks_[blockOf(RigBlock::EXTRINSICS, 1)].values.data()); }
+
+int RigProblem::pointCount() const
+{
+    int count = 0;
+    for (const RigImage& image : images_)
+        count += (int)image.points.pixel.size();
+    return count;
+}
+
+int RigProblem::freeCount() const
+{
+    int count = 0;
+    for (const RigBlock& block : blocks_)
+        count += (int)block.tangentBasis().cols();
+    return count;
+}
+
+}} // namespace

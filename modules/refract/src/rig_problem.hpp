@@ -1,0 +1,97 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_RIG_PROBLEM_HPP
+#define OPENCV_REFRACT_RIG_PROBLEM_HPP
+
+#include "poses.hpp"
+#include "residual.hpp"
+#include "views.hpp"
+#include <Eigen/Core>
+#include <array>
+
+namespace cv { namespace refract {
+
+//! One image of the problem.
+struct RigImage
+{
+    int view, camera;
+    bool refracted;
+    ImagePoints points;
+};
+
+//! A block of parameters that the poses do not contain.
+struct RigBlock
+{
+    enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS };
+    Kind kind;
+    int camera;
+    std::vector<double> values;
+    std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
+
+    //! d values / d free coordinates; a normal moves on the sphere.
+    Eigen::MatrixXd tangentBasis() const;
+    //! What a coordinate is called in messages.
+    String nameOf(int coordinate) const;
+};
+
+/** The joint problem: one or two cameras, each behind its own window or both behind one, a pose (object -> camera 1) for
+each view, every observed point of every image, through the window or direct. Maximum likelihood under equal isotropic
+pixel noise; Ceres eliminates the poses.
+
+The public parameters are, per camera, those of Camera::parameters(), then rvec and T of camera 2. What is free is said
+by GlassCalibrationFlags. */
+class RigProblem
+{
+public:
+    RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
+               const std::vector<Pose>& poses, int flags);
+
+    //! Throws StsNoConv, or StsBadArg that names a point without image at the start.
+    void solve(const TermCriteria& criteria);
+
+    int viewCount() const { return (int)poses_.size(); }
+    bool isStereo() const { return cameras_.size() == 2; }
+    const std::vector<RigImage>& images() const { return images_; }
+    const std::vector<RigBlock>& blocks() const { return blocks_; }
+
+    Camera camera(int c) const;         //!< with the current parameters
+    Pose pose(int view) const;
+    Pose extrinsics() const;
+
+    int pointCount() const;
+    int freeCount() const;              //!< without the poses
+    double squaredError(const RigImage& image) const;
+
+    //! Derivatives of one image's residuals by its pose and by each block it depends on (all coordinates).
+    struct Derivatives
+    {
+        Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> byPose;
+        std::vector<int> blocks;        //!< index into blocks()
+        std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> > byBlock;
+    };
+    Derivatives derivatives(const RigImage& image) const;
+
+    /** d public parameters / d free coordinates of all blocks, in the order of blocks(). The window of camera 2 follows
+    from the shared one. */
+    Eigen::MatrixXd publicBasis() const;
+
+private:
+    void addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values, const std::vector<bool>& isFree);
+    void addImages(const RigViews& views);
+    int blockOf(RigBlock::Kind kind, int camera) const;
+    std::vector<int> blocksOf(const RigImage& image) const;
+    ceres::CostFunction* makeCost(const RigImage& image) const;
+    void checkStart() const;
+
+    std::vector<Camera> cameras_;       //!< lens models and numbers of layers
+    bool shared_;
+    std::vector<RigImage> images_;
+    std::vector<RigBlock> blocks_;
+    std::vector<std::array<double, 6> > poses_;
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_RIG_PROBLEM_HPP

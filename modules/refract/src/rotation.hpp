@@ -1,0 +1,21 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_ROTATION_HPP
+#define OPENCV_REFRACT_ROTATION_HPP
+
+#include "precomp.hpp"
+
+namespace cv { namespace refract {
+
+/** Rodrigues' formula.
+@param jacobian may be null, else 3x3 matrices dR / drvec[i] */
+Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian = NULL);
+
+//! The rotation vector of a rotation matrix.
+Vec3d rotationVector(const Matx33d& R);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_ROTATION_HPP

@@ -1,0 +1,64 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "views.hpp"
+#include "arrays.hpp"
+
+namespace cv { namespace refract {
+
+static int countViews(InputArrayOfArrays a, const char* name)
+{
+    if (a.kind() == _InputArray::NONE || a.empty())
+        return 0;
+    const int kind = a.kind();
+    if (kind != _InputArray::STD_VECTOR_VECTOR && kind != _InputArray::STD_VECTOR_MAT &&
+        kind != _InputArray::STD_ARRAY_MAT && kind != _InputArray::STD_VECTOR_UMAT)
+        CV_Error_(Error::StsBadArg, ("%s is one array; it must be a vector of arrays, one per view", name));
+    return (int)a.total();
+}
+
+PixelViews readPixelViews(InputArrayOfArrays a, const char* name)
+{
+    PixelViews views(countViews(a, name));
+    for (int i = 0; i < (int)views.size(); i++)
+    {
+        const Mat view = a.getMat(i);
+        if (!view.empty())
+            views[i] = readPoints2(view, format("%s[%d]", name, i).c_str());
+    }
+    return views;
+}
+
+std::vector<std::vector<Point3d> > readObjectViews(InputArrayOfArrays a, const char* name)
+{
+    std::vector<std::vector<Point3d> > views(countViews(a, name));
+    if (views.empty())
+        CV_Error_(Error::StsBadArg, ("%s is empty; at least one view is needed", name));
+    for (int i = 0; i < (int)views.size(); i++)
+    {
+        const Mat view = a.getMat(i);
+        if (!view.empty())
+            views[i] = readPoints3(view, format("%s[%d]", name, i).c_str());
+        for (const Point3d& p : views[i])
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                CV_Error_(Error::StsBadArg, ("%s[%d] holds the point (%g, %g, %g); it must be finite",
+                                             name, i, p.x, p.y, p.z));
+    }
+    return views;
+}
+
+void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& object, const char* name)
+{
+    if (pixels.empty())
+        pixels.resize(object.size());
+    if (pixels.size() != object.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d views, objectPoints %d; they must agree",
+                                             name, (int)pixels.size(), (int)object.size()));
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (!pixels[i].empty() && pixels[i].size() != object[i].size())
+            CV_Error_(Error::StsUnmatchedSizes, ("%s[%d] has %d points, objectPoints[%d] has %d; they must agree",
+                                                 name, (int)i, (int)pixels[i].size(), (int)i, (int)object[i].size()));
+}
+
+}} // namespace

@@ -1,0 +1,42 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_VIEWS_HPP
+#define OPENCV_REFRACT_VIEWS_HPP
+
+#include "precomp.hpp"
+
+namespace cv { namespace refract {
+
+//! One array of pixels per view; NaN = not seen, empty = no image.
+typedef std::vector<std::vector<Point2d> > PixelViews;
+
+//! What one camera saw. Both have one entry per view.
+struct CameraViews
+{
+    PixelViews refracted, direct;
+};
+
+//! A calibrator's input: views of targets by one or two cameras.
+struct RigViews
+{
+    std::vector<std::vector<Point3d> > object;
+    std::vector<CameraViews> cameras;
+    int count() const { return (int)object.size(); }
+};
+
+//! An array of arrays of pixels; noArray() or an empty array gives no views.
+PixelViews readPixelViews(InputArrayOfArrays a, const char* name);
+//! An array of arrays of finite 3-D points.
+std::vector<std::vector<Point3d> > readObjectViews(InputArrayOfArrays a, const char* name);
+
+/** Makes the views of an optional argument as many as there are targets and checks every view's size against its
+target's. Throws with the argument's name. */
+void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& object, const char* name);
+
+inline bool isSeen(const Point2d& pixel) { return std::isfinite(pixel.x) && std::isfinite(pixel.y); }
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_VIEWS_HPP
