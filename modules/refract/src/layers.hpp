@@ -49,6 +49,11 @@ public:
     bool isBeyond(double x, double y, double z, double w = 1.) const
     { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*total_; }
 
+    /** 1/s at which a ray tau n + s d leaves the last surface (infinity without window): it exists for smaller 1/s.
+    @param cosine n.d */
+    double leavingMu(double tau, double cosine) const
+    { return refracts_ && total_ > tau ? cosine/(total_ - tau) : std::numeric_limits<double>::infinity(); }
+
     const Vec3d& normal() const { return normal_; }
 
 private:

@@ -5,7 +5,7 @@
 #include "arrays.hpp"
 #include "camera.hpp"
 #include "rotation.hpp"
-#include <Eigen/QR>
+#include <Eigen/Dense>
 
 /* Two refracted rays -> a point. The midpoint of the shortest segment between them is the start; the maximum-likelihood
 point minimises the sum of squared pixel errors in both raw images, by Gauss-Newton with exact derivatives. */
