@@ -1,0 +1,51 @@
+#ifndef REFRACT_TOOLS_PLOT_HPP
+#define REFRACT_TOOLS_PLOT_HPP
+
+#include <opencv2/core.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+/* A picture drawn by gnuplot, as SVG text to put into a page.
+
+    Plot plot(600, 400);
+    plot.data("views", {{0, 0.1}, {1, 0.2}});
+    plot << "plot $views using 1:2 with lines\n";
+    std::string svg = plot.svg();
+*/
+class Plot
+{
+public:
+    Plot(int width, int height);
+
+    //! Rows of numbers that commands call $name; NaN is a gap.
+    void data(const std::string& name, const std::vector<std::vector<double>>& rows);
+
+    //! gnuplot commands.
+    template <typename T> Plot& operator<<(const T& text)
+    {
+        script_ << text;
+        return *this;
+    }
+
+    //! Axes of an image: pixels, y down, to scale, framed.
+    void imageAxes(cv::Size image);
+
+    //! Runs gnuplot; throws Failure with its message if it fails.
+    std::string svg() const;
+
+    //! Throws Failure that says what to install if there is no gnuplot.
+    static void checkAvailable();
+
+    //! A text as a gnuplot string constant.
+    static std::string quoted(const std::string& text);
+
+private:
+    std::ostringstream script_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_PLOT_HPP
