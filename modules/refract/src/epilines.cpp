@@ -72,9 +72,10 @@ void appendSegment(const EpipolarCurve& curve, double muA, const Vec2d& a, doubl
     for (int i = 0; i < 3; ++i)
         mu[i] = muA + 0.25*(i + 1)*(muB - muA);
     curve.evaluate(3, mu, p, status);
+    // Three points see the largest distance to within a few percent.
     bool close = true;      // a NaN inside (grazing the edge of visibility) compares false and is split as well
     for (int i = 0; i < 3; ++i)
-        close = close && distanceToSegment(p[i], a, b) <= tolerance;
+        close = close && distanceToSegment(p[i], a, b) <= 0.97*tolerance;
     if (close || depth == 0 || std::isnan(p[1][0]))
     {
         line.push_back(b);
@@ -104,7 +105,7 @@ std::vector<double> placeNodes(const EpipolarCurve& curve, double muA, double mu
         share[i] = share[i - 1] + (std::isfinite(across) ? std::sqrt(across/8/tolerance) : 0);
     }
     // A little more than the estimate, so that the check of the finished segments seldom has to split one.
-    const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.02*share[SAMPLES - 1])));
+    const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*share[SAMPLES - 1])));
     std::vector<double> nodes(1, muA);
     for (int j = 1, i = 1; j < segments; ++j)
     {

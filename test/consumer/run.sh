@@ -1,0 +1,18 @@
+#!/bin/sh
+# Installs a build into an empty prefix and builds a program on it, by find_package and by pkg-config.
+# Usage: test/consumer/run.sh BUILD_DIRECTORY
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+build=$(cd "$1" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake --install "$build" --prefix "$work/prefix" >/dev/null
+cmake -S "$here" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake --build "$work/cmake" >/dev/null
+"$work/cmake/consumer"
+libdir=$(dirname "$(find "$work/prefix" -name libopencv_refract.so)")
+PKG_CONFIG_PATH=$libdir/pkgconfig
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046  # flags are words
+c++ -std=c++11 "$here/consumer.cpp" -o "$work/consumer" $(pkg-config --define-variable=prefix="$work/prefix" --cflags --libs opencv_refract)
+LD_LIBRARY_PATH=$libdir "$work/consumer"

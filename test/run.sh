@@ -1,0 +1,60 @@
+#!/bin/sh
+# Installs what is missing, builds everything with warnings as errors, runs all tests: once as released, once with the
+# address and undefined-behaviour sanitizers. Ends with a line that counts the tests.
+#
+# Usage: test/run.sh [--fast]      --fast leaves the sanitizers out
+set -eu
+cd "$(dirname "$0")/.."
+fast=no
+[ "${1:-}" = --fast ] && fast=yes
+
+tools/install_dependencies.sh test
+
+launcher=""
+command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+build() {   # build DIRECTORY OPTIONS...
+  directory=$1; shift
+  cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON $launcher "$@" >"$directory.log" 2>&1 ||
+    { cat "$directory.log"; exit 1; }
+  cmake --build "$directory"
+}
+
+passed=0; failed=0; skipped=0
+run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
+  name=$1; shift
+  code=0
+  "$@" || code=$?
+  case $code in
+    0) passed=$((passed + 1)); echo "passed: $name" ;;
+    77) skipped=$((skipped + 1)); echo "skipped: $name" ;;
+    *) failed=$((failed + 1)); echo "FAILED: $name" ;;
+  esac
+}
+suite() {   # suite EXECUTABLE [FILTER]: all cases of a Catch2 program, counted one by one
+  report=$(mktemp)
+  { "$@" || true; } | tee "$report"
+  # "All tests passed (1234 assertions in 56 test cases)" or "test cases: 56 | 55 passed | 1 failed"
+  p=$(sed -n 's/^All tests passed .* in \([0-9]*\) test case.*/\1/p; s/^test cases:.*| *\([0-9]*\) passed.*/\1/p' "$report")
+  f=$(sed -n 's/^test cases:.*| *\([0-9]*\) failed.*/\1/p' "$report")
+  passed=$((passed + ${p:-0})); failed=$((failed + ${f:-0}))
+  if [ -z "$p$f" ]; then      # a crash prints no counts
+    failed=$((failed + 1)); echo "FAILED: $1 ended before its last test"
+  fi
+  rm -f "$report"
+}
+
+mkdir -p build
+build build/release
+suite build/release/bin/refract_tests
+run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
+for sample in build/release/bin/sample_*; do
+  run "$(basename "$sample")" "$sample"
+done
+if [ $fast = no ]; then
+  build build/sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_BENCH=OFF
+  # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
+  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tests '~[slow]'
+fi
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ]

@@ -1,0 +1,31 @@
+#!/bin/sh
+# Installs what refract builds and runs with on Debian (root needed only if something is missing).
+# Usage: tools/install_dependencies.sh [build|test]     test adds what only the tests use
+set -eu
+
+build="build-essential cmake ninja-build pkg-config
+  libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
+  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev gnuplot-nox"
+test="catch2 libmrcal-dev"
+
+case "${1:-build}" in
+  build) wanted=$build ;;
+  test) wanted="$build $test" ;;
+  *) echo "usage: $0 [build|test]" >&2; exit 1 ;;
+esac
+
+missing=""
+for package in $wanted; do
+  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+if [ "$(id -u)" != 0 ]; then
+  echo "These packages are missing; install them as root: apt-get install$missing" >&2
+  exit 1
+fi
+echo "Installing:$missing"
+export DEBIAN_FRONTEND=noninteractive
+apt-get update -qq
+# shellcheck disable=SC2086  # a list of package names
+apt-get install -y -qq --no-install-recommends $missing
