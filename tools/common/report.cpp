@@ -1,0 +1,192 @@
+#include "report.hpp"
+#include "figures.hpp"
+#include "progress.hpp"
+#include "report_template.hpp"
+#include "summary.hpp"
+#include "table.hpp"
+#include <kainjow/mustache.hpp>
+#include <cmath>
+
+using namespace cv;
+using namespace kainjow::mustache;
+
+namespace tools {
+
+namespace {
+
+data listOf(const std::vector<std::string>& sentences)
+{
+    data list{data::type::list};
+    for (const std::string& sentence : sentences)
+        list << data{"text", sentence};
+    return list;
+}
+
+data rowsOf(const std::vector<SummaryRow>& rows)
+{
+    data list{data::type::list};
+    for (const SummaryRow& row : rows)
+    {
+        data entry;
+        entry.set("name", row.name);
+        entry.set("cells", listOf(row.cells));
+        list << entry;
+    }
+    return list;
+}
+
+std::string cellPx(double value) { return std::isnan(value) ? "–" : format("%.3f", value); }
+
+//! Verdict in plain words: the class colours the card.
+void setVerdict(data& page, const RigCalibration& c, const Findings& f)
+{
+    const char* verdict = !f.limitsNotMet.empty() ? "Limits not met" : !f.weak.empty() ? "Usable, with weak points" : "Good";
+    page.set("verdict", verdict);
+    page.set("verdict_class", !f.limitsNotMet.empty() ? "bad" : !f.weak.empty() ? "weak" : "good");
+    std::string sentence = format("All %zu corners fit within %.3f px RMS.", c.residuals.size(), c.fit.rms);
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2])) * 180. / CV_PI;
+        sentence += c.data.cameraCount == 1 ? " The window" : format(" The window of camera %d", k + 1);
+        sentence += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+    }
+    page.set("verdict_sentence", sentence);
+}
+
+data figure(const Figure& picture, const std::string& title, const std::string& reading)
+{
+    data entry;
+    entry.set("title", title);
+    entry.set("svg", picture.svg);
+    entry.set("reading", reading + (picture.note.empty() ? "" : " (" + picture.note + ")") + ".");
+    return entry;
+}
+
+data figuresOf(const RigCalibration& c, int camera, Progress& progress)
+{
+    data list{data::type::list};
+    auto add = [&](const Figure& picture, const char* title, const char* reading) {
+        list << figure(picture, title, reading);
+        progress.step();
+    };
+    add(drawSideView(c, camera, 0), "Seen from above",
+        "To scale: the camera at the left, its rays bending at the window, the boards where they were seen");
+    add(drawSideView(c, camera, 1), "Seen from the side",
+        "The same with y pointing down; a window that is not where you mounted it shows here");
+    add(drawDisplacement(c, camera), "What the window does",
+        "Each arrow leads from where a point would be seen without the window to where it is seen");
+    add(drawCoverage(c, camera), "Where the board was seen",
+        "Empty parts of the image are extrapolated: what is measured there is less certain");
+    add(drawViewRms(c, camera), "Residual of each view",
+        "All bars should be about equally high; one that stands out has wrong corners or a board that moved");
+    if (!c.influences.empty())
+        add(drawInfluence(c, camera), "Which view pulls",
+            "How far the normal turns if a view is left out; a bar far above the line means that the result hangs on that view");
+    add(drawResidualVectors(c, camera), "Residuals through the window",
+        "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
+    add(drawResidualMap(c, camera), "Mean residual over the image",
+        "Noise averages out, so all cells should be dark; bright neighbouring cells are a systematic error. Cells with few "
+        "corners are noisier");
+    add(drawResidualHistogram(c, camera), "Residuals against the normal law",
+        "The bars should follow the curve; long tails are single bad corners");
+    return list;
+}
+
+//! Parameters with their standard deviations, and their correlations as coloured cells.
+void setParameters(data& page, const Fit& fit)
+{
+    const std::vector<FreeParameter> window = freeWindowParameters(fit);
+    std::vector<FreeParameter> all = window;
+    const std::vector<FreeParameter> rig = freeRigParameters(fit);
+    all.insert(all.end(), rig.begin(), rig.end());
+    data parameters{data::type::list}, correlations{data::type::list}, heads{data::type::list};
+    for (const FreeParameter& p : all)
+    {
+        data entry;
+        entry.set("name", p.name);
+        entry.set("value", format("%.7g", p.value));
+        entry.set("std", format("%.2g", p.std));
+        parameters << entry;
+    }
+    for (const FreeParameter& p : window)
+    {
+        data entry, cells{data::type::list};
+        entry.set("name", p.name);
+        for (const FreeParameter& q : window)
+        {
+            const double r = fit.covariance.at<double>(p.column, q.column) / (p.std * q.std);
+            data cell;
+            cell.set("value", format("%.2f", r));
+            cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6 * std::abs(r)));
+            cells << cell;
+        }
+        entry.set("cells", cells);
+        correlations << entry;
+        heads << data{"name", p.name};
+    }
+    page.set("parameters", parameters);
+    page.set("correlations", correlations);
+    page.set("correlation_heads", heads);
+}
+
+void setNearFar(data& page, const NearFar& n)
+{
+    if (!n.done)
+        return;
+    data table;
+    table.set("near_range", format("%.4g – %.4g", n.nearRange[0], n.nearRange[1]));
+    table.set("far_range", format("%.4g – %.4g", n.farRange[0], n.farRange[1]));
+    table.set("window_near_to_far", cellPx(n.windowNearToFar));
+    table.set("window_far_to_near", cellPx(n.windowFarToNear));
+    table.set("pinhole_near_to_far", cellPx(n.pinholeNearToFar));
+    table.set("pinhole_far_to_near", cellPx(n.pinholeFarToNear));
+    page.set("near_far", table);
+}
+
+} // namespace
+
+std::string makeReport(const RigCalibration& c, const Findings& findings, const std::string& commandLine, bool quiet)
+{
+    data page;
+    setVerdict(page, c, findings);
+    page.set("limits", listOf(findings.limitsNotMet));
+    page.set("weak", listOf(findings.weak));
+    page.set("has_weak", !findings.weak.empty());
+    page.set("cannot_tell", listOf(findings.cannotTell));
+    page.set("has_cannot_tell", !findings.cannotTell.empty());
+    page.set("assumed", listOf(findings.assumed));
+    page.set("without_target", listOf(c.withoutTarget));
+    page.set("has_without_target", !c.withoutTarget.empty());
+
+    page.set("window_rows", rowsOf(windowRows(c)));
+    page.set("fit_rows", rowsOf(fitRows(c)));
+    setNearFar(page, c.nearFar);
+    setParameters(page, c.fit);
+
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount, quiet);
+    data cameras{data::type::list}, heads{data::type::list};
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const std::string name = c.data.cameraCount == 1 ? "Camera" : format("Camera %d", k + 1);
+        data camera;
+        camera.set("name", name);
+        camera.set("figures", figuresOf(c, k, progress));
+        cameras << camera;
+        heads << data{"name", name};
+    }
+    page.set("cameras", cameras);
+    page.set("camera_heads", heads);
+
+    page.set("command", commandLine);
+    page.set("version", REFRACT_VERSION);
+    page.set("opencv_version", CV_VERSION);
+    page.set("time", timeStamp());
+
+    mustache page_template(REPORT_TEMPLATE);
+    const std::string html = page_template.render(page);
+    if (!page_template.is_valid())
+        throw Failure("the report's template is broken: " + page_template.error_message());
+    return html;
+}
+
+} // namespace tools

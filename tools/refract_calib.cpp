@@ -1,0 +1,188 @@
+// The manual: what --help prints first.
+static const char MANUAL[] = R"(Calibrates the flat window in front of one camera or of a stereo pair.
+
+  refract_calib --pattern=chessboard --size=6x5 --square=39
+      --direct='direct/*.png' --glass='glass/*.png' --thickness=20 --index=1.5437 --out=calib.yml --report=report.html
+
+Direct images show the target without the window, glass images through it. Where two have the same name (without folder
+and extension) the target must not have moved between them: such pairs determine the window best. All direct images serve
+the lens, unless --camera gives it. With --direct2 and --glass2 the same name means the same moment in both cameras.
+
+Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
+
+Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but --max-rms or
+--max-normal-std is not met.)";
+
+#include "cli.hpp"
+#include "file_output.hpp"
+#include "plot.hpp"
+#include "report.hpp"
+#include "summary.hpp"
+#include <algorithm>
+#include <iostream>
+
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+struct Options
+{
+    TargetOptions target;
+    std::string direct[2], glass[2], camera[2];
+    std::string thickness, index, imageSize, out, report, lens = "opencv5";
+    double innerIndex = 1., outerIndex = 1., distance = 0.;
+    std::vector<std::string> free;
+    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false;
+    double maxRms = 0., maxNormalStd = 0.;
+};
+
+const std::map<std::string, int> FREE = {
+    {"thickness", GLASS_FREE_THICKNESS}, {"index", GLASS_FREE_INDEX}, {"distance", GLASS_FREE_DISTANCE},
+    {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}};
+
+const std::map<std::string, int> LENSES = {
+    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14}};
+
+std::vector<std::string> namesOf(const std::map<std::string, int>& map)
+{
+    std::vector<std::string> names;
+    for (const auto& entry : map)
+        names.push_back(entry.first);
+    return names;
+}
+
+Options parseOptions(Command& command)
+{
+    Options o;
+    CLI::App& app = command.app;
+    o.target.addTo(app, true);
+    app.add_option("--direct", o.direct[0], "Images without the window: glob or corners.vnl");
+    app.add_option("--glass", o.glass[0], "Images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct2", o.direct[1], "The same of camera 2");
+    CLI::Option* glass2 = app.add_option("--glass2", o.glass[1], "The same of camera 2");
+    app.add_option("--camera", o.camera[0], "Lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
+    app.add_option("--camera2", o.camera[1], "Lens of camera 2");
+    app.add_option("--lens", o.lens, "Lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
+        ->capture_default_str();
+    app.add_option("--thickness", o.thickness, "Thickness of each layer, from the camera outwards: T[,T...]");
+    app.add_option("--index", o.index, "Index of refraction of each layer: N[,N...]");
+    app.add_option("--inner-index", o.innerIndex, "Index of the medium round the camera")->capture_default_str();
+    app.add_option("--outer-index", o.outerIndex, "Index of the scene's medium (1.333 water)")->capture_default_str();
+    CLI::Option* distance = app.add_option("--distance", o.distance, "From the camera's centre of projection to the window; "
+        "where it is needed and not given, it is estimated");
+    app.add_option("--free", o.free, "What to estimate beside the normal")->delimiter(',')
+        ->check(CLI::IsMember(namesOf(FREE)));
+    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
+    app.add_flag("--unpaired", o.unpaired, "Equal names are no pairs (a hand-held board)");
+    app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
+    app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
+    app.add_option("--report", o.report, "HTML page to judge the calibration by (needs gnuplot)");
+    app.add_option("--max-rms", o.maxRms, "Limit: RMS over all corners, px")->check(CLI::PositiveNumber);
+    app.add_option("--max-normal-std", o.maxNormalStd, "Limit: uncertainty of the normal (larger principal one), degrees")
+        ->check(CLI::PositiveNumber);
+    command.parse();
+    o.distanceGiven = distance->count() > 0;
+    o.stereo = glass2->count() > 0;
+    if (!o.stereo && !(o.direct[1].empty() && o.camera[1].empty()))
+        throw Failure("--direct2 and --camera2 need --glass2: give the images of camera 2 through the window");
+    return o;
+}
+
+//! The window as far as it is known, and what is to be found; refuses what no image can tell.
+void readWindow(const Options& o, double square, RigOptions& rig)
+{
+    GlassWindow& window = rig.window;
+    if (!o.thickness.empty())
+        window.thickness = parseNumbers(o.thickness, "--thickness");
+    if (!o.index.empty())
+        window.index = parseNumbers(o.index, "--index");
+    window.innerIndex = o.innerIndex;
+    window.outerIndex = o.outerIndex;
+    for (const std::string& name : o.free)
+        rig.flags |= FREE.at(name);
+    if (o.sharedWindow)
+        rig.flags |= GLASS_SHARED_WINDOW;
+
+    const bool equalMedia = o.innerIndex == o.outerIndex;
+    if (window.thickness.size() != window.index.size())
+        throw Failure("--thickness and --index must have one number for each layer: give both");
+    if (window.thickness.empty() && equalMedia)
+        throw Failure("there is no window to calibrate: give --thickness and --index, or an --outer-index that differs from "
+                      "--inner-index (a bare water surface)");
+    if (window.thickness.empty() && (rig.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX)))
+        throw Failure("--free=thickness and --free=index need a layer to start from: give --thickness and --index roughly");
+    if (equalMedia && (rig.flags & GLASS_FREE_DISTANCE))
+        throw Failure("--free=distance: with the same medium on both sides of the window the distance has exactly no effect "
+                      "on the image and cannot be found; leave it out");
+    if (!equalMedia && !o.distanceGiven)
+        rig.flags |= GLASS_FREE_DISTANCE;
+    // Away from its bound, 0; the fit does the rest.
+    window.distance = o.distanceGiven || equalMedia ? o.distance : square;
+    window.check();
+}
+
+RigData readImages(const Options& o, const Target& target, bool quiet, std::vector<std::string>& withoutTarget)
+{
+    const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
+    ViewSet sets[2][2];
+    const ViewSet* direct[2] = {};
+    const ViewSet* glass[2] = {};
+    for (int c = 0; c < 2; c++)
+        for (bool through : {false, true})
+        {
+            const std::string& source = through ? o.glass[c] : o.direct[c];
+            if (source.empty())
+                continue;
+            ViewSet& set = sets[c][through];
+            set = readViews(source, target, size, quiet);
+            (through ? glass : direct)[c] = &set;
+            withoutTarget.insert(withoutTarget.end(), set.withoutTarget.begin(), set.withoutTarget.end());
+        }
+    return pairViews(target, direct, glass, o.unpaired);
+}
+
+RigCalibration calibrate(const Options& o, bool quiet)
+{
+    RigCalibration c;
+    const Target target(o.target);
+    readWindow(o, target.square(), c.options);
+    c.options.lensCoefficients = LENSES.at(o.lens);
+    c.maxRms = o.maxRms;
+    c.maxNormalStdDeg = o.maxNormalStd;
+    for (int k = 0; k < 2; k++)
+        if (!o.camera[k].empty())
+            // A rig's file may serve for both cameras.
+            c.options.known[k] = k == 1 && o.camera[1] == o.camera[0] ? RefractiveCamera::read(o.camera[k], "camera2")
+                                                                      : RefractiveCamera::read(o.camera[k]);
+    c.data = readImages(o, target, quiet, c.withoutTarget);
+    c.start = startRig(c.data, c.options, c.lensSources);
+    c.fit = fitRig(c.data, c.start, usefulMoments(c.data, c.options.flags), c.options.flags);
+    c.residuals = residualsOf(c.data, c.fit);
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    c.nearFar = crossValidate(c.data, c.start, c.fit, c.options.flags, c.lensSources);
+    if (!o.report.empty())
+        c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
+    return c;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        const Options options = parseOptions(command);
+        if (!options.report.empty())
+            Plot::checkAvailable();
+        const RigCalibration calibration = calibrate(options, command.quiet());
+        const Findings findings = judge(calibration);
+        if (!options.report.empty())
+            writeText(options.report, makeReport(calibration, findings, command.line(), command.quiet()));
+        writeCalibration(options.out, toFile(calibration, command.line()));
+        if (!command.quiet())
+            printSummary(std::cout, calibration, findings);
+        for (const std::string& limit : findings.limitsNotMet)
+            std::cerr << "refract_calib: limit not met: " << limit << ".\n";
+        return findings.limitsNotMet.empty() ? DONE : LIMIT_NOT_MET;
+    });
+}
