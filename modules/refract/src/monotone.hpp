@@ -34,7 +34,7 @@ double invertMonotone(const F& f, double target, double upper)
             // At the end of the range the sequence creeps up to `upper` without reaching the target.
             return std::abs(f(next, slope) - target) <= 1e-13*(1 + target) ? next
                                                         : std::numeric_limits<double>::quiet_NaN();
-        if (next > 1e8)                         // f is bounded below the target
+        if (error < 0 && next > 1e8)            // f is bounded below the target
             break;
         x = next;
     }
