@@ -1,0 +1,174 @@
+// Seeded random scenes for the tests: windows and lenses of every kind, and small helpers to check with.
+#ifndef REFRACT_TEST_SCENES_HPP
+#define REFRACT_TEST_SCENES_HPP
+
+#include <opencv2/refract.hpp>
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace scenes {
+
+using cv::refract::GlassWindow;
+using cv::refract::RefractiveCamera;
+
+const double NaN = std::numeric_limits<double>::quiet_NaN(), INF = std::numeric_limits<double>::infinity();
+
+//! Seed of the run: REFRACT_TEST_SEED, or always the same.
+inline unsigned seed()
+{
+    const char* given = std::getenv("REFRACT_TEST_SEED");
+    return given ? (unsigned)std::strtoul(given, nullptr, 10) : 20240607u;
+}
+
+class Random
+{
+public:
+    explicit Random(unsigned salt = 0) : engine_(seed() + salt) {}
+    double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+    double logUniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+    double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(engine_); }
+    int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(engine_); }
+    cv::Vec3d vector(double size) { return cv::Vec3d(uniform(-size, size), uniform(-size, size), uniform(-size, size)); }
+private:
+    std::mt19937_64 engine_;
+};
+
+// ---- windows
+
+enum WindowKind { NO_WINDOW, PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS, WATER_GLASS_AIR,
+                  DOUBLE_GLAZING_IN_WATER, WINDOW_KINDS };
+
+inline const char* name(WindowKind kind)
+{
+    static const char* names[] = { "no window", "pane in air", "laminate", "air-glass-water", "bare water",
+                                   "glass on the lens", "water-glass-air", "double glazing in water" };
+    return names[kind];
+}
+
+//! Unit vector up to maxDegrees from the optical axis.
+inline cv::Vec3d randomNormal(Random& random, double maxDegrees)
+{
+    const double angle = random.uniform(0, maxDegrees*CV_PI/180), azimuth = random.uniform(0, 2*CV_PI);
+    return cv::Vec3d(std::sin(angle)*std::cos(azimuth), std::sin(angle)*std::sin(azimuth), std::cos(angle));
+}
+
+inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDegrees = 25)
+{
+    GlassWindow w;
+    if (kind == NO_WINDOW)
+        return w;
+    w.normal = randomNormal(random, maxTiltDegrees);
+    w.distance = kind == GLASS_ON_LENS ? 0 : random.uniform(5, 150);
+    const auto layer = [&](double thickness, double index)
+    {
+        w.thickness.push_back(thickness*random.uniform(0.5, 1.5));
+        w.index.push_back(index + random.uniform(-0.02, 0.02));
+    };
+    switch (kind)
+    {
+    case LAMINATE: layer(6, 1.52); layer(0.76, 1.48); layer(6, 1.52); break;
+    case AIR_GLASS_WATER: layer(10, 1.49); w.outerIndex = 1.333; break;
+    case BARE_WATER: w.outerIndex = 1.333; break;
+    case GLASS_ON_LENS: layer(8, 1.52); w.outerIndex = 1.333; break;
+    case WATER_GLASS_AIR: layer(12, 1.5); w.innerIndex = 1.333; break;
+    case DOUBLE_GLAZING_IN_WATER:
+        layer(5, 1.52); layer(10, 1.02); layer(5, 1.52); w.innerIndex = w.outerIndex = 1.333; break;
+    default: layer(20, 1.5437); break;
+    }
+    return w;
+}
+
+inline std::vector<WindowKind> allWindows()
+{
+    std::vector<WindowKind> kinds;
+    for (int k = 0; k < WINDOW_KINDS; ++k)
+        kinds.push_back((WindowKind)k);
+    return kinds;
+}
+
+// ---- lenses
+
+struct LensKind
+{
+    const char* name;
+    bool fisheye;
+    cv::Matx33d K;
+    std::vector<double> coefficients;
+    double halfField;           //!< degrees from the axis within which the model is one-to-one
+};
+
+//! Every lens model with every number of coefficients; the battery of test_lens.cpp runs over all of them.
+inline const std::vector<LensKind>& allLenses()
+{
+    const cv::Matx33d K(1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1), wide(2070, 0, 3004, 0, 2075, 1997, 0, 0, 1);
+    static const std::vector<LensKind> lenses = {
+        { "0 coefficients", false, K, {}, 85 },
+        { "the paper's", false, { 2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1 }, { -0.4082, 0.4359, 0, 0 }, 35 },
+        { "4 coefficients", false, K, { -0.28, 0.09, 7e-4, -4e-4 }, 40 },
+        { "5 coefficients", false, K, { -0.3, 0.12, 1e-3, -5e-4, -0.01 }, 42 },
+        { "8 coefficients", false, wide, { 0.5, 0.03, 1e-4, -2e-4, 1e-4, 0.8, 0.1, 0.002 }, 60 },
+        { "12 coefficients", false, K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4 }, 45 },
+        { "14 coefficients", false, K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4,
+                                         0.03, -0.02 }, 40 },
+        { "fisheye", true, { 400, 0, 640, 0, 410, 512, 0, 0, 1 }, { -0.02, 0.004, -0.001, 0.0001 }, 89.95 },
+        { "fisheye with skew", true, { 400, 4, 640, 0, 410, 512, 0, 0, 1 }, { 0.01, -0.003, 0.0005, 0 }, 80 } };
+    return lenses;
+}
+
+inline cv::Ptr<RefractiveCamera> makeCamera(const LensKind& lens, const GlassWindow& window)
+{
+    return lens.fisheye ? RefractiveCamera::createFisheye(lens.K, lens.coefficients, window)
+                        : RefractiveCamera::create(lens.K, lens.coefficients, window);
+}
+
+//! Unit direction within the lens's field.
+inline cv::Vec3d randomDirection(const LensKind& lens, Random& random) { return randomNormal(random, lens.halfField); }
+
+// ---- checks
+
+//! The text of the cv::Exception that f throws, or "" if it throws none.
+template<typename F>
+std::string thrown(const F& f)
+{
+    try { f(); }
+    catch (const cv::Exception& e) { return e.what(); }
+    return "";
+}
+
+//! Largest absolute difference, channels included; NaN if any element is NaN in one of the two only.
+inline double largestDifference(cv::InputArray a_, cv::InputArray b_)
+{
+    cv::Mat a, b;
+    a_.getMat().clone().reshape(1, 1).convertTo(a, CV_64F);
+    b_.getMat().clone().reshape(1, 1).convertTo(b, CV_64F);
+    REQUIRE(a.total() == b.total());
+    double largest = 0;
+    for (int i = 0; i < (int)a.total(); ++i)
+    {
+        const double x = a.at<double>(i), y = b.at<double>(i);
+        if (std::isnan(x) && std::isnan(y))
+            continue;
+        if (!(std::abs(x - y) <= largest))
+            largest = std::abs(x - y);
+        if (std::isnan(largest))
+            return largest;
+    }
+    return largest;
+}
+
+//! One line per headline number; test/run.sh shows them.
+template<typename T>
+void printNumber(const std::string& what, const T& value, const std::string& unit)
+{
+    std::cout << "[numbers] " << what << ": " << value << " " << unit << std::endl;
+}
+
+} // namespace scenes
+
+#endif // REFRACT_TEST_SCENES_HPP

@@ -1,0 +1,269 @@
+// One battery over all lens models, through the inner header.
+#include "lens.hpp"
+#include "scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+Ptr<Lens> makeLens(const LensKind& kind)
+{
+    return kind.fisheye ? makeFisheyeLens(kind.K, kind.coefficients) : makeOpenCVLens(kind.K, kind.coefficients);
+}
+
+uchar project(const Lens& lens, const Vec3d& d, Vec2d& pixel, uchar status = REFRACT_OK)
+{
+    lens.project(1, &d[0], &d[1], &d[2], &pixel[0], &pixel[1], &status);
+    return status;
+}
+
+uchar unproject(const Lens& lens, const Vec2d& pixel, Vec3d& d, uchar status = REFRACT_OK)
+{
+    lens.unproject(1, &pixel[0], &pixel[1], &d[0], &d[1], &d[2], &status);
+    return status;
+}
+
+} // namespace
+
+TEST_CASE("Direction to pixel and back", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name, seed());
+    const Ptr<Lens> lens = makeLens(kind);
+    Random random;
+    double worstPixel = 0, worstDirection = 0;
+    for (int i = 0; i < 20000; ++i)
+    {
+        const Vec3d d = randomDirection(kind, random);
+        Vec2d pixel, again;
+        Vec3d back;
+        CAPTURE(d);
+        REQUIRE(project(*lens, random.logUniform(1e-6, 1e6)*d, pixel) == REFRACT_OK);
+        REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK);
+        REQUIRE(project(*lens, back, again) == REFRACT_OK);
+        REQUIRE(std::abs(norm(back) - 1) < 1e-15);
+        worstPixel = std::max(worstPixel, norm(again - pixel));
+        worstDirection = std::max(worstDirection, norm(back - d));
+    }
+    CHECK(worstPixel < 1e-10);
+    CHECK(worstDirection < 1e-13);
+}
+
+TEST_CASE("The principal point looks along the axis", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    const Ptr<Lens> lens = makeLens(kind);
+    Vec2d pixel;
+    Vec3d d;
+    REQUIRE(project(*lens, Vec3d(0, 0, 7), pixel) == REFRACT_OK);
+    CHECK(norm(pixel - Vec2d(kind.K(0, 2), kind.K(1, 2))) < 1e-12);
+    REQUIRE(unproject(*lens, pixel, d) == REFRACT_OK);
+    CHECK(norm(d - Vec3d(0, 0, 1)) < 1e-15);
+    REQUIRE(project(*lens, Vec3d(1e-300, -1e-300, 1), pixel) == REFRACT_OK);
+    CHECK(norm(pixel - Vec2d(kind.K(0, 2), kind.K(1, 2))) < 1e-12);
+}
+
+TEST_CASE("Any pixel gives its direction or says that it has none", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name, seed());
+    const Ptr<Lens> lens = makeLens(kind);
+    Random random;
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i)
+    {
+        const double size = random.logUniform(10, 1e5);
+        const Vec2d pixel(kind.K(0, 2) + random.uniform(-size, size), kind.K(1, 2) + random.uniform(-size, size));
+        Vec3d d;
+        Vec2d again;
+        CAPTURE(pixel);
+        const uchar status = unproject(*lens, pixel, d);
+        REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL));
+        if (status != REFRACT_OK)
+            continue;
+        REQUIRE(project(*lens, d, again) == REFRACT_OK);
+        // Far out the pixel's own rounding is what remains.
+        worst = std::max(worst, norm(again - pixel)/std::max(1., norm(pixel)/1e3));
+    }
+    CHECK(worst < 1e-10);
+}
+
+TEST_CASE("A direction with an image is the only one with that image", "[lens]")
+{
+    std::vector<LensKind> kinds = allLenses();
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    kinds.push_back({ "barrel that folds back", false, K, { -0.4, 0, 0, 0 }, 0 });
+    kinds.push_back({ "barrel that folds back, decentred", false, K, { -0.3, 0.05, 0.01, -0.02, -0.01 }, 0 });
+    kinds.push_back({ "rational with a pole", false, K, { 0, 0, 0, 0, 0, -0.5, 0, 0 }, 0 });
+    kinds.push_back({ "strong prism", false, K, { -0.2, 0, 0, 0, 0, 0, 0, 0, 0.05, 0, -0.05, 0 }, 0 });
+    kinds.push_back({ "fisheye that folds back", true, K, { -0.3, 0, 0, 0 }, 0 });
+    for (const LensKind& kind : kinds)
+    {
+        CAPTURE(kind.name, seed());
+        const Ptr<Lens> lens = makeLens(kind);
+        Random random;
+        int inside = 0, outside = 0;
+        for (int i = 0; i < 20000; ++i)
+        {
+            const Vec3d d = randomNormal(random, 89);
+            Vec2d pixel;
+            const uchar status = project(*lens, d, pixel);
+            REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL));
+            if (status != REFRACT_OK)
+            {
+                ++outside;
+                continue;
+            }
+            ++inside;
+            Vec3d back;
+            CAPTURE(d, pixel);
+            REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK);
+            // At the edge of the range the model's slope goes to zero, and with it what a pixel tells of the direction.
+            REQUIRE(norm(back - d) < 1e-5);
+        }
+        CHECK(inside > 1000);
+        if (kind.halfField == 0)
+            CHECK(outside > 1000);
+    }
+}
+
+TEST_CASE("Where the monotone range ends is known exactly", "[lens]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    // r (1 + k1 r^2) has its maximum at r = 1/sqrt(-3 k1).
+    const double k1 = -0.4, edge = 1/std::sqrt(-3*k1), highest = edge*(1 + k1*edge*edge);
+    const Ptr<Lens> lens = makeOpenCVLens(K, { k1, 0, 0, 0 });
+    Vec2d pixel;
+    Vec3d d;
+    CHECK(project(*lens, Vec3d(0, edge*(1 - 1e-9), 1), pixel) == REFRACT_OK);
+    CHECK(project(*lens, Vec3d(0, edge*(1 + 1e-9), 1), pixel) == REFRACT_OUTSIDE_LENS_MODEL);
+    CHECK(unproject(*lens, Vec2d(640 + 1000*highest*(1 - 1e-9), 480), d) == REFRACT_OK);
+    CHECK(d[0]/d[2] == Approx(edge).epsilon(1e-4));
+    CHECK(unproject(*lens, Vec2d(640 + 1000*highest*(1 + 1e-9), 480), d) == REFRACT_OUTSIDE_LENS_MODEL);
+    CHECK(unproject(*lens, Vec2d(1e9, 480), d) == REFRACT_OUTSIDE_LENS_MODEL);
+
+    const double angle = 1/std::sqrt(0.9);          // theta (1 - 0.3 theta^2)
+    const Ptr<Lens> fisheye = makeFisheyeLens(K, { -0.3, 0, 0, 0 });
+    CHECK(project(*fisheye, Vec3d(std::sin(angle - 1e-9), 0, std::cos(angle - 1e-9)), pixel) == REFRACT_OK);
+    CHECK(project(*fisheye, Vec3d(std::sin(angle + 1e-9), 0, std::cos(angle + 1e-9)), pixel)
+          == REFRACT_OUTSIDE_LENS_MODEL);
+}
+
+TEST_CASE("Directions behind the camera have no image", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    Vec2d pixel;
+    CHECK(project(*makeLens(kind), Vec3d(0, 0, -1), pixel) != REFRACT_OK);
+    if (!kind.fisheye)
+        for (const Vec3d& d : { Vec3d(1, 2, 0), Vec3d(0.1, 0.1, -1), Vec3d(0, 0, 0) })
+            CHECK(project(*makeLens(kind), d, pixel) == REFRACT_BEHIND_CAMERA);
+}
+
+TEST_CASE("The fisheye goes on beyond 90 degrees", "[lens]")
+{
+    const Ptr<Lens> lens = makeFisheyeLens(Matx33d(400, 0, 640, 0, 400, 512, 0, 0, 1), { 0, 0, 0, 0 });
+    for (double degrees : { 90., 91., 120., 170. })
+    {
+        const double angle = degrees*CV_PI/180;
+        Vec2d pixel;
+        Vec3d d;
+        REQUIRE(project(*lens, Vec3d(std::sin(angle), 0, std::cos(angle)), pixel) == REFRACT_OK);
+        CHECK(pixel[0] == Approx(640 + 400*angle).epsilon(1e-15));
+        REQUIRE(unproject(*lens, pixel, d) == REFRACT_OK);
+        CHECK(norm(d - Vec3d(std::sin(angle), 0, std::cos(angle))) < 2e-15);
+    }
+}
+
+TEST_CASE("A lens lane that has a status keeps it", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    const Ptr<Lens> lens = makeLens(kind);
+    Vec2d pixel;
+    Vec3d d;
+    CHECK(project(*lens, Vec3d(0, 0, 1), pixel, REFRACT_TOTAL_REFLECTION) == REFRACT_TOTAL_REFLECTION);
+    CHECK(project(*lens, Vec3d(0, 0, -1), pixel, REFRACT_TOTAL_REFLECTION) == REFRACT_TOTAL_REFLECTION);
+    CHECK(unproject(*lens, Vec2d(NaN, 3), d, REFRACT_NOT_FINITE) == REFRACT_NOT_FINITE);
+}
+
+TEST_CASE("Lens derivatives against central differences of several steps", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name, seed());
+    const Ptr<Lens> lens = makeLens(kind);
+    const std::vector<double> p = lens->parameters();
+    const int count = (int)p.size();
+    Random random;
+    for (int i = 0; i < 100; ++i)
+    {
+        const Vec3d d = i == 0 ? Vec3d(0, 0, 2) : random.uniform(0.5, 2)*randomNormal(random, 0.9*kind.halfField);
+        Vec2d pixel;
+        std::vector<double> dDirection(6), dParameters(2*count);
+        REQUIRE(lens->projectJacobian(d, pixel, dDirection.data(), dParameters.data()) == REFRACT_OK);
+        for (int c = 0; c < 3 + count; ++c)
+        {
+            const bool isDirection = c < 3;
+            const Vec2d analytic = isDirection ? Vec2d(dDirection[c], dDirection[3 + c])
+                                               : Vec2d(dParameters[c - 3], dParameters[count + c - 3]);
+            double best = INF;
+            for (double step : { 1e-3, 1e-4, 1e-5, 1e-6, 1e-7 })
+            {
+                Vec2d ends[2];
+                for (int k = 0; k < 2; ++k)
+                {
+                    Vec3d ds = d;
+                    std::vector<double> ps = p;
+                    (isDirection ? ds[c] : ps[c - 3]) += k ? -step : step;
+                    REQUIRE(project(*lens->withParameters(ps), ds, ends[k]) == REFRACT_OK);
+                }
+                best = std::min(best, norm((ends[0] - ends[1])/(2*step) - analytic));
+            }
+            CAPTURE(i, c, d, analytic);
+            REQUIRE(best < 1e-6*(1 + 1e-2*norm(analytic)));
+        }
+    }
+}
+
+TEST_CASE("A lens keeps its parameters", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    const Ptr<Lens> lens = makeLens(kind);
+    std::vector<double> expected = { kind.K(0, 0), kind.K(1, 1), kind.K(0, 2), kind.K(1, 2) };
+    expected.insert(expected.end(), kind.coefficients.begin(), kind.coefficients.end());
+    CHECK(lens->parameters() == expected);
+    CHECK(largestDifference(lens->cameraMatrix(), kind.K) == 0);
+    CHECK(lens->model() == (kind.fisheye ? "fisheye" : "opencv"));
+    const Ptr<Lens> same = lens->withParameters(expected);
+    CHECK(same->parameters() == expected);
+    CHECK(largestDifference(same->cameraMatrix(), kind.K) == 0);
+    CHECK(same->model() == lens->model());
+}
+
+TEST_CASE("mrcal's names make OpenCV's models, others are refused", "[lens]")
+{
+    using Catch::Matchers::Contains;
+    const std::vector<double> core = { 1000, 1010, 640, 480 };
+    struct Model { const char* name; size_t coefficients; };
+    for (const Model& m : { Model{ "LENSMODEL_PINHOLE", 0 }, Model{ "LENSMODEL_OPENCV4", 4 },
+                            Model{ "LENSMODEL_OPENCV5", 5 }, Model{ "LENSMODEL_OPENCV8", 8 },
+                            Model{ "LENSMODEL_OPENCV12", 12 } })
+    {
+        CAPTURE(m.name);
+        std::vector<double> p = core;
+        p.resize(4 + m.coefficients, 0.01);
+        const Ptr<Lens> lens = makeMrcalLens(m.name, p);
+        CHECK(lens->model() == m.name);
+        CHECK(lens->parameters() == p);
+        CHECK(lens->withParameters(p)->model() == m.name);
+        p.push_back(0);
+        CHECK_THAT(thrown([&] { makeMrcalLens(m.name, p); }), Contains("intrinsics") && Contains(m.name));
+    }
+    CHECK_THAT(thrown([&] { makeMrcalLens("LENSMODEL_CAHVOR", core); }), Contains("LENSMODEL_CAHVOR"));
+    CHECK_THAT(thrown([&] { makeMrcalLens("LENSMODEL_PINHOLE", { 1000, -5, 1, 1 }); }),
+               Contains("intrinsics[1]") && Contains("-5"));
+    CHECK_THAT(thrown([&] { makeMrcalLens("LENSMODEL_PINHOLE", { 1000, 1000, NaN, 1 }); }), Contains("intrinsics[2]"));
+}
