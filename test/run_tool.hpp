@@ -1,0 +1,61 @@
+#ifndef REFRACT_TEST_RUN_TOOL_HPP
+#define REFRACT_TEST_RUN_TOOL_HPP
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <sys/wait.h>
+
+/* Runs the built tools as a user would. */
+
+//! An empty folder of its own, removed at the end.
+class TemporaryFolder
+{
+public:
+    TemporaryFolder()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "refract-test-XXXXXX").string();
+        if (!mkdtemp(&name[0]))
+            throw std::runtime_error("cannot make a temporary folder");
+        path_ = name;
+    }
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    std::string operator/(const std::string& file) const { return (path_ / file).string(); }
+    //! Names of all files in it, to find half-written ones.
+    size_t count() const
+    {
+        return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
+    }
+private:
+    std::filesystem::path path_;
+};
+
+inline std::string readFile(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+}
+
+struct ToolResult
+{
+    int code;                   //!< exit code; -1 if it was ended by a signal
+    std::string out, err;
+};
+
+//! "refract_calib --help": the name of a built tool and its arguments, for the shell.
+inline ToolResult runTool(const std::string& commandLine, const std::string& environment = "")
+{
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", err = folder / "err";
+    const int status = std::system((environment + ' ' + REFRACT_BIN_DIR + '/' + commandLine + " >" + out + " 2>" + err).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err)};
+}
+
+#endif // REFRACT_TEST_RUN_TOOL_HPP
