@@ -76,7 +76,8 @@ std::vector<Pair> readPairs(const Lens& lens, const PixelViews& direct, const Pi
     return pairs;
 }
 
-Vec3d linearNormal(const std::vector<Pair>& pairs)
+//! Smallest eigenvector; false if the lines are all one.
+bool linearNormal(const std::vector<Pair>& pairs, Vec3d& n)
 {
     Matx33d M = Matx33d::zeros();
     for (const Pair& pair : pairs)
@@ -84,10 +85,8 @@ Vec3d linearNormal(const std::vector<Pair>& pairs)
     Vec3d values;
     Matx33d vectors;
     eigen(M, values, vectors);      // descending
-    if (!(values[1] > 1e-12*values[0]))
-        CV_Error(Error::StsBadArg, "the normal is undetermined: all points move along one and the same line; "
-                                   "take a target that fills more of the image, or more views");
-    return Vec3d(vectors.row(2).val);
+    n = Vec3d(vectors.row(2).val);
+    return values[1] > 1e-12*values[0];
 }
 
 //! Two orthonormal vectors orthogonal to n, as columns.
@@ -121,13 +120,12 @@ NormalEquations linearize(const std::vector<Pair>& pairs, const Vec3d& n, const 
     return equations;
 }
 
-//! Gauss-Newton with halving, on the two tangent coordinates of the sphere.
-NormalEquations refineNormal(const std::vector<Pair>& pairs, Vec3d& n, Matx32d& basis)
+//! Gauss-Newton with halving, on the two tangent coordinates of the sphere; false if it does not converge.
+bool refineNormal(const std::vector<Pair>& pairs, Vec3d& n, Matx32d& basis, NormalEquations& here)
 {
-    const int MAX_ITERATIONS = 100;
     basis = tangentBasis(n);
-    NormalEquations here = linearize(pairs, n, basis);
-    for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++)
+    here = linearize(pairs, n, basis);
+    for (int iteration = 0; iteration < 100; iteration++)
     {
         Vec2d step = here.A.solve(here.b, DECOMP_SVD);
         bool improved = false;
@@ -147,22 +145,24 @@ NormalEquations refineNormal(const std::vector<Pair>& pairs, Vec3d& n, Matx32d& 
                 step *= 0.5;
         }
         if (!improved)
-            return here;
+            return true;
     }
-    CV_Error_(Error::StsNoConv, ("the normal did not converge in %d iterations", MAX_ITERATIONS));
+    return false;
 }
 
-//! The movement must stand out from what remains across the lines, else the lines' directions are noise.
-void checkDisplacement(const std::vector<Pair>& pairs, double rms)
+double shiftRms(const std::vector<Pair>& pairs)
 {
     double sum = 0;
     for (const Pair& pair : pairs)
         sum += pair.shift.dot(pair.shift);
-    const double shift = std::sqrt(sum/(double)pairs.size());
-    if (!(shift > std::max(1e-6, 3*rms)))
-        CV_Error_(Error::StsBadArg, ("the normal is undetermined: the points move by %.3g px (RMS) between the images "
-                                     "without and with the window, with %.3g px across the lines through the centre; "
-                                     "are the images of a pair the same, or was the target moved?", shift, rms));
+    return std::sqrt(sum/(double)pairs.size());
+}
+
+NormalEstimate refusal(const String& why)
+{
+    NormalEstimate estimate;
+    estimate.undetermined = why;
+    return estimate;
 }
 
 } // namespace
@@ -172,24 +172,35 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
     const std::vector<Pair> pairs = readPairs(camera.lens(), direct, refracted);
     const double count = (double)pairs.size();
     if (pairs.size() < 2)
-        CV_Error_(Error::StsBadArg, ("%d points were seen both without and with the window; at least 2 are needed",
-                                     (int)pairs.size()));
-    checkDisplacement(pairs, 0);
+        return refusal(format("%d points were seen both without and with the window; at least 2 are needed",
+                              (int)pairs.size()));
+    const double shift = shiftRms(pairs);
+    if (!(shift > 1e-6))
+        return refusal("no point moves between the images without and with the window; are the images of a pair the same?");
 
-    NormalEstimate estimate;
-    Vec3d n = linearNormal(pairs);
+    Vec3d n;
     Matx32d basis;
-    const NormalEquations solution = refineNormal(pairs, n, basis);
+    NormalEquations solution;
+    if (!linearNormal(pairs, n))
+        return refusal("all points move along one and the same line; use a target that fills more of the image, or more "
+                       "views");
+    if (!refineNormal(pairs, n, basis, solution))
+        return refusal("the iteration did not converge");
+
+    // The movement must stand out from what remains across the lines, else the lines' directions are noise.
+    NormalEstimate estimate;
     estimate.rms = std::sqrt(solution.cost/count);
-    checkDisplacement(pairs, estimate.rms);
+    if (shift < 3*estimate.rms)
+        return refusal(format("the points move by %.3g px (RMS) through the window, but miss the lines through the centre "
+                              "by %.3g px; was the target moved within a pair?", shift, estimate.rms));
     const double variance = count > 2 ? solution.cost/(count - 2) : std::numeric_limits<double>::quiet_NaN();
     const Matx22d tangentCovariance = solution.A.inv(DECOMP_SVD);
     Vec2d principal;
     eigen(tangentCovariance, principal);
-    const double sigma = std::sqrt(principal[0]*std::max(variance, 0.));
+    const double sigma = std::sqrt(principal[0]*variance);
     if (sigma > 0.5)
-        CV_Error_(Error::StsNoConv, ("the normal is undetermined: its standard deviation is %.0f degrees; "
-                                     "take more views, or a target that fills more of the image", sigma*180/CV_PI));
+        return refusal(format("its standard deviation is %.0f degrees; take more views, or a target that fills more of the "
+                              "image", sigma*180/CV_PI));
     estimate.normal = n[2] < 0 ? -n : n;
     estimate.covariance = variance*(basis*tangentCovariance*basis.t());
     return estimate;
@@ -211,6 +222,8 @@ static double calibrateNormal(InputArrayOfArrays imagePointsDirect, InputArrayOf
                                                  (int)refracted[i].size()));
 
     const NormalEstimate estimate = normalFromPairs(camera, direct, refracted);
+    if (!estimate.undetermined.empty())
+        CV_Error_(Error::StsNoConv, ("the normal is undetermined: %s", estimate.undetermined.c_str()));
     const Vec3d& n = estimate.normal;
     Mat(n).copyTo(normal);
     if (distortionCenter.needed())

@@ -12,13 +12,14 @@ namespace cv { namespace refract {
 
 struct NormalEstimate
 {
+    String undetermined;    //!< empty, or why there is no answer
     Vec3d normal;
     Matx33d covariance;     //!< rank 2; NaN where two pairs leave no residual to scale it by
     double rms;             //!< pixels
 };
 
 /** The normal from pairs; see calibrate_normal.cpp. Only the lens of the camera is used. Views that are empty in one of
-the two, and pairs that are not seen in both, are left out. Throws if the pairs do not determine the normal. */
+the two, and pairs that are not seen in both, are left out. */
 NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted);
 
 }} // namespace

@@ -11,6 +11,7 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 #include "poses.hpp"
 #include "arrays.hpp"
 #include "residual.hpp"
+#include "rotation.hpp"
 #include "opencv2/calib3d.hpp"
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -43,55 +44,60 @@ Matx33d turnToZ(const Vec3d& a)
 {
     const Vec3d axis = a.cross(Vec3d(0, 0, 1));
     const double sine = norm(axis);
-    Matx33d R = Matx33d::eye();
-    if (sine > 0)
-        Rodrigues(axis*(std::atan2(sine, a[2])/sine), R);
-    return R;
+    return sine > 0 ? rotationMatrix(axis*(std::atan2(sine, a[2])/sine)) : Matx33d::eye();
 }
 
 Pose makePose(const Matx33d& R, const Vec3d& t)
 {
     Pose pose;
-    Rodrigues(R, pose.rvec);
+    pose.rvec = rotationVector(R);
     pose.tvec = t;
     pose.found = true;
     return pose;
 }
 
+//! The rays of the points that have one.
+void raysOf(const Camera& camera, const ImagePoints& points, std::vector<Point3d>& object,
+            std::vector<Vec3d>& directions, double& meanTau)
+{
+    meanTau = 0;
+    for (size_t i = 0; i < points.pixel.size(); i++)
+    {
+        const Point2d& pixel = points.pixel[i];
+        double tau;
+        Vec3d d;
+        uchar status = REFRACT_OK;
+        camera.unproject(1, &pixel.x, &pixel.y, &tau, &d[0], &d[1], &d[2], &status);
+        if (status != REFRACT_OK)
+            continue;
+        object.push_back(points.object[i]);
+        directions.push_back(d);
+        meanTau += (tau - meanTau)/(double)object.size();
+    }
+}
+
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
 {
-    const int n = (int)points.pixel.size();
-    std::vector<double> u(n), v(n), tau(n), x(n), y(n), z(n);
-    std::vector<uchar> status(n, (uchar)REFRACT_OK);
-    for (int i = 0; i < n; i++)
-    {
-        u[i] = points.pixel[i].x;
-        v[i] = points.pixel[i].y;
-    }
-    camera.unproject(n, u.data(), v.data(), tau.data(), x.data(), y.data(), z.data(), status.data());
-
+    std::vector<Point3d> withRay;
+    std::vector<Vec3d> directions;
+    double meanTau;
+    raysOf(camera, points, withRay, directions, meanTau);
     Vec3d look;
-    double meanTau = 0, count = 0;
-    for (int i = 0; i < n; i++)
-        if (status[i] == REFRACT_OK)
-        {
-            look += Vec3d(x[i], y[i], z[i]);
-            meanTau += tau[i];
-            count++;
-        }
+    for (const Vec3d& d : directions)
+        look += d;
     if (!(norm(look) > 0))
         return std::vector<Pose>();
     const Matx33d turn = turnToZ(look/norm(look));
-    const Vec3d origin = camera.layers().normal()*(meanTau/count);
+    const Vec3d origin = camera.layers().normal()*meanTau;
 
     std::vector<Point3d> object;
     std::vector<Point2d> normalized;
-    for (int i = 0; i < n; i++)
+    for (size_t i = 0; i < directions.size(); i++)
     {
-        const Vec3d d = turn*Vec3d(x[i], y[i], z[i]);
-        if (status[i] != REFRACT_OK || !(d[2] > 0.05))
+        const Vec3d d = turn*directions[i];
+        if (!(d[2] > 0.05))     // normalised coordinates end before 90 degrees
             continue;
-        object.push_back(points.object[i]);
+        object.push_back(withRay[i]);
         normalized.push_back(Point2d(d[0]/d[2], d[1]/d[2]));
     }
     std::vector<Pose> poses;
@@ -103,11 +109,9 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
                     rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
     for (size_t i = 0; i < rvecs.size(); i++)
     {
-        Matx33d R;
-        Rodrigues(rvecs[i], R);
-        const Vec3d t(tvecs[i].ptr<double>());
-        if (checkRange(Mat(R)) && checkRange(Mat(t)))
-            poses.push_back(makePose(turn.t()*R, turn.t()*t + origin));
+        if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
+            poses.push_back(makePose(turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
+                                     turn.t()*Vec3d(tvecs[i].ptr<double>()) + origin));
     }
     return poses;
 }
@@ -149,14 +153,7 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms)
 {
-    ImagePoints points;
-    for (size_t i = 0; i < imagePoints.size(); i++)
-        if (std::isfinite(imagePoints[i].x) && std::isfinite(imagePoints[i].y))
-        {
-            points.object.push_back(objectPoints[i]);
-            points.pixel.push_back(imagePoints[i]);
-        }
-
+    const ImagePoints points = observed(objectPoints, imagePoints);
     Pose best;
     rms = NaN;
     if (points.pixel.size() < 3 || scatterRank(points.object) < 2)

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "residual.hpp"
-#include "opencv2/calib3d.hpp"
+#include "rotation.hpp"
 #include <Eigen/Core>
 
 namespace cv { namespace refract {
@@ -24,13 +24,7 @@ Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 
 } // namespace
 
-Rotation::Rotation(const double* rvec)
-{
-    Matx<double, 3, 9> derivative;
-    Rodrigues(vec3(rvec), R, derivative);
-    for (int i = 0; i < 3; i++)
-        dR[i] = Matx33d(derivative.val + 9*i);
-}
+Rotation::Rotation(const double* rvec) : R(rotationMatrix(vec3(rvec), dR)) {}
 
 Matx33d Rotation::derivativeOf(const Vec3d& v) const
 {

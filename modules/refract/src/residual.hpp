@@ -6,16 +6,10 @@
 #define OPENCV_REFRACT_RESIDUAL_HPP
 
 #include "camera.hpp"
+#include "views.hpp"
 #include <ceres/cost_function.h>
 
 namespace cv { namespace refract {
-
-//! What one camera saw of one target in one image; observed points only.
-struct ImagePoints
-{
-    std::vector<Point3d> object;    //!< object coordinates
-    std::vector<Point2d> pixel;
-};
 
 /** One Ceres cost: predicted minus observed pixel of all points of one image, with analytic derivatives through
 Camera::projectJacobian.
@@ -59,7 +53,7 @@ struct Rotation
     explicit Rotation(const double* rvec);
     Matx33d R;
     Matx33d dR[3];
-    //! dR/drvec * v, 3x3
+    //! d(R v)/drvec
     Matx33d derivativeOf(const Vec3d& v) const;
 };
 

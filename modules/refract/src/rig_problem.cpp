@@ -62,8 +62,7 @@ void addToProblem(ceres::Problem& problem, RigBlock& block)
     for (int i = 0; i < size; i++)
         if (!block.isFree[i])
             fixed.push_back(i);
-    if (!problem.HasParameterBlock(values))
-        return;
+    problem.AddParameterBlock(values, size);
     if ((int)fixed.size() == size)
     {
         problem.SetParameterBlockConstant(values);
@@ -133,17 +132,11 @@ void RigProblem::addImages(const RigViews& views)
             for (bool refracted : { true, false })
             {
                 const CameraViews& seen = views.cameras[c];
-                const std::vector<Point2d>& pixels = (refracted ? seen.refracted : seen.direct)[view];
                 RigImage image;
                 image.view = view;
                 image.camera = c;
                 image.refracted = refracted;
-                for (size_t i = 0; i < pixels.size(); i++)
-                    if (isSeen(pixels[i]))
-                    {
-                        image.points.object.push_back(views.object[view][i]);
-                        image.points.pixel.push_back(pixels[i]);
-                    }
+                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view]);
                 if (!image.points.pixel.empty())
                     images_.push_back(image);
             }
@@ -213,6 +206,11 @@ void RigProblem::solve(const TermCriteria& criteria)
     checkStart();
     ceres::Problem problem;
     const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (RigBlock& block : blocks_)
+    {
+        addToProblem(problem, block);
+        ordering->AddElementToGroup(block.values.data(), 1);
+    }
     for (const RigImage& image : images_)
     {
         std::vector<double*> values(1, poses_[image.view].data());
@@ -220,11 +218,6 @@ void RigProblem::solve(const TermCriteria& criteria)
             values.push_back(blocks_[i].values.data());
         problem.AddResidualBlock(makeCost(image), nullptr, values);
         ordering->AddElementToGroup(values[0], 0);
-    }
-    for (RigBlock& block : blocks_)
-    {
-        addToProblem(problem, block);
-        ordering->AddElementToGroup(block.values.data(), 1);
     }
 
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;

@@ -13,6 +13,8 @@
 
 namespace cv { namespace refract {
 
+typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
+
 //! One image of the problem.
 struct RigImage
 {
@@ -64,25 +66,29 @@ public:
     int freeCount() const;              //!< without the poses
     double squaredError(const RigImage& image) const;
 
-    //! Derivatives of one image's residuals by its pose and by each block it depends on (all coordinates).
+    //! Derivatives of one image's residuals: by its pose, and by all coordinates of the blocks that it depends on.
     struct Derivatives
     {
-        Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> byPose;
-        std::vector<int> blocks;        //!< index into blocks()
-        std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> > byBlock;
+        std::vector<int> blocks;                    //!< indices into blocks()
+        std::vector<RowMajorMatrix> byBlock;        //!< of the same
+        RowMajorMatrix byPose;
     };
     Derivatives derivatives(const RigImage& image) const;
 
     /** d public parameters / d free coordinates of all blocks, in the order of blocks(). The window of camera 2 follows
     from the shared one. */
     Eigen::MatrixXd publicBasis() const;
+    int publicCount() const;
 
 private:
     void addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values, const std::vector<bool>& isFree);
     void addImages(const RigViews& views);
     int blockOf(RigBlock::Kind kind, int camera) const;
     std::vector<int> blocksOf(const RigImage& image) const;
+    std::vector<const double*> valuesOf(const RigImage& image) const;
     ceres::CostFunction* makeCost(const RigImage& image) const;
+    int publicRow(const RigBlock& block) const;
+    void addSharedWindow(Eigen::MatrixXd& basis) const;
     void checkStart() const;
 
     std::vector<Camera> cameras_;       //!< lens models and numbers of layers

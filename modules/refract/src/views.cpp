@@ -48,7 +48,7 @@ std::vector<std::vector<Point3d> > readObjectViews(InputArrayOfArrays a, const c
     return views;
 }
 
-void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& object, const char* name)
+static void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& object, const char* name)
 {
     if (pixels.empty())
         pixels.resize(object.size());
@@ -59,6 +59,38 @@ void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& ob
         if (!pixels[i].empty() && pixels[i].size() != object[i].size())
             CV_Error_(Error::StsUnmatchedSizes, ("%s[%d] has %d points, objectPoints[%d] has %d; they must agree",
                                                  name, (int)i, (int)pixels[i].size(), (int)i, (int)object[i].size()));
+}
+
+CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedName,
+                            InputArrayOfArrays direct, const char* directName,
+                            const std::vector<std::vector<Point3d> >& object)
+{
+    CameraViews views;
+    views.refracted = readPixelViews(refracted, refractedName);
+    views.direct = readPixelViews(direct, directName);
+    matchViews(views.refracted, object, refractedName);
+    matchViews(views.direct, object, directName);
+    return views;
+}
+
+bool seesAnything(const PixelViews& views)
+{
+    for (const std::vector<Point2d>& view : views)
+        if (std::any_of(view.begin(), view.end(), isSeen))
+            return true;
+    return false;
+}
+
+ImagePoints observed(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels)
+{
+    ImagePoints points;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (isSeen(pixels[i]))
+        {
+            points.object.push_back(object[i]);
+            points.pixel.push_back(pixels[i]);
+        }
+    return points;
 }
 
 }} // namespace

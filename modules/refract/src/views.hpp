@@ -31,11 +31,26 @@ PixelViews readPixelViews(InputArrayOfArrays a, const char* name);
 //! An array of arrays of finite 3-D points.
 std::vector<std::vector<Point3d> > readObjectViews(InputArrayOfArrays a, const char* name);
 
-/** Makes the views of an optional argument as many as there are targets and checks every view's size against its
-target's. Throws with the argument's name. */
-void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d> >& object, const char* name);
+/** What one camera saw. An optional argument that is absent becomes one empty view per target; every view's size is checked
+against its target's. Throws with the argument's name. */
+CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedName,
+                            InputArrayOfArrays direct, const char* directName,
+                            const std::vector<std::vector<Point3d> >& object);
 
 inline bool isSeen(const Point2d& pixel) { return std::isfinite(pixel.x) && std::isfinite(pixel.y); }
+
+//! True if any view has a point that was seen.
+bool seesAnything(const PixelViews& views);
+
+//! What one camera saw of one target in one image.
+struct ImagePoints
+{
+    std::vector<Point3d> object;    //!< object coordinates
+    std::vector<Point2d> pixel;
+};
+
+//! Drops the points that were not seen (NaN).
+ImagePoints observed(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels);
 
 }} // namespace
 

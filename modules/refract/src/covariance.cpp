@@ -1,0 +1,221 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* With the residuals' derivatives J by the free parameters and K by the poses, the information on the parameters that is
+left when the poses are unknown is
+
+    A = sum over views of J^T (I - P_K) J,     P_K the projector on the range of K
+
+It is kept as its square root R, A = R^T R, built by orthogonal transformations only, so that the condition number is not
+squared; views whose points do not fix a pose need no special case. Covariance = s^2 A^-1 with s^2 the sum of squared
+residuals over the degrees of freedom, 2 points - parameters - 6 views. */
+
+#include "covariance.hpp"
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace cv { namespace refract {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Below this part of its own effect, what a parameter does that others cannot do is the derivatives' rounding error.
+const double SINGULAR = 1e-9;
+// Nobody finds points better than this: without it, noise-free data would seem to determine anything.
+const double LEAST_SIGMA = 0.01;
+
+struct FreeParameter
+{
+    String name;
+    double value;
+    double hopeless;        //!< a standard deviation beyond this is no answer
+    RigBlock::Kind kind;
+};
+
+double meanRange(const RigProblem& rig)
+{
+    double sum = 0;
+    for (int view = 0; view < rig.viewCount(); view++)
+        sum += norm(rig.pose(view).tvec);
+    return sum/rig.viewCount();
+}
+
+std::vector<FreeParameter> freeParameters(const RigProblem& rig)
+{
+    const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(rig);
+    std::vector<FreeParameter> parameters;
+    for (const RigBlock& block : rig.blocks())
+        for (int i = 0; i < (int)block.values.size(); i++)
+        {
+            if (!block.isFree[i] || (block.kind == RigBlock::NORMAL && i == 2))     // a normal has two
+                continue;
+            FreeParameter p;
+            p.name = block.nameOf(i);
+            if (rig.isStereo() && block.kind != RigBlock::EXTRINSICS)
+                p.name += format(" of camera %d", block.camera + 1);
+            p.kind = block.kind;
+            p.value = block.values[i];
+            const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
+            const bool isLength = block.kind == RigBlock::MEDIA ? i == 0 : block.kind == RigBlock::EXTRINSICS && i >= 3;
+            p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
+                block.kind == RigBlock::MEDIA || i < 2 ? p.value : infinity;
+            parameters.push_back(p);
+        }
+    return parameters;
+}
+
+//! Derivatives by all free parameters of one image.
+MatrixXd byFreeParameters(const RigProblem& rig, const RigProblem::Derivatives& d)
+{
+    MatrixXd J = MatrixXd::Zero(d.byPose.rows(), rig.freeCount());
+    int column = 0;
+    for (int b = 0; b < (int)rig.blocks().size(); b++)
+    {
+        const MatrixXd tangent = rig.blocks()[b].tangentBasis();
+        for (size_t k = 0; k < d.blocks.size(); k++)
+            if (d.blocks[k] == b)
+                J.middleCols(column, tangent.cols()) = d.byBlock[k]*tangent;
+        column += (int)tangent.cols();
+    }
+    return J;
+}
+
+MatrixXd stacked(const MatrixXd& top, const MatrixXd& bottom)
+{
+    MatrixXd both(top.rows() + bottom.rows(), bottom.cols());
+    if (top.rows() > 0)
+        both.topRows(top.rows()) = top;
+    both.bottomRows(bottom.rows()) = bottom;
+    return both;
+}
+
+//! The part of J that no change of the pose can imitate.
+MatrixXd withoutPose(const MatrixXd& J, const MatrixXd& K)
+{
+    const Eigen::RowVectorXd scale = K.colwise().norm().cwiseMax(DBL_MIN);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr;
+    qr.setThreshold(1e-12);
+    qr.compute(K.array().rowwise()/scale.array());
+    const MatrixXd rotated = qr.householderQ().adjoint()*J;
+    return rotated.bottomRows(J.rows() - qr.rank());
+}
+
+struct Information
+{
+    MatrixXd root;          //!< upper triangular, root^T root = A
+    VectorXd effect;        //!< of each parameter alone: the norm of its derivatives
+};
+
+Information informationOf(const RigProblem& rig)
+{
+    const int count = rig.freeCount();
+    Information information;
+    information.root = MatrixXd::Zero(count, count);
+    VectorXd squares = VectorXd::Zero(count);
+    for (int view = 0; view < rig.viewCount(); view++)
+    {
+        MatrixXd J(0, count), K(0, 6);
+        for (const RigImage& image : rig.images())
+            if (image.view == view)
+            {
+                const RigProblem::Derivatives d = rig.derivatives(image);
+                J = stacked(J, byFreeParameters(rig, d));
+                K = stacked(K, d.byPose);
+            }
+        squares += J.colwise().squaredNorm().transpose();
+        const Eigen::HouseholderQR<MatrixXd> qr(stacked(information.root, withoutPose(J, K)));
+        information.root = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+    }
+    information.effect = squares.cwiseSqrt();
+    return information;
+}
+
+//! The parameters that move along a direction, as words with their values; the normal's two angles are one parameter.
+String wordsFor(const std::vector<FreeParameter>& parameters, const VectorXd& direction, const VectorXd& sigma)
+{
+    std::vector<String> words;
+    for (int i = 0; i < (int)parameters.size(); i++)
+    {
+        const FreeParameter& p = parameters[i];
+        if (std::abs(direction[i]) < 0.2*direction.cwiseAbs().maxCoeff())
+            continue;
+        String word = p.kind == RigBlock::NORMAL || p.kind == RigBlock::EXTRINSICS ? p.name :
+            format("%s = %.4g", p.name.c_str(), p.value);
+        if (sigma.size() > 0 && p.kind != RigBlock::NORMAL && p.kind != RigBlock::EXTRINSICS)
+            word += format(" +- %.2g", sigma[i]);
+        if (std::find(words.begin(), words.end(), word) == words.end())
+            words.push_back(word);
+    }
+    String text;
+    for (size_t i = 0; i < words.size(); i++)
+        text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+    return words.size() > 1 ? text + "; only a combination of them is determined" : text;
+}
+
+void refuse(const String& words)
+{
+    CV_Error_(Error::StsNoConv, ("the views do not determine %s. Fix what is known otherwise, or add views: pairs without "
+                                 "and with the window, more tilt, more depth", words.c_str()));
+}
+
+//! Singular values and vectors of the information, each parameter scaled by its own effect.
+MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>& parameters, double variance)
+{
+    const Information information = informationOf(rig);
+    for (int i = 0; i < (int)parameters.size(); i++)
+        if (!(information.effect[i] > 0))
+            refuse(wordsFor(parameters, VectorXd::Unit(parameters.size(), i), VectorXd()));
+
+    const VectorXd scale = information.effect.cwiseInverse();
+    const Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeFullV);
+    if (svd.singularValues().minCoeff() < SINGULAR)
+        refuse(wordsFor(parameters, svd.matrixV().rightCols<1>(), VectorXd()));
+    const MatrixXd half = scale.asDiagonal()*svd.matrixV()*svd.singularValues().cwiseInverse().asDiagonal();
+
+    const double floor = std::max(variance, LEAST_SIGMA*LEAST_SIGMA);
+    const VectorXd sigma = half.rowwise().norm()*std::sqrt(floor);
+    VectorXd inverseLimit(parameters.size());
+    for (int i = 0; i < (int)parameters.size(); i++)
+        inverseLimit[i] = 1/parameters[i].hopeless;
+    if ((sigma.cwiseProduct(inverseLimit)).maxCoeff() > 1)
+    {
+        const Eigen::JacobiSVD<MatrixXd> worst(inverseLimit.asDiagonal()*half, Eigen::ComputeFullU);
+        refuse(wordsFor(parameters, worst.matrixU().leftCols<1>(), sigma));
+    }
+    return variance*half*half.transpose();
+}
+
+} // namespace
+
+MatrixXd rigCovariance(const RigProblem& rig)
+{
+    double sum = 0;
+    for (const RigImage& image : rig.images())
+        sum += rig.squaredError(image);
+    const int freedom = 2*rig.pointCount() - rig.freeCount() - 6*rig.viewCount();
+    const MatrixXd free = freeCovariance(rig, freeParameters(rig), sum/freedom);
+    const MatrixXd basis = rig.publicBasis();
+    return basis*free*basis.transpose();
+}
+
+MatrixXd rigJacobian(const RigProblem& rig)
+{
+    CV_Assert(!rig.isStereo());
+    const MatrixXd basis = rig.publicBasis();
+    MatrixXd jacobian = MatrixXd::Zero(2*rig.pointCount(), rig.publicCount() + 6*rig.viewCount());
+    int row = 0;
+    for (const RigImage& image : rig.images())
+    {
+        const RigProblem::Derivatives d = rig.derivatives(image);
+        const int rows = (int)d.byPose.rows();
+        jacobian.block(row, 0, rows, rig.publicCount()) = byFreeParameters(rig, d)*basis.transpose();
+        jacobian.block(row, rig.publicCount() + 6*image.view, rows, 6) = d.byPose;
+        row += rows;
+    }
+    return jacobian;
+}
+
+}} // namespace

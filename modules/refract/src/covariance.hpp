@@ -1,0 +1,22 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_COVARIANCE_HPP
+#define OPENCV_REFRACT_COVARIANCE_HPP
+
+#include "rig_problem.hpp"
+
+namespace cv { namespace refract {
+
+/** What the data can and cannot tell: covariance of the public parameters of a solved problem, P x P, scaled by the
+variance of the residuals; 0 where fixed. Throws, naming the direction, if the data do not determine what is free. */
+Eigen::MatrixXd rigCovariance(const RigProblem& rig);
+
+/** Derivatives of all residuals, 2M x (P + 6 V): image by image in the order of images(); columns: the public parameters,
+then the pose of each view; 0 where fixed. One camera. */
+Eigen::MatrixXd rigJacobian(const RigProblem& rig);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_COVARIANCE_HPP

@@ -1,0 +1,24 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_RIG_START_HPP
+#define OPENCV_REFRACT_RIG_START_HPP
+
+#include "poses.hpp"
+#include "views.hpp"
+
+namespace cv { namespace refract {
+
+/** Start of one camera's normal: from pairs if there are any; else, with the lens known, the best of the given normal and
+a ring of tilts, by the poses' reprojection error through the window; else the given normal. */
+Vec3d startNormal(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
+                  bool lensIsKnown);
+
+/** Start of every view's pose, object -> camera 1: from its direct image with the most points, else from one through the
+window. Throws, naming the view, if no image gives a pose. */
+std::vector<Pose> startPoses(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_RIG_START_HPP
