@@ -155,7 +155,7 @@ class Window:
         along_axis, across = self.split(point)
         tangent_part = self.split(direction)[1]
         size = dot(tangent_part, tangent_part)
-        if size == 0:    # the limit on the axis, by the first-order (paraxial) form of Snell's law
+        if size < mpf(10)**-60:    # on the axis: the limit, by the first-order (paraxial) form of Snell's law
             return sum(h * (1 - self.outer / n) for h, n in zip(self.height, self.index)), direction
         s = -dot(across, tangent_part) / size
         return along_axis + s * dot(self.normal, direction), direction
@@ -175,7 +175,7 @@ class Window:
         if v == 0:
             return self.normal
         low, high = mpf(0), min(media)
-        reached = [(h, n) for h, n in zip(heights, media) if h > 0]
+        reached = [(h, n) for h, n in zip(heights, media) if h != 0]   # a derivative's step may make 0 negative
 
         def miss(p):
             return sum(h * p / mp.sqrt(n * n - p * p) for h, n in reached) - v

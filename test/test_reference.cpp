@@ -1,0 +1,189 @@
+// Our results against 60-digit ones, see reference/make_reference.py.
+#include "scenes.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using nlohmann::json;
+
+namespace {
+
+const json& reference()
+{
+    static const json cases = []
+    {
+        std::ifstream file(REFRACT_TEST_DIR "/reference/projection.json");
+        REQUIRE(file.good());
+        return json::parse(file);
+    }();
+    return cases;
+}
+
+Vec3d vec3(const json& j) { return Vec3d(j[0], j[1], j[2]); }
+Vec2d vec2(const json& j) { return Vec2d(j[0], j[1]); }
+
+Ptr<RefractiveCamera> cameraOfCase(const json& c)
+{
+    const json& w = c["window"];
+    GlassWindow window;
+    window.normal = vec3(w["normal"]);
+    window.distance = w["distance"];
+    window.thickness = w["thickness"].get<std::vector<double>>();
+    window.index = w["index"].get<std::vector<double>>();
+    window.innerIndex = w["inner_index"];
+    window.outerIndex = w["outer_index"];
+    const std::vector<double> core = c["core"], coefficients = c["coefficients"];
+    const Matx33d K(core[0], 0, core[2], 0, core[1], core[3], 0, 0, 1);
+    return c["lens"] == "fisheye" ? RefractiveCamera::createFisheye(K, coefficients, window)
+                                  : RefractiveCamera::create(K, coefficients, window);
+}
+
+std::string nameOfCase(const json& c)
+{
+    return c["window"]["name"].get<std::string>() + ", " + c["lens"].get<std::string>() + " "
+           + std::to_string(c["coefficients"].size()) + " coefficients";
+}
+
+double smallestIndex(const json& c)
+{
+    const json& w = c["window"];
+    double least = std::min(w["inner_index"].get<double>(), w["outer_index"].get<double>());
+    for (const json& index : w["index"])
+        least = std::min(least, index.get<double>());
+    return least;
+}
+
+struct Projected { Vec2d pixel; uchar status; };
+
+Projected projectPoint(const Ptr<RefractiveCamera>& camera, const Vec3d& X, const Vec3d& rvec = Vec3d(),
+                       const Vec3d& tvec = Vec3d())
+{
+    std::vector<Vec2d> pixel;
+    std::vector<uchar> status;
+    refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, camera, pixel, status);
+    return { pixel[0], status[0] };
+}
+
+} // namespace
+
+TEST_CASE("Projection equals the 60-digit references", "[reference]")
+{
+    double worst = 0;
+    int points = 0;
+    for (const json& c : reference())
+    {
+        CAPTURE(nameOfCase(c));
+        const Ptr<RefractiveCamera> camera = cameraOfCase(c);
+        for (const json& p : c["points"])
+        {
+            CAPTURE(p.dump());
+            const Projected result = projectPoint(camera, vec3(p["X"]));
+            REQUIRE(result.status == REFRACT_OK);
+            const double error = norm(result.pixel - vec2(p["pixel"]));
+            CHECK(error < 1e-9);
+            worst = std::max(worst, error);
+            ++points;
+        }
+    }
+    CHECK(points > 400);
+    printNumber("projection against " + std::to_string(points) + " 60-digit references, worst", worst, "px");
+}
+
+TEST_CASE("Rays equal the 60-digit references", "[reference]")
+{
+    double worstDirection = 0, worstTau = 0;
+    for (const json& c : reference())
+    {
+        CAPTURE(nameOfCase(c));
+        const Ptr<RefractiveCamera> camera = cameraOfCase(c);
+        const Vec3d n = camera->window().normal;
+        for (const json& p : c["points"])
+        {
+            CAPTURE(p.dump());
+            std::vector<Vec3d> origin, direction;
+            std::vector<uchar> status;
+            refractiveUnprojectPoints(std::vector<Vec2d>{ vec2(p["pixel"]) }, origin, direction, camera, status);
+            REQUIRE(status[0] == REFRACT_OK);
+            // At a grazing angle in the rarest medium a rounding of the pixel is 1/cos times larger there.
+            const double sine = norm(n.cross(vec3(p["direction"])))*camera->window().outerIndex/smallestIndex(c);
+            const double cosine = std::sqrt(1 - sine*sine), tau = p["tau"];
+            const double directionError = norm(direction[0] - vec3(p["direction"]))*cosine;
+            const double tauError = norm(origin[0] - tau*n)/(1 + std::abs(tau))*cosine*cosine;
+            CHECK(directionError < 1e-14);
+            CHECK(tauError < 1e-13);
+            worstDirection = std::max(worstDirection, directionError);
+            worstTau = std::max(worstTau, tauError);
+        }
+    }
+    printNumber("ray direction against references, worst * cos(angle)", worstDirection, "");
+    printNumber("ray origin against references, relative, worst * cos(angle)^2", worstTau, "");
+}
+
+TEST_CASE("What no light connects has the status of total reflection", "[reference]")
+{
+    int unseen = 0, unseeing = 0;
+    for (const json& c : reference())
+    {
+        CAPTURE(nameOfCase(c));
+        const Ptr<RefractiveCamera> camera = cameraOfCase(c);
+        for (const json& X : c["unseen"])
+        {
+            const Projected result = projectPoint(camera, vec3(X));
+            CHECK(result.status == REFRACT_TOTAL_REFLECTION);
+            CHECK((std::isnan(result.pixel[0]) && std::isnan(result.pixel[1])));
+            ++unseen;
+        }
+        for (const json& pixel : c["unseeing"])
+        {
+            std::vector<Vec3d> origin, direction;
+            std::vector<uchar> status;
+            refractiveUnprojectPoints(std::vector<Vec2d>{ vec2(pixel) }, origin, direction, camera, status);
+            CHECK(status[0] == REFRACT_TOTAL_REFLECTION);
+            CHECK(std::isnan(origin[0][0]));
+            CHECK(std::isnan(direction[0][2]));
+            ++unseeing;
+        }
+    }
+    CHECK(unseen > 10);
+    CHECK(unseeing > 10);
+}
+
+TEST_CASE("Jacobians equal the 60-digit references", "[reference]")
+{
+    double worstPixel = 0, worst = 0;
+    for (const json& c : reference())
+    {
+        CAPTURE(nameOfCase(c));
+        const Ptr<RefractiveCamera> camera = cameraOfCase(c);
+        const json& posed = c["posed"];
+        std::vector<Vec2d> pixel;
+        std::vector<uchar> status;
+        Mat jacobian;
+        refractiveProjectPoints(std::vector<Vec3d>{ vec3(posed["object"]) }, vec3(posed["rvec"]), vec3(posed["tvec"]),
+                                camera, pixel, status, jacobian);
+        REQUIRE(status[0] == REFRACT_OK);
+        const double pixelError = norm(pixel[0] - vec2(posed["pixel"]));
+        CHECK(pixelError < 1e-9);
+        worstPixel = std::max(worstPixel, pixelError);
+
+        // Without a window the indices belong to a surface that is not there; their columns have no meaning.
+        const bool none = c["window"]["name"] == "no window";
+        REQUIRE(jacobian.rows == 2);
+        REQUIRE(jacobian.cols == (int)posed["jacobian"][0].size());
+        for (int column = 0; column < jacobian.cols - (none ? 2 : 0); ++column)
+        {
+            const Vec2d expected(posed["jacobian"][0][column], posed["jacobian"][1][column]);
+            const Vec2d computed(jacobian.at<double>(0, column), jacobian.at<double>(1, column));
+            const double error = norm(computed - expected)/(1 + norm(expected));
+            CAPTURE(column, expected, computed);
+            CHECK(error < 1e-10);
+            worst = std::max(worst, error);
+        }
+    }
+    printNumber("posed projection against references, worst", worstPixel, "px");
+    printNumber("jacobian against references, relative, worst", worst, "");
+}
