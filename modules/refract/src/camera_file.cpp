@@ -87,10 +87,10 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
     if (!fs.isOpened())
         CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
     FileNode node = fs.root();
-    if (!name.empty())
-        node = fs[name];
-    else if (!node.isMap() || node["camera_matrix"].empty())
-        node = fs["camera1"];
+    if (node.isMap() && !name.empty())
+        node = node[name];
+    else if (node.isMap() && node["camera_matrix"].empty())
+        node = node["camera1"];
     if (!node.isMap())
         CV_Error_(Error::StsParseError, ("%s holds no camera%s%s: camera_matrix and distortion_coefficients are missing",
                                          filename.c_str(), name.empty() ? "" : " ", name.c_str()));
