@@ -132,6 +132,10 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
     for (double* block : { lens, normal, normal + 3 })
         problem.SetParameterBlockConstant(block);
 
+    // A start that gives some point no image is none. Ceres would log an error whatever its logging_type says.
+    double cost;
+    if (!problem.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr))
+        return NaN;
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = 100;
