@@ -108,7 +108,7 @@ inline const std::vector<LensKind>& allLenses()
 {
     const cv::Matx33d K(1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1), wide(2070, 0, 3004, 0, 2075, 1997, 0, 0, 1);
     static const std::vector<LensKind> lenses = {
-        { "0 coefficients", false, K, {}, 85 },
+        { "0 coefficients", false, K, {}, 60 },
         { "the paper's", false, { 2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1 }, { -0.4082, 0.4359, 0, 0 }, 35 },
         { "4 coefficients", false, K, { -0.28, 0.09, 7e-4, -4e-4 }, 40 },
         { "5 coefficients", false, K, { -0.3, 0.12, 1e-3, -5e-4, -0.01 }, 42 },

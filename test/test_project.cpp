@@ -1,0 +1,338 @@
+// refractiveProjectPoints and refractiveUnprojectPoints.
+#include "scenes.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Vec3d transformed(const Vec3d& rvec, const Vec3d& tvec, const Vec3d& X)
+{
+    Matx33d R;
+    Rodrigues(rvec, R);
+    return R*X + tvec;
+}
+
+GlassWindow pane() { return GlassWindow(Vec3d(-0.2483, 0.0961, 1), 20, 1.5437, 50); }
+const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
+
+} // namespace
+
+TEST_CASE("Without window: cv::projectPoints, every number of coefficients", "[project]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name, seed());
+    if (kind.fisheye && kind.K(0, 1) != 0)
+        return;     // its skew is tested below, as cv::fisheye takes alpha instead of a matrix entry
+    Random random;
+    std::vector<Vec3d> points;
+    const Vec3d rvec = random.vector(1), tvec = random.vector(100);
+    Matx33d R;
+    Rodrigues(rvec, R);
+    for (int i = 0; i < 5000; ++i)
+        points.push_back(R.t()*(random.logUniform(10, 1e5)*randomNormal(random, std::min(80., kind.halfField)) - tvec));
+    std::vector<Vec2d> ours, theirs;
+    refractiveProjectPoints(points, rvec, tvec, makeCamera(kind, GlassWindow()), ours);
+    if (kind.fisheye)
+        fisheye::projectPoints(points, theirs, rvec, tvec, kind.K, kind.coefficients);
+    else
+        projectPoints(points, rvec, tvec, kind.K, kind.coefficients, theirs);
+    const double worst = largestDifference(ours, theirs);
+    CHECK(worst < 1e-9);
+    printNumber(std::string("no window, ") + kind.name + ", against cv, worst", worst, "px");
+
+    std::vector<Vec2d> rotated;
+    refractiveProjectPoints(points, R, tvec, makeCamera(kind, GlassWindow()), rotated);
+    CHECK(largestDifference(ours, rotated) < 1e-9);
+}
+
+TEST_CASE("The fisheye's skew is cv::fisheye's alpha", "[project]")
+{
+    const double alpha = 0.01;
+    const Matx33d straight(400, 0, 640, 0, 410, 512, 0, 0, 1), skewed(400, 400*alpha, 640, 0, 410, 512, 0, 0, 1);
+    const std::vector<double> d = { 0.01, -0.003, 0.0005, 0 };
+    const std::vector<Vec3d> points = { { 1, 2, 3 }, { -3, 1, 2 }, { 0, 0, 1 }, { 5, -5, 1 } };
+    std::vector<Vec2d> ours, theirs;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::createFisheye(skewed, d), ours);
+    fisheye::projectPoints(points, theirs, Vec3d(), Vec3d(), straight, d, alpha);
+    CHECK(largestDifference(ours, theirs) < 1e-9);
+}
+
+TEST_CASE("A pane in air moves the image away from the foot of its normal", "[project]")
+{
+    // The point seems closer by tau: the pixel is that of the point shifted towards the camera along the normal.
+    const GlassWindow window = pane();
+    const Vec3d X(30, -40, 600);
+    std::vector<Vec2d> with, without, shifted;
+    refractiveProjectPoints(std::vector<Vec3d>{ X }, Vec3d(), Vec3d(), K, noArray(), window, with);
+    refractiveProjectPoints(std::vector<Vec3d>{ X }, Vec3d(), Vec3d(), K, noArray(), GlassWindow(), without);
+    const double c = window.normal.dot(X)/norm(X), mu = 1.5437;
+    const double tau = 20*(1 - c/std::sqrt(mu*mu - 1 + c*c));
+    refractiveProjectPoints(std::vector<Vec3d>{ X - tau*window.normal }, Vec3d(), Vec3d(), K, noArray(), GlassWindow(),
+                            shifted);
+    CHECK(norm(with[0] - without[0]) > 1);
+    CHECK(norm(with[0] - shifted[0]) < 1e-2*norm(with[0] - without[0]));    // tau of the direction without window
+}
+
+TEST_CASE("Both overloads project the same", "[project]")
+{
+    const std::vector<double> d = { -0.28, 0.09, 7e-4, -4e-4 };
+    const std::vector<Vec3d> points = { { 1, 2, 300 }, { -30, 10, 400 }, { 0, 0, 5000 } };
+    const Vec3d rvec(0.1, 0.2, -0.1), tvec(5, 6, 70);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, d, pane());
+    std::vector<Vec2d> a, b, c;
+    std::vector<uchar> sa, sb, sc;
+    Mat jacobian;
+    refractiveProjectPoints(points, rvec, tvec, K, d, pane(), a, sa);
+    refractiveProjectPoints(points, rvec, tvec, camera, b, sb);
+    refractiveProjectPoints(points, rvec, tvec, camera, c, sc, jacobian);
+    CHECK(largestDifference(a, b) == 0);
+    CHECK(largestDifference(a, c) < 1e-10);
+    CHECK(sa == std::vector<uchar>(3, REFRACT_OK));
+    CHECK(sb == sa);
+    CHECK(sc == sa);
+    std::vector<Vec3d> o1, d1, o2, d2;
+    refractiveUnprojectPoints(a, o1, d1, K, d, pane(), sa);
+    refractiveUnprojectPoints(a, o2, d2, camera, sb);
+    CHECK(largestDifference(o1, o2) == 0);
+    CHECK(largestDifference(d1, d2) == 0);
+}
+
+TEST_CASE("One bad point has its status and leaves the others alone", "[project]")
+{
+    // The water makes the far sideways point's light hit the lens side of the glass beyond any angle.
+    const GlassWindow onLens(Vec3d(0, 0, 1), 8, 1.52, 0, 1.333);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>{ -0.3, 0, 0, 0 }, onLens);
+    struct Case { Vec3d X; uchar status; };
+    const Case cases[] = {
+        { { 10, 20, 300 }, REFRACT_OK },
+        { { NaN, 20, 300 }, REFRACT_NOT_FINITE }, { { 10, INF, 300 }, REFRACT_NOT_FINITE },
+        { { 10, 20, -INF }, REFRACT_NOT_FINITE },
+        { { 1, 1, 8 }, REFRACT_BEHIND_WINDOW }, { { 1, 1, 4 }, REFRACT_BEHIND_WINDOW }, { { 1, 1, -50 }, REFRACT_BEHIND_WINDOW },
+        { { 1000, 0, 100 }, REFRACT_TOTAL_REFLECTION },
+        { { 105, 0, 100 }, REFRACT_OUTSIDE_LENS_MODEL },
+        { { 0, 0, 9 }, REFRACT_OK } };
+    std::vector<Vec3d> points;
+    for (const Case& c : cases)
+        points.push_back(c.X);
+    std::vector<Vec2d> pixels, again;
+    std::vector<uchar> status;
+    Mat jacobian;
+    for (bool withJacobian : { false, true })
+    {
+        if (withJacobian)
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status, jacobian);
+        else
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status);
+        for (size_t i = 0; i < points.size(); ++i)
+        {
+            CAPTURE(i, cases[i].X, withJacobian);
+            CHECK((int)status[i] == (int)cases[i].status);
+            const bool ok = cases[i].status == REFRACT_OK;
+            CHECK(std::isfinite(pixels[i][0]) == ok);
+            CHECK(std::isfinite(pixels[i][1]) == ok);
+            if (withJacobian)
+                CHECK(std::isfinite(sum(jacobian.rowRange(2*(int)i, 2*(int)i + 2))[0]) == ok);
+        }
+        refractiveProjectPoints(std::vector<Vec3d>{ points[0], points[9] }, Vec3d(), Vec3d(), camera, again);
+        CHECK(norm(again[0] - pixels[0]) < 1e-10);
+        CHECK(norm(again[1] - pixels[9]) < 1e-10);
+    }
+}
+
+TEST_CASE("Points behind a camera without window have no image", "[project]")
+{
+    std::vector<Vec2d> pixels;
+    std::vector<uchar> status;
+    refractiveProjectPoints(std::vector<Vec3d>{ { 1, 2, -3 }, { 1, 2, 0 }, { 0, 0, 0 }, { 1, 2, 1e-300 }, { 0, 0, 1 } },
+                            Vec3d(), Vec3d(), K, noArray(), GlassWindow(), pixels, status);
+    CHECK(status[0] == REFRACT_BEHIND_CAMERA);
+    CHECK(status[1] == REFRACT_BEHIND_CAMERA);
+    CHECK(status[2] == REFRACT_BEHIND_CAMERA);
+    CHECK((status[3] == REFRACT_OK) == std::isfinite(pixels[3][0]));
+    CHECK(status[4] == REFRACT_OK);
+    CHECK(norm(pixels[4] - Vec2d(640, 480)) == 0);
+}
+
+TEST_CASE("Bad pixels have their status", "[project]")
+{
+    GlassWindow tank(Vec3d(0, 0, 1), 12, 1.5, 60);
+    tank.innerIndex = 1.333;
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>{ -0.1, 0, 0, 0 }, tank);
+    std::vector<Vec3d> origins, directions;
+    std::vector<uchar> status;
+    const std::vector<Vec2d> pixels = { { 640, 480 }, { NaN, 480 }, { 640, INF }, { 1e5, 480 }, { 640 + 1080, 480 } };
+    refractiveUnprojectPoints(pixels, origins, directions, camera, status);
+    const uchar expected[] = { REFRACT_OK, REFRACT_NOT_FINITE, REFRACT_NOT_FINITE, REFRACT_OUTSIDE_LENS_MODEL,
+                               REFRACT_TOTAL_REFLECTION };
+    for (size_t i = 0; i < pixels.size(); ++i)
+    {
+        CAPTURE(i);
+        CHECK((int)status[i] == (int)expected[i]);
+        for (int c = 0; c < 3; ++c)
+        {
+            CHECK(std::isfinite(origins[i][c]) == (expected[i] == REFRACT_OK));
+            CHECK(std::isfinite(directions[i][c]) == (expected[i] == REFRACT_OK));
+        }
+    }
+    // Along the axis: the paraxial height of the origin.
+    CHECK(norm(directions[0] - Vec3d(0, 0, 1)) < 1e-15);
+    CHECK(norm(origins[0] - Vec3d(0, 0, 60*(1 - 1/1.333) + 12*(1 - 1/1.5))) < 1e-12);
+}
+
+TEST_CASE("The origin lies on the axis, the direction is unit and goes into the scene", "[project]")
+{
+    const WindowKind kind = GENERATE(from_range(allWindows()));
+    CAPTURE(name(kind), seed());
+    Random random(kind);
+    const GlassWindow window = makeWindow(kind, random);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), window);
+    std::vector<Vec2d> pixels;
+    for (int i = 0; i < 1000; ++i)
+        pixels.push_back(Vec2d(random.uniform(0, 1280), random.uniform(0, 960)));
+    std::vector<Vec3d> origins, directions;
+    std::vector<uchar> status;
+    refractiveUnprojectPoints(pixels, origins, directions, camera, status);
+    for (size_t i = 0; i < pixels.size(); ++i)
+    {
+        if (status[i] != REFRACT_OK)
+        {
+            REQUIRE((kind == WATER_GLASS_AIR || kind == DOUBLE_GLAZING_IN_WATER));
+            REQUIRE(status[i] == REFRACT_TOTAL_REFLECTION);
+            continue;
+        }
+        REQUIRE(norm(origins[i].cross(window.normal)) < 1e-13*(1 + norm(origins[i])));
+        REQUIRE(std::abs(norm(directions[i]) - 1) < 1e-14);
+        REQUIRE(directions[i].dot(window.normal) > 0);
+    }
+}
+
+TEST_CASE("float32 in, float32 out, computed in double", "[project]")
+{
+    std::vector<Point3f> points = { { 1, 2, 300 }, { -30, 10, 400 }, { 0.1f, 0.7f, 5000 } };
+    std::vector<Vec3d> same;
+    for (const Point3f& p : points)
+        same.push_back(Vec3d(p.x, p.y, p.z));
+    Mat out32, out64;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), pane(), out32);
+    refractiveProjectPoints(same, Vec3d(), Vec3d(), K, noArray(), pane(), out64);
+    REQUIRE(out32.type() == CV_32FC2);
+    REQUIRE(out64.type() == CV_64FC2);
+    Mat rounded;
+    out64.convertTo(rounded, CV_32F);
+    CHECK(largestDifference(out32, rounded) == 0);
+}
+
+TEST_CASE("Bad pose arguments are named with their value", "[project]")
+{
+    const std::vector<Vec3d> points(1, Vec3d(0, 0, 100));
+    const auto project = [&](InputArray rvec, InputArray tvec)
+    {
+        std::vector<Vec2d> out;
+        return thrown([&] { refractiveProjectPoints(points, rvec, tvec, K, noArray(), pane(), out); });
+    };
+    CHECK(project(Vec3d(), Vec3d()) == "");
+    CHECK_THAT(project(Vec3d(0, NaN, 0), Vec3d()), Contains("rvec[1]") && Contains("nan"));
+    CHECK_THAT(project(Vec3d(), Vec3d(0, 0, INF)), Contains("tvec[2]") && Contains("inf"));
+    CHECK_THAT(project(Vec2d(1, 2), Vec3d()), Contains("rvec") && Contains("2x1"));
+    CHECK_THAT(project(Vec3d(), Vec4d()), Contains("tvec") && Contains("4x1"));
+    CHECK_THAT(project(Matx33d::eye()*2, Vec3d()), Contains("rvec is not a rotation"));
+    CHECK_THAT(project(Matx33d(1, 0, 0, 0, 1, 0, 0, 0, -1), Vec3d()), Contains("rvec is not a rotation"));
+}
+
+TEST_CASE("The jacobian against central differences of several steps", "[project]")
+{
+    const WindowKind kind = GENERATE(from_range(allWindows()));
+    CAPTURE(name(kind), seed());
+    Random random(kind);
+    for (const LensKind& lens : allLenses())
+    {
+        GlassWindow window = makeWindow(kind, random, 10);
+        // Room for the differences above index 1 and distance 0; all media denser alike: the same light paths.
+        window.innerIndex *= 1.01;
+        window.outerIndex *= 1.01;
+        for (double& n : window.index)
+            n *= 1.01;
+        window.distance += kind == NO_WINDOW ? 0 : 1;
+        const Ptr<RefractiveCamera> camera = makeCamera(lens, window);
+        const Vec3d rvec = random.vector(0.5), tvec = random.vector(30);
+        Matx33d R;
+        Rodrigues(rvec, R);
+        const double side = 0.3*std::tan(std::min(lens.halfField, 60.)*CV_PI/180);
+        const Vec3d inCamera = random.uniform(400, 800)*Vec3d(random.uniform(-side, side), random.uniform(-side, side), 1);
+        const Vec3d X = R.t()*(inCamera - tvec);
+        std::vector<Vec2d> pixel;
+        std::vector<uchar> status;
+        Mat J;
+        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, camera, pixel, status, J);
+        CAPTURE(lens.name, X);
+        REQUIRE(status[0] == REFRACT_OK);
+        const int lensCount = (int)camera->lensParameters().total(), layers = (int)window.thickness.size();
+        REQUIRE(J.size() == Size(6 + lensCount + 6 + 2*layers, 2));
+
+        const auto moved = [&](int column, double step)
+        {
+            Vec3d r = rvec, t = tvec;
+            Mat p = camera->lensParameters();
+            GlassWindow w = window;
+            const int c = column - 6 - lensCount;
+            if (column < 3) r[column] += step;
+            else if (column < 6) t[column - 3] += step;
+            else if (c < 0) p.at<double>(column - 6) += step;
+            else if (c < 3) w.normal[c] += step;
+            else if (c < 4) w.distance += step;
+            else if (c < 4 + layers) w.thickness[c - 4] += step;
+            else if (c < 4 + 2*layers) w.index[c - 4 - layers] += step;
+            else (c == 4 + 2*layers ? w.innerIndex : w.outerIndex) += step;
+            w.normal = normalize(w.normal);
+            const Ptr<RefractiveCamera> other = makeCamera(lens, w);
+            other->setLensParameters(p);
+            std::vector<Vec2d> out;
+            refractiveProjectPoints(std::vector<Vec3d>{ X }, r, t, other, out);
+            return out[0];
+        };
+        const int columns = kind == NO_WINDOW ? 6 + lensCount : J.cols;
+        for (int c = 0; c < columns; ++c)
+        {
+            const Vec2d analytic(J.at<double>(0, c), J.at<double>(1, c));
+            double best = INF;
+            for (double step : { 1e-3, 1e-4, 1e-5, 1e-6 })
+                best = std::min(best, norm((moved(c, step) - moved(c, -step))/(2*step) - analytic));
+            CAPTURE(c, analytic);
+            REQUIRE(best < 2e-6*(1 + 1e-2*norm(analytic)));
+        }
+        // The normal's three columns have no part along it: its length means nothing.
+        if (kind != NO_WINDOW)
+            for (int r = 0; r < 2; ++r)
+            {
+                const Vec3d row(J.ptr<double>(r) + 6 + lensCount);
+                CHECK(std::abs(row.dot(window.normal)) < 1e-11*(1 + norm(row)));
+            }
+    }
+}
+
+TEST_CASE("A transformed object is the object in camera coordinates", "[project]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (int i = 0; i < 200; ++i)
+    {
+        // Also at and near the half turn, where a rotation vector is hardest.
+        const Vec3d rvec = i == 0 ? Vec3d() : i == 1 ? Vec3d(0, CV_PI, 0) : i == 2 ? Vec3d(0, 0, CV_PI - 1e-9)
+                                    : i == 3 ? Vec3d(1e-9, -1e-10, 0) : random.vector(3);
+        const Vec3d inCamera(random.uniform(-100, 100), random.uniform(-100, 100), random.uniform(200, 900));
+        const Vec3d tvec = random.vector(100);
+        Matx33d R;
+        Rodrigues(rvec, R);
+        const Vec3d X = R.t()*(inCamera - tvec);
+        std::vector<Vec2d> a, b;
+        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, K, noArray(), pane(), a);
+        refractiveProjectPoints(std::vector<Vec3d>{ transformed(rvec, tvec, X) }, Vec3d(), Vec3d(), K, noArray(), pane(), b);
+        CAPTURE(rvec);
+        REQUIRE(norm(a[0] - b[0]) < 1e-9);
+    }
+}
