@@ -24,7 +24,10 @@ Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 
 } // namespace
 
-Rotation::Rotation(const double* rvec) : R(rotationMatrix(vec3(rvec), dR)) {}
+Rotation::Rotation(const double* rvec)
+{
+    R = rotationMatrix(vec3(rvec), dR);
+}
 
 Matx33d Rotation::derivativeOf(const Vec3d& v) const
 {

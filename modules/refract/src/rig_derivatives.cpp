@@ -14,7 +14,7 @@ Eigen::MatrixXd RigBlock::tangentBasis() const
     {
         Eigen::Matrix<double, 3, 2, Eigen::RowMajor> basis;
         ceres::SphereManifold<3>().PlusJacobian(values.data(), basis.data());
-        return basis;
+        return basis.colwise().normalized();    // radians; Ceres' scale differs between versions
     }
     Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, std::count(isFree.begin(), isFree.end(), true));
     for (int i = 0, column = 0; i < size; i++)

@@ -27,10 +27,14 @@ RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& vi
     if (observations <= unknowns)
         CV_Error_(Error::StsBadArg, ("%d points were observed, which give %d equations for %d unknowns; take more views",
                                      rig.pointCount(), observations, unknowns));
-    rig.solve(criteria);
+    const bool converged = rig.solve(criteria);
 
+    // First, as what is undetermined is also what does not converge.
     RigFit fit;
     eigen2cv(rigCovariance(rig), fit.covariance);
+    if (!converged)
+        CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
+                                     "what the views hardly determine", criteria.maxCount));
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     fit.perViewErrors = rmsPerView(rig, (int)cameras.size());
     if (wantsJacobian)

@@ -32,7 +32,7 @@ struct RigBlock
     std::vector<double> values;
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
 
-    //! d values / d free coordinates; a normal moves on the sphere.
+    //! d values / d free coordinates; orthonormal. A normal moves on the sphere.
     Eigen::MatrixXd tangentBasis() const;
     //! What a coordinate is called in messages.
     String nameOf(int coordinate) const;
@@ -50,8 +50,9 @@ public:
     RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
                const std::vector<Pose>& poses, int flags);
 
-    //! Throws StsNoConv, or StsBadArg that names a point without image at the start.
-    void solve(const TermCriteria& criteria);
+    /** False if the iterations that the criteria allow did not reach the change that they ask for. Throws StsBadArg that
+    names a point without image at the start, or StsNoConv. */
+    bool solve(const TermCriteria& criteria);
 
     int viewCount() const { return (int)poses_.size(); }
     bool isStereo() const { return cameras_.size() == 2; }

@@ -1,0 +1,136 @@
+#include "calibration_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+static Mat normalOf(const CalibrationScene& scene, const Ptr<RefractiveCamera>& camera)
+{
+    Mat normal;
+    calibrateGlassNormal(scene.direct, scene.refracted, camera, normal);
+    return normal;
+}
+
+TEST_CASE("The normal from perfect pairs is exact, whatever the window", "[calibrate_normal]")
+{
+    for (WindowKind kind : { PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS })
+    {
+        Random random(100 + kind);
+        CAPTURE(name(kind), seed());
+        const Ptr<RefractiveCamera> camera = paperCamera(makeWindow(kind, random));
+        const CalibrationScene scene = makeScene(camera, 2, random, 0);
+        Mat normal, centre, covariance;
+        const double rms = calibrateGlassNormal(scene.direct, scene.refracted, camera, normal, centre, covariance);
+        CHECK(rms < 1e-8);
+        CHECK(angleBetween(normal, camera->window().normal) < 1e-6);
+        const Matx33d K = camera->cameraMatrix();
+        const Vec3d n = camera->window().normal;
+        CHECK(std::abs(centre.at<double>(0) - (K(0, 2) + K(0, 0)*n[0]/n[2])) < 1e-4);
+        CHECK(std::abs(centre.at<double>(1) - (K(1, 2) + K(1, 1)*n[1]/n[2])) < 1e-4);
+        CHECK(covariance.size() == Size(3, 3));
+    }
+}
+
+TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_normal]")
+{
+    Random random(110);
+    GlassWindow window = paperWindow();
+    window.normal = normalize(Vec3d(1, 0.2, 0.02));     // 89 degrees: no such window could be looked through at length
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(allLenses()[7].K, allLenses()[7].coefficients,
+                                                                         window);
+    std::vector<Point2d> direct, refracted;
+    std::vector<Point3d> points;
+    for (int i = 0; i < 40; i++)
+        points.push_back({ random.uniform(300, 600), random.uniform(-200, 200), random.uniform(200, 500) });
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, refracted);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::createFisheye(
+                            allLenses()[7].K, allLenses()[7].coefficients), direct);
+    Mat normal;
+    calibrateGlassNormal(std::vector<std::vector<Point2d> >(1, direct), std::vector<std::vector<Point2d> >(1, refracted),
+                         camera, normal);
+    CHECK(angleBetween(normal, window.normal) < 1e-6);
+}
+
+TEST_CASE("The RMS of the lines is the pixel noise, the covariance is the sampled one", "[calibrate_normal]")
+{
+    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Vec3d truth = camera->window().normal;
+    const double sigma = 0.1;
+    const int runs = 300;
+    double squares = 0, mahalanobis = 0;
+    for (int run = 0; run < runs; run++)
+    {
+        Random random(1000 + run);
+        const CalibrationScene scene = makeScene(camera, 3, random, sigma);
+        Mat normal, covariance;
+        const double rms = calibrateGlassNormal(scene.direct, scene.refracted, camera, normal, noArray(), covariance);
+        squares += rms*rms/runs;
+        Mat inverse;
+        invert(covariance, inverse, DECOMP_SVD);
+        const Mat error = normal - Mat(truth);
+        mahalanobis += Mat(error.t()*inverse*error).at<double>(0)/runs;
+    }
+    CAPTURE(squares, mahalanobis, seed());
+    CHECK(std::sqrt(squares) == Approx(sigma).epsilon(0.03));
+    CHECK(mahalanobis == Approx(2).epsilon(0.2));       // chi^2 with two degrees of freedom
+}
+
+TEST_CASE("Pairs with NaN are left out, overloads and types agree", "[calibrate_normal]")
+{
+    Random random(120);
+    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    CalibrationScene scene = makeScene(camera, 2, random, 0.1);
+    const Mat whole = normalOf(scene, camera);
+
+    Mat byMatrices;
+    calibrateGlassNormal(scene.direct, scene.refracted, camera->cameraMatrix(), camera->distCoeffs(), byMatrices);
+    CHECK(largestDifference(whole, byMatrices) == 0);
+
+    std::vector<Mat> direct, refracted;
+    for (size_t i = 0; i < scene.direct.size(); i++)
+    {
+        direct.push_back(Mat(scene.direct[i]).reshape(1));
+        Mat(scene.refracted[i]).convertTo(byMatrices, CV_32F);
+        refracted.push_back(byMatrices.clone());
+    }
+    Vec3d asVector;
+    calibrateGlassNormal(direct, refracted, camera, asVector);
+    CHECK(angleBetween(asVector, whole) < 1e-3);
+
+    CalibrationScene less = scene;
+    less.direct[0].erase(less.direct[0].begin() + 3);
+    less.refracted[0].erase(less.refracted[0].begin() + 3);
+    scene.direct[0][3].x = NaN;
+    CHECK(largestDifference(normalOf(less, camera), normalOf(scene, camera)) < 1e-14);
+}
+
+TEST_CASE("Pairs that do not determine the normal are refused", "[calibrate_normal]")
+{
+    Random random(130);
+    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const CalibrationScene scene = makeScene(camera, 2, random, 0.1);
+    const auto why = [&](const PixelViews& direct, const PixelViews& refracted)
+    { return thrown([&] { Mat normal; calibrateGlassNormal(direct, refracted, camera, normal); }); };
+
+    CHECK_THAT(why(scene.direct, scene.direct), Catch::Contains("no point moves"));
+    CHECK_THAT(why({}, {}), Catch::Contains("at least 2"));
+    CHECK_THAT(why({ { scene.direct[0][0] } }, { { scene.refracted[0][0] } }), Catch::Contains("at least 2"));
+    CHECK_THAT(why({ { { NaN, 1 }, { 2, 3 } } }, { { { 4, 5 }, { 6, 7 } } }), Catch::Contains("at least 2"));
+    CHECK_THAT(why(scene.direct, { scene.refracted[0] }), Catch::Contains("imagePointsDirect has 2 views"));
+    PixelViews shorter = scene.refracted;
+    shorter[1].pop_back();
+    CHECK_THAT(why(scene.direct, shorter), Catch::Contains("imagePointsRefracted[1] 29"));
+    CHECK_THAT(thrown([&] { Mat normal; calibrateGlassNormal(scene.direct[0], scene.refracted[0], camera, normal); }),
+               Catch::Contains("imagePointsDirect is one array"));
+
+    // the same point twice: one line
+    CHECK_THAT(why({ { scene.direct[0][0], scene.direct[0][0] } }, { { scene.refracted[0][0], scene.refracted[0][0] } }),
+               Catch::Contains("one and the same line"));
+
+    // no window between the two images, only noise
+    PixelViews noisy = scene.direct;
+    for (std::vector<Point2d>& view : noisy)
+        for (Point2d& p : view)
+            p += Point2d(random.normal(0.1), random.normal(0.1));
+    CHECK_THAT(why(scene.direct, noisy), Catch::Contains("undetermined"));
+}
