@@ -29,10 +29,13 @@ const double LEAST_SIGMA = 0.01;
 
 struct FreeParameter
 {
+    const RigBlock* block;
+    int coordinate;
     String name;
-    double value;
     double hopeless;        //!< a standard deviation beyond this is no answer
-    RigBlock::Kind kind;
+
+    double value() const { return block->values[coordinate]; }
+    bool isNumber() const { return block->kind == RigBlock::LENS || block->kind == RigBlock::MEDIA; }
 };
 
 double meanRange(const RigProblem& rig)
@@ -56,12 +59,12 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
             p.name = block.nameOf(i);
             if (rig.isStereo() && block.kind != RigBlock::EXTRINSICS)
                 p.name += format(" of camera %d", block.camera + 1);
-            p.kind = block.kind;
-            p.value = block.values[i];
+            p.block = &block;
+            p.coordinate = i;
             const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
             const bool isLength = block.kind == RigBlock::MEDIA ? i == 0 : block.kind == RigBlock::EXTRINSICS && i >= 3;
             p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
-                block.kind == RigBlock::MEDIA || i < 2 ? p.value : infinity;
+                block.kind == RigBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);
         }
     return parameters;
@@ -133,46 +136,57 @@ Information informationOf(const RigProblem& rig)
     return information;
 }
 
-//! The parameters that move along a direction, as words with their values; the normal's two angles are one parameter.
-String wordsFor(const std::vector<FreeParameter>& parameters, const VectorXd& direction, const VectorXd& sigma)
+/** Throws, naming the parameters that take part in what is undetermined.
+@param part of each parameter
+@param dimension of what is undetermined
+@param sigma standard deviations; may be empty */
+void refuse(const std::vector<FreeParameter>& parameters, const VectorXd& part, int dimension, const VectorXd& sigma)
 {
     std::vector<String> words;
+    String hint;
     for (int i = 0; i < (int)parameters.size(); i++)
     {
         const FreeParameter& p = parameters[i];
-        if (std::abs(direction[i]) < 0.2*direction.cwiseAbs().maxCoeff())
+        const auto takesPart = [&](int j) { return part[j] >= 0.2*part.maxCoeff(); };
+        if (!takesPart(i))
             continue;
-        String word = p.kind == RigBlock::NORMAL || p.kind == RigBlock::EXTRINSICS ? p.name :
-            format("%s = %.4g", p.name.c_str(), p.value);
-        if (sigma.size() > 0 && p.kind != RigBlock::NORMAL && p.kind != RigBlock::EXTRINSICS)
+        String word = p.name;
+        if (p.isNumber())
+            word += format(" = %.4g", p.value());
+        if (p.isNumber() && sigma.size() > 0)
             word += format(" +- %.2g", sigma[i]);
-        if (std::find(words.begin(), words.end(), word) == words.end())
+        if (std::find(words.begin(), words.end(), word) == words.end())     // two angles of one normal
             words.push_back(word);
+        const std::vector<double>& values = p.block->values;
+        const int layers = ((int)values.size() - 3)/2;
+        for (int j = i + 1; j < (int)parameters.size(); j++)
+            if (p.block->kind == RigBlock::MEDIA && p.coordinate > 0 && parameters[j].block == p.block &&
+                parameters[j].coordinate == p.coordinate + layers && takesPart(j))
+                hint += format("; at small angles only thickness (1 - outerIndex/index) = %.4g shows",
+                               p.value()*(1 - values.back()/parameters[j].value()));
     }
     String text;
     for (size_t i = 0; i < words.size(); i++)
         text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
-    return words.size() > 1 ? text + "; only a combination of them is determined" : text;
-}
-
-void refuse(const String& words)
-{
+    if ((int)words.size() > dimension)
+        text += hint.empty() ? String("; only a combination of them shows") : hint;
     CV_Error_(Error::StsNoConv, ("the views do not determine %s. Fix what is known otherwise, or add views: pairs without "
-                                 "and with the window, more tilt, more depth", words.c_str()));
+                                 "and with the window, more tilt, more depth", text.c_str()));
 }
 
-//! Singular values and vectors of the information, each parameter scaled by its own effect.
+//! Covariance of the free parameters; refuses if a direction is lost or a standard deviation is no answer.
 MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>& parameters, double variance)
 {
     const Information information = informationOf(rig);
     for (int i = 0; i < (int)parameters.size(); i++)
         if (!(information.effect[i] > 0))
-            refuse(wordsFor(parameters, VectorXd::Unit(parameters.size(), i), VectorXd()));
+            refuse(parameters, VectorXd::Unit(parameters.size(), i), 1, VectorXd());
 
     const VectorXd scale = information.effect.cwiseInverse();
     const Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeFullV);
-    if (svd.singularValues().minCoeff() < SINGULAR)
-        refuse(wordsFor(parameters, svd.matrixV().rightCols<1>(), VectorXd()));
+    const int undetermined = (int)(svd.singularValues().array() < SINGULAR).count();
+    if (undetermined > 0)
+        refuse(parameters, svd.matrixV().rightCols(undetermined).rowwise().norm(), undetermined, VectorXd());
     const MatrixXd half = scale.asDiagonal()*svd.matrixV()*svd.singularValues().cwiseInverse().asDiagonal();
 
     const double floor = std::max(variance, LEAST_SIGMA*LEAST_SIGMA);
@@ -183,7 +197,7 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
     if ((sigma.cwiseProduct(inverseLimit)).maxCoeff() > 1)
     {
         const Eigen::JacobiSVD<MatrixXd> worst(inverseLimit.asDiagonal()*half, Eigen::ComputeFullU);
-        refuse(wordsFor(parameters, worst.matrixU().leftCols<1>(), sigma));
+        refuse(parameters, worst.matrixU().col(0).cwiseAbs(), 1, sigma);
     }
     return variance*half*half.transpose();
 }
