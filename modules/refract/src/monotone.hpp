@@ -31,9 +31,13 @@ double invertMonotone(const F& f, double target, double upper)
         if (!(next > low && next < high))       // Newton left the bracket: bisect it, or widen it
             next = std::isfinite(high) ? 0.5*(low + high) : 4*std::max(low, 1.);
         if (std::abs(next - x) <= 2*DBL_EPSILON*x)
-            // At the end of the range the sequence creeps up to `upper` without reaching the target.
-            return std::abs(f(next, slope) - target) <= 1e-13*(1 + target) ? next
-                                                        : std::numeric_limits<double>::quiet_NaN();
+        {
+            // At the end of the range the sequence creeps up to `upper` without reaching the target. Next to a pole a
+            // rounding of x alone moves f by slope * x.
+            const double miss = std::abs(f(next, slope) - target);
+            return miss <= 1e-13*(1 + target) + 4*DBL_EPSILON*slope*next ? next
+                                                                         : std::numeric_limits<double>::quiet_NaN();
+        }
         if (error < 0 && next > 1e8)            // f is bounded below the target
             break;
         x = next;
