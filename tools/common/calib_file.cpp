@@ -55,17 +55,26 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
         fs << "rms" << calibration.rms;
 }
 
+//! An OpenCV matrix or a plain list of numbers; empty if it is neither or not finite.
+cv::Mat readMatrix(const FileNode& node)
+{
+    cv::Mat matrix;
+    if (node.isSeq())
+        matrix = cv::Mat(readList(node), true);
+    else if (node.isMap())
+        node >> matrix;
+    if (matrix.channels() != 1 || !cv::checkRange(matrix))
+        return cv::Mat();
+    matrix.convertTo(matrix, CV_64F);
+    return matrix;
+}
+
 //! R and T of a file of two cameras.
 void readRigid(const FileStorage& fs, const std::string& filename, Calibration& calibration)
 {
-    cv::Mat R, T;
-    fs["R"] >> R;
-    fs["T"] >> T;
-    if (R.size() != cv::Size(3, 3) || R.channels() != 1 || T.total() != 3 || T.channels() != 1 || !cv::checkRange(R)
-        || !cv::checkRange(T))
+    const cv::Mat R = readMatrix(fs["R"]), T = readMatrix(fs["T"]);
+    if (R.total() != 9 || T.total() != 3)
         throw Failure("'" + filename + "' has two cameras but no 3x3 R and no T of 3 numbers beside them");
-    R.convertTo(R, CV_64F);
-    T.convertTo(T, CV_64F);
     calibration.R = cv::Matx33d(R.ptr<double>());
     calibration.T = cv::Vec3d(T.ptr<double>());
     if (cv::norm(calibration.R * calibration.R.t() - cv::Matx33d::eye()) > 1e-6)
@@ -127,7 +136,7 @@ Calibration readCalibration(const std::string& filename)
         readRigid(fs, filename, calibration);
     }
     calibration.rms = readNumber(fs["rms"], -1.);
-    fs["covariance"] >> calibration.covariance;
+    calibration.covariance = readMatrix(fs["covariance"]);
     if (fs["command"].isString())
         fs["command"] >> calibration.command;
     return calibration;
