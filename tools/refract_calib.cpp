@@ -74,7 +74,10 @@ Options parseOptions(Command& command)
     app.add_option("--free", o.free, "What to estimate beside the normal")->delimiter(',')
         ->check(CLI::IsMember(namesOf(FREE)));
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_flag("--unpaired", o.unpaired, "Equal names are no pairs (a hand-held board)");
+    CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "Equal names are no pairs (a hand-held board)");
+    app.add_flag("--partial", o.target.partial, "A chessboard that may be partly out of view, or is cut at its edge: any piece "
+        "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
+        ->needs(unpaired)->excludes(glass2);
     app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
     app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--report", o.report, "HTML page to judge the calibration by (needs gnuplot)");

@@ -1,5 +1,6 @@
 #include "target.hpp"
 #include "charuco.hpp"
+#include "partial_chessboard.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
@@ -27,22 +28,32 @@ std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
     return std::vector<Point2d>(points.begin(), points.end());
 }
 
-/* The sector-based detector is the more accurate and the more tolerant of blur; the older one still finds boards that
-touch the image's edge or stand among clutter. */
-std::vector<Point2d> detectChessboard(const Mat& grey, Size size)
+/* To sub-pixels by the gradients' orthogonality. The window must not reach the next corner. Smoothing first, as the
+gradients of a sharp, noisy image are wrong between pixels: on rendered boards (blur 0.7 px, noise 1.5 of 170 grey levels)
+the error is 0.013 px per axis, without smoothing 0.020, and 0.022 (with outliers of 0.14) by the accurate mode of
+findChessboardCornersSB. */
+void refine(const Mat& grey, std::vector<Point2f>& corners)
 {
-    std::vector<Point2f> corners;
-    if (cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY))
-        return toDouble(corners);
-    if (!cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE
-                                                        | cv::CALIB_CB_FAST_CHECK))
-        return {};
-    double smallest = std::numeric_limits<double>::max();   // the refinement must not reach the next corner
+    double smallest = std::numeric_limits<double>::max();
     for (size_t i = 1; i < corners.size(); ++i)
         smallest = std::min(smallest, cv::norm(corners[i] - corners[i - 1]));
     const int half = std::max(2, std::min(11, cvFloor(0.35 * smallest)));
-    cv::cornerSubPix(grey, corners, Size(half, half), Size(-1, -1),
+    Mat smooth;
+    cv::GaussianBlur(grey, smooth, Size(), std::min(1., 0.02 * smallest));
+    cv::cornerSubPix(smooth, corners, Size(half, half), Size(-1, -1),
                      cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-4));
+}
+
+/* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
+finds some boards among clutter. */
+std::vector<Point2d> detectChessboard(const Mat& grey, Size size)
+{
+    std::vector<Point2f> corners;
+    if (!cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE)
+        && !cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE
+                                                           | cv::CALIB_CB_FAST_CHECK))
+        return {};
+    refine(grey, corners);
     return toDouble(corners);
 }
 
@@ -112,7 +123,7 @@ void TargetOptions::addTo(CLI::App& app, bool required)
 
 Target::Target(const TargetOptions& options)
     : pattern_(CHESSBOARD), size_(parseSize(options.size, "--size")), square_(options.square),
-      marker_(options.marker), dictionary_(0)
+      marker_(options.marker), dictionary_(0), partial_(options.partial)
 {
     const auto found = PATTERNS.find(options.pattern);
     if (found == PATTERNS.end())
@@ -120,7 +131,9 @@ Target::Target(const TargetOptions& options)
     pattern_ = found->second;
     if (!(square_ > 0) || !std::isfinite(square_))
         throw Failure("--square: give the length of a square's side, more than 0");
-    const int least = pattern_ == CHESSBOARD ? 3 : 2;   // what the detectors need
+    if (partial_ && pattern_ != CHESSBOARD)
+        throw Failure("--partial is for --pattern=chessboard; a ChArUco target may be partly in view as it is");
+    const int least = partial_ ? 5 : pattern_ == CHESSBOARD ? 3 : 2;   // what the detectors need
     if (std::min(size_.width, size_.height) < least || size_.area() > 100000)
         throw Failure("--size=" + options.size + ": a target of at least " + std::to_string(least) + "x"
                       + std::to_string(least) + " points is needed, and no more than 100000 in all");
@@ -155,9 +168,13 @@ std::vector<Point2d> Target::detect(const Mat& grey) const
 {
     if (pattern_ == CHARUCO)
         return detectCharuco(grey, size_, square_, marker_, dictionary_);
+    if (partial_)
+        return detectPartialChessboard(grey, size_);
     const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_)
                                                                : detectCircles(grey, size_, pattern_ == ACIRCLES);
-    return points.empty() ? points : canonical(points, grey);
+    // A detector that has skipped corners has not found the target.
+    return points.empty() || (pattern_ == CHESSBOARD && !isEvenGrid(points, size_)) ? std::vector<Point2d>()
+                                                                                     : canonical(points, grey);
 }
 
 std::vector<std::vector<int>> Target::symmetries() const

@@ -14,6 +14,7 @@ struct TargetOptions
     double square = 0.;
     double marker = 0.;                         //!< ChArUco: side of a marker; 0 = 3/4 of a square
     std::string dictionary = "DICT_4X4_250";    //!< ChArUco
+    bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
 
     bool given() const { return !size.empty(); }
     void addTo(CLI::App& app, bool required);
@@ -58,6 +59,7 @@ private:
     cv::Size size_;
     double square_, marker_;
     int dictionary_;
+    bool partial_;
     std::vector<cv::Point3d> objectPoints_;
 };
 

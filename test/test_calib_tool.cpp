@@ -1,0 +1,386 @@
+// refract_calib as a user runs it: on corners files with known truth, on wrong input, on real images.
+#include "run_tool.hpp"
+#include "scenes.hpp"
+#include <opencv2/calib3d.hpp>
+#include <iomanip>
+#include <sstream>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace {
+
+const double SIGMA = 0.1;
+const Size IMAGE(1280, 1024), BOARD(6, 5);
+const double SQUARE = 39.;
+const char* const TARGET = " --pattern=chessboard --size=6x5 --square=39 --image-size=1280x1024";
+
+//! The paper's rig (Table 3): two cameras, each behind a pane of its own.
+struct PaperRig
+{
+    Mat K[2] = {Mat(Matx33d(2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1)),
+                Mat(Matx33d(2437.50, 0, 640.00, 0, 2437.60, 510.00, 0, 0, 1))};
+    Mat dist = (Mat_<double>(1, 4) << -0.4082, 0.4359, 0, 0);
+    Vec3d normal[2] = {normalize(Vec3d(-0.2483, 0.0961, 1)), normalize(Vec3d(0.1823, -0.2809, 1))};
+    Vec3d rvec{0.02, 0.35, 0.01}, T{-220, 5, 40};
+
+    GlassWindow window(int camera) const { return GlassWindow(normal[camera], 20., 1.5437, 50.); }
+};
+
+struct SceneOptions
+{
+    int moments = 10;
+    bool direct = true, stereo = false;
+    double missing = 0.;                            // share of corners that are not seen
+    std::function<GlassWindow(int)> window;         // default: the rig's
+};
+
+//! Writes direct1.vnl, glass1.vnl (, direct2.vnl, glass2.vnl) and camera1.yml, camera2.yml into a folder.
+void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsigned salt)
+{
+    const PaperRig rig;
+    scenes::Random random(salt);
+    std::vector<Point3d> object;
+    for (int row = 0; row < BOARD.height; row++)
+        for (int column = 0; column < BOARD.width; column++)
+            object.emplace_back(SQUARE * column, SQUARE * row, 0);
+    std::ostringstream files[2][2];
+    for (int m = 0; m < options.moments; m++)
+    {
+        const Vec3d rvec = random.vector(0.4);
+        Matx33d board, R;
+        Rodrigues(rvec, board);
+        const Vec3d middle(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        const Vec3d tvec = middle - board * Vec3d(2.5 * SQUARE, 2 * SQUARE, 0);
+        for (int c = 0; c < (options.stereo ? 2 : 1); c++)
+        {
+            Vec3d rvecC = rvec, tvecC = tvec;
+            if (c == 1)
+                composeRT(rvec, tvec, rig.rvec, rig.T, rvecC, tvecC);
+            for (int through = 0; through < 2; through++)
+            {
+                if (!through && !options.direct)
+                    continue;
+                const GlassWindow window = !through ? GlassWindow() : options.window ? options.window(c) : rig.window(c);
+                std::vector<Point2d> pixels;
+                refractiveProjectPoints(object, rvecC, tvecC, rig.K[c], rig.dist, window, pixels);
+                std::ostringstream& file = files[c][through];
+                for (const Point2d& p : pixels)
+                {
+                    file << (through ? "glass" : "direct") << c + 1 << "/view" << std::setfill('0') << std::setw(2) << m << ".png ";
+                    const Point2d seen(p.x + random.normal(SIGMA), p.y + random.normal(SIGMA));
+                    if (random.uniform(0, 1) < options.missing || !Rect2d(0, 0, IMAGE.width, IMAGE.height).contains(seen))
+                        file << "- - -\n";
+                    else
+                        file << std::setprecision(10) << seen.x << ' ' << seen.y << " 0\n";
+                }
+            }
+        }
+    }
+    for (int c = 0; c < 2; c++)
+    {
+        for (int through = 0; through < 2; through++)
+            std::ofstream(folder / format("%s%d.vnl", through ? "glass" : "direct", c + 1))
+                << "# filename x y level\n" << files[c][through].str();
+        FileStorage out(folder / format("camera%d.yml", c + 1), FileStorage::WRITE);
+        out << "camera_matrix" << rig.K[c] << "distortion_coefficients" << rig.dist
+            << "image_width" << IMAGE.width << "image_height" << IMAGE.height;
+    }
+}
+
+std::string inputs(const TemporaryFolder& f, const std::string& more = "", bool direct = true)
+{
+    return std::string("refract_calib") + TARGET + (direct ? " --direct=" + f / "direct1.vnl" : "") + " --glass="
+        + f / "glass1.vnl" + " --out=" + f / "calib.yml" + ' ' + more;
+}
+
+std::string stereoInputs(const TemporaryFolder& f, const std::string& more)
+{
+    return inputs(f, " --direct2=" + f / "direct2.vnl" + " --glass2=" + f / "glass2.vnl" + ' ' + more);
+}
+
+std::string lens(const TemporaryFolder& f) { return " --camera=" + f / "camera1.yml"; }
+
+double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)) * 180 / CV_PI; }
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const char* const PANE = " --thickness=20 --index=1.5437";
+
+} // namespace
+
+TEST_CASE("refract_calib finds the normal from pairs and says how well", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 101);
+    const ToolResult r = runTool(inputs(f, PANE + lens(f)));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+
+    const FileStorage file(f / "calib.yml", FileStorage::READ);
+    GlassWindow window;
+    file["glass_window"] >> window;
+    std::vector<double> std;
+    file["glass_window_std"]["normal_deg"] >> std;
+    REQUIRE(std.size() == 2);
+    CHECK(std[0] == Approx(0.0165).epsilon(0.6));       // physics: 0.016 for ten pairs
+    CHECK(degreesBetween(window.normal, PaperRig().normal[0]) < 4 * std[0]);
+    CHECK(window.thickness == std::vector<double>{20.});
+    CHECK(window.index == std::vector<double>{1.5437});
+    CHECK((double)file["rms"] == Approx(SIGMA * std::sqrt(2.)).epsilon(0.15));
+    CHECK((int)file["image_width"] == IMAGE.width);
+    CHECK((std::string)file["lens_model"] == "opencv");
+    CHECK(file["covariance"].isMap());
+    CHECK(mentions((std::string)file["command"], "--thickness=20"));
+
+    CHECK(mentions(r.out, "+-"));
+    CHECK(mentions(r.out, "pinhole through glass"));
+    CHECK(mentions(r.out, "The data cannot tell"));
+    CHECK(r.err.empty());
+}
+
+TEST_CASE("refract_calib takes the lens from the direct images and lives with missing corners", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 14;
+    options.missing = 0.15;
+    writeScene(f, options, 102);
+    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml");
+    CHECK(degreesBetween(camera->window().normal, PaperRig().normal[0]) < 0.1);
+    CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.01));
+}
+
+TEST_CASE("refract_calib ends with 2 if a limit is not met, and still writes the file", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 103);
+    const ToolResult rms = runTool(inputs(f, PANE + lens(f) + " --max-rms=0.01"));
+    CHECK(rms.code == 2);
+    CHECK(mentions(rms.err, "--max-rms"));
+    CHECK(std::filesystem::exists(f / "calib.yml"));
+    const ToolResult normal = runTool(inputs(f, PANE + lens(f) + " --max-normal-std=0.001 --quiet"));
+    CHECK(normal.code == 2);
+    CHECK(mentions(normal.err, "--max-normal-std"));
+    CHECK(normal.out.empty());
+    CHECK(runTool(inputs(f, PANE + lens(f) + " --max-rms=0.2 --max-normal-std=0.1")).code == 0);
+}
+
+TEST_CASE("refract_calib says what glass-only views cannot tell", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 104);
+    const ToolResult r = runTool(inputs(f, PANE + lens(f), false));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "30 to 90 times"));
+    const FileStorage file(f / "calib.yml", FileStorage::READ);
+    std::vector<double> std;
+    file["glass_window_std"]["normal_deg"] >> std;
+    CHECK(std[0] > 0.2);                                // physics: 0.5
+
+    // Equal names that mean nothing are glass-only views too.
+    const ToolResult unpaired = runTool(inputs(f, std::string(PANE) + " --unpaired --lens=opencv4"));
+    INFO(unpaired.out << unpaired.err);
+    CHECK(unpaired.code == 0);
+    CHECK(mentions(unpaired.out, "30 to 90 times"));
+}
+
+TEST_CASE("refract_calib warns that thickness and index are tied", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 105);
+    const ToolResult r = runTool(inputs(f, PANE + lens(f) + " --free=thickness,index"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "thickness and index apart: their correlation is"));
+}
+
+TEST_CASE("refract_calib finds the distance of a water surface", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.window = [](int) {
+        GlassWindow water;
+        water.normal = normalize(Vec3d(0.05, -0.08, 1));
+        water.outerIndex = 1.333;
+        water.distance = 150.;
+        return water;
+    };
+    writeScene(f, options, 106);
+    const ToolResult r = runTool(inputs(f, " --outer-index=1.333" + lens(f)));     // not given, so estimated
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const GlassWindow window = RefractiveCamera::read(f / "calib.yml")->window();
+    CHECK(window.distance == Approx(150.).margin(1.));
+    CHECK(degreesBetween(window.normal, normalize(Vec3d(0.05, -0.08, 1))) < 0.1);
+}
+
+TEST_CASE("refract_calib calibrates a stereo rig with a window for each camera", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.stereo = true;
+    writeScene(f, options, 107);
+    const ToolResult r = runTool(stereoInputs(f, PANE + lens(f) + " --camera2=" + f / "camera2.yml"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const FileStorage file(f / "calib.yml", FileStorage::READ);
+    Mat R, T, rvec;
+    file["R"] >> R;
+    file["T"] >> T;
+    Rodrigues(R, rvec);
+    CHECK(norm(rvec, Mat(PaperRig().rvec)) < 1e-3);
+    CHECK(norm(T.reshape(1, 3), Mat(PaperRig().T)) < 0.3);
+    for (int c = 0; c < 2; c++)
+    {
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml", format("camera%d", c + 1));
+        CHECK(degreesBetween(camera->window().normal, PaperRig().normal[c]) < 0.06);
+    }
+}
+
+TEST_CASE("refract_calib calibrates two cameras behind one pane", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    const PaperRig rig;
+    Matx33d R;
+    Rodrigues(rig.rvec, R);
+    SceneOptions options;
+    options.stereo = true;
+    options.window = [&](int c) {       // the same plane, seen from camera 2
+        GlassWindow window(rig.normal[0], 20., 1.5437, 100.);
+        if (c == 1)
+        {
+            window.normal = R * rig.normal[0];
+            window.distance = 100. + window.normal.dot(rig.T);
+        }
+        return window;
+    };
+    writeScene(f, options, 108);
+    const ToolResult r = runTool(stereoInputs(f, PANE + lens(f) + " --camera2=" + f / "camera2.yml"
+                                                 + " --shared-window --distance=100"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    for (int c = 0; c < 2; c++)
+    {
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml", format("camera%d", c + 1));
+        CHECK(degreesBetween(camera->window().normal, options.window(c).normal) < 0.06);
+        CHECK(camera->window().distance == Approx(options.window(c).distance).margin(1.));
+    }
+}
+
+TEST_CASE("refract_calib refines the lens with --free=intrinsics", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 14;
+    writeScene(f, options, 109);
+    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4 --free=intrinsics"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml");
+    CHECK(degreesBetween(camera->window().normal, PaperRig().normal[0]) < 0.1);
+    CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
+}
+
+TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 110);
+    std::ofstream(f / "empty.vnl");
+    std::ofstream(f / "random.yml") << "\x01\x02 this is no calibration";
+    std::ofstream(f / "cut.png") << "\x89PNG\r\n";
+    const size_t before = f.count();
+    const struct { std::string command, says; } cases[] = {
+        {"refract_calib", "--size"},
+        {inputs(f, lens(f)), "--thickness"},
+        {inputs(f, PANE + lens(f) + " --free=distance"), "no effect"},
+        {inputs(f, lens(f) + " --thickness=20"), "--index"},
+        {inputs(f, lens(f) + " --thickness=20,5 --index=1.5"), "--index"},
+        {inputs(f, lens(f) + " --thickness=-20 --index=1.5"), "thickness"},
+        {inputs(f, lens(f) + " --thickness=20 --index=0.5"), "index"},
+        {inputs(f, lens(f) + " --thickness=x --index=1.5"), "--thickness"},
+        {inputs(f, lens(f) + PANE + " --free=colour"), "--free"},
+        {inputs(f, lens(f) + " --outer-index=1.333 --free=thickness"), "--free=thickness"},
+        {inputs(f, std::string(PANE), false), "--direct"},
+        {inputs(f, PANE + std::string(" --camera=") + f / "random.yml"), "random.yml"},
+        {inputs(f, PANE + std::string(" --camera=") + f / "none.yml"), "none.yml"},
+        {inputs(f, PANE + lens(f) + " --direct2=" + f / "direct1.vnl"), "--glass2"},
+        {inputs(f, PANE + lens(f) + " --shared-window"), "--glass2"},
+        {inputs(f, PANE + lens(f) + " --partial"), "--unpaired"},
+        {"refract_calib --size=6x5 --square=39 --glass=" + f / "none-*.png" + " --out=" + f / "calib.yml" + PANE, "none-"},
+        {"refract_calib --size=6x5 --square=39 --glass=" + f / "cut.png" + " --out=" + f / "calib.yml" + PANE, "cut.png"},
+        {"refract_calib --size=6x5 --square=39 --glass=" + f / "glass1.vnl" + " --out=" + f / "calib.yml" + PANE, "--image-size"},
+        {std::string("refract_calib") + TARGET + " --glass=" + f / "empty.vnl" + " --out=" + f / "calib.yml" + PANE, "empty.vnl"},
+        {std::string("refract_calib --size=7x5 --square=39 --image-size=1280x1024 --glass=") + f / "glass1.vnl" + " --out="
+            + f / "calib.yml" + PANE + lens(f), "glass1.vnl"},
+        {std::string("refract_calib --size=6x5 --square=39 --image-size=640x480 --glass=") + f / "glass1.vnl" + " --out="
+            + f / "calib.yml" + PANE + lens(f), "640x480"},
+    };
+    for (const auto& c : cases)
+    {
+        const ToolResult r = runTool(c.command);
+        INFO(c.command << "\n" << r.out << r.err);
+        CHECK(r.code == 1);
+        CHECK(mentions(r.err, c.says));
+        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        CHECK(f.count() == before);
+    }
+    const ToolResult r = runTool("refract_calib" + std::string(TARGET) + " --direct=" + f / "direct1.vnl" + " --glass="
+                                 + f / "glass1.vnl" + PANE + lens(f) + " --out=" + f / "no/folder/calib.yml");
+    CHECK(r.code == 1);
+    CHECK(mentions(r.err, "no/folder"));
+}
+
+TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 6;
+    writeScene(f, options, 111);
+    const ToolResult without = runTool(inputs(f, PANE + lens(f) + " --report=" + f / "report.html"), "PATH=/nonexistent");
+    CHECK(without.code == 1);
+    CHECK(mentions(without.err, "gnuplot-nox"));
+    CHECK_FALSE(std::filesystem::exists(f / "calib.yml"));
+
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    {
+        WARN("SKIPPED: gnuplot is not installed");
+        return;
+    }
+    const ToolResult r = runTool(inputs(f, PANE + lens(f) + " --report=" + f / "report.html"));
+    INFO(r.err);
+    REQUIRE(r.code == 0);
+    const std::string page = readFile(f / "report.html");
+    CHECK(mentions(page, "</html>"));
+    CHECK(mentions(page, "What the data cannot tell"));
+    CHECK(mentions(page, "--thickness=20"));
+    size_t pictures = 0;
+    for (size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1))
+        pictures++;
+    CHECK(pictures == 9);
+    for (const char* outside : {"src=\"http", "href=\"http", "<script", "url(http", "@import", "{{"})
+        CHECK_FALSE(mentions(page, outside));
+}
+
+TEST_CASE("refract_calib on real images in air and water", "[calib_tool][real]")
+{
+    const std::string data = REFRACT_DATA_DIR "/ouc_laser3d";
+    if (!std::filesystem::exists(data))
+    {
+        WARN("SKIPPED: " << data << " is absent");
+        return;
+    }
+    const TemporaryFolder f;
+    const ToolResult r = runTool("refract_calib --size=8x7 --partial --square=33.8 --direct='" + data + "/air/*.png' "
+        "--glass='" + data + "/water/*.png' --unpaired --outer-index=1.333 --free=distance --max-rms=0.30 --out="
+        + f / "calib.yml");
+    INFO(r.out << r.err);
+    CHECK(r.code == 0);
+    const double rms = (double)FileStorage(f / "calib.yml", FileStorage::READ)["rms"];
+    std::cout << "[numbers] ouc_laser3d, water surface fitted to the water images: RMS " << rms << " px\n";
+    CHECK(rms < 0.30);
+}

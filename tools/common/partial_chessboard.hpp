@@ -1,0 +1,24 @@
+#ifndef REFRACT_TOOLS_PARTIAL_CHESSBOARD_HPP
+#define REFRACT_TOOLS_PARTIAL_CHESSBOARD_HPP
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace tools {
+
+/** A piece of a chessboard that is partly out of view, hidden or cut.
+
+Nothing tells which piece of the board it is, so it is put at the grid's first row and column: the points of one image
+belong together, those of two images do not. The outermost corners of what is found are left out: they stand where
+squares are cut, by the board's edge or by that of the view, and are less exact or wrong.
+@param size of the whole board as a detector sees it, corners on cut squares included.
+@return size.area() pixels, NaN where a point was not seen; empty if no piece of at least 3 x 3 corners was found. */
+std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size size);
+
+/** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
+skipped corners, or taken cut squares for whole ones. NaN points are passed over. */
+bool isEvenGrid(const std::vector<cv::Point2d>& points, cv::Size size);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_PARTIAL_CHESSBOARD_HPP
