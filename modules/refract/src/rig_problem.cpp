@@ -48,6 +48,8 @@ std::vector<bool> freeMedia(int layers, int flags)
 std::vector<bool> freeLens(const std::vector<double>& lens, int flags)
 {
     std::vector<bool> isFree(lens.size(), (flags & GLASS_FREE_INTRINSICS) != 0);
+    if (flags & GLASS_FIX_PRINCIPAL_POINT)
+        isFree[2] = isFree[3] = false;
     for (size_t i = 4; i < lens.size(); i++)
         if (lens[i] == 0)
             isFree[i] = false;

@@ -63,33 +63,37 @@ uchar reproject(const Pair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& 
     return REFRACT_OK;
 }
 
+/* Far from the minimum a step must reduce the cost; near it full Gauss-Newton steps converge, and the cost, whose
+changes drown in rounding there, is not asked. */
 uchar refine(const Pair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
 {
+    const double NEAR = 1e-3, DONE = 1e-11, ROUNDING = 1e-6;        // pixels that a step moves the two images
     Residual e, eNew;
     Jacobian J, JNew;
     uchar status = reproject(pair, X, p1, p2, e, J, NULL, NULL);
     if (status != REFRACT_OK)
         return status;
+    double last = DBL_MAX;
     for (int iteration = 0; iteration < 100; ++iteration)
     {
         const Eigen::Vector3d step = -J.colPivHouseholderQr().solve(e);
         Vec3d move(step[0], step[1], step[2]);
-        // At the minimum the step is rounding: of pixels seen through J, or of X itself.
-        if (!(cv::norm(move) > 1e-14*cv::norm(X)))
-            return REFRACT_OK;
-        bool better = false;
-        for (int cut = 0; cut < 40 && !better; ++cut, move *= 0.5)
+        const double moved = (J*step).norm();
+        bool taken = false;
+        for (int cut = 0; cut < 40 && !taken; ++cut, move *= 0.5)
         {
-            const Vec3d XNew = X + move;
-            better = reproject(pair, XNew, p1, p2, eNew, JNew, NULL, NULL) == REFRACT_OK
-                     && eNew.squaredNorm() < e.squaredNorm();
-            if (better)
+            taken = reproject(pair, X + move, p1, p2, eNew, JNew, NULL, NULL) == REFRACT_OK
+                    && (moved < NEAR || eNew.squaredNorm() < e.squaredNorm());
+            if (taken)
             {
-                X = XNew; e = eNew; J = JNew;
+                X += move; e = eNew; J = JNew;
             }
         }
-        if (!better)    // no descent left: converged if the predicted gain is rounding
-            return (J*step).norm() <= 1e-7*(1e-3 + e.norm()) ? REFRACT_OK : REFRACT_NOT_CONVERGED;
+        if (!taken)
+            return REFRACT_NOT_CONVERGED;
+        if (moved <= DONE || (moved <= ROUNDING && moved >= 0.5*last))
+            return REFRACT_OK;
+        last = moved;
     }
     return REFRACT_NOT_CONVERGED;
 }

@@ -71,7 +71,8 @@ enum GlassCalibrationFlags {
     GLASS_FREE_INTRINSICS = 16,     //!< lens parameters (overloads with RefractiveCamera only); coefficients that are
                                     //!< exactly 0 stay 0
     GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass only)
-    GLASS_SHARED_WINDOW = 64        //!< both cameras look through one pane (stereoCalibrateGlass only)
+    GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
+    GLASS_FIX_PRINCIPAL_POINT = 128 //!< with GLASS_FREE_INTRINSICS: cx and cy stay
 };
 
 /** @brief A flat window: parallel layers that share one normal.
