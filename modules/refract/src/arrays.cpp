@@ -66,6 +66,9 @@ PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
         return;
     if (points.fixedType())
         depth = CV_MAT_DEPTH(points.type());
+    if (depth != CV_32F && depth != CV_64F)
+        CV_Error_(Error::StsUnsupportedFormat, ("an output array is %s; it must be float32 or float64, as it may have "
+                                                "to hold NaN", typeToString(points.type()).c_str()));
     points.create(size, 1, CV_MAKETYPE(depth, channels), -1, true);
     points_ = points.getMat();
     if (size && !points_.isContinuous())
