@@ -1,0 +1,188 @@
+// refractiveUndistortPoints: where a pinhole without window and distortion would see the same points.
+#include "scenes.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+//! Scene points that the camera sees, and their raw pixels.
+struct Seen
+{
+    std::vector<Vec3d> points;
+    std::vector<Vec2d> pixels;
+    std::vector<double> depths;
+};
+
+Seen somePoints(const Ptr<RefractiveCamera>& camera, const LensKind& lens, double near, double far, Random& random)
+{
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 500; ++i)
+    {
+        const Vec3d d = randomNormal(random, std::min(60., 0.9*lens.halfField));
+        points.push_back(random.uniform(near, far)/d[2]*d);
+    }
+    std::vector<Vec2d> pixels;
+    std::vector<uchar> status;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status);
+    Seen seen;
+    for (size_t i = 0; i < points.size(); ++i)
+        if (status[i] == REFRACT_OK)
+        {
+            seen.points.push_back(points[i]);
+            seen.pixels.push_back(pixels[i]);
+            seen.depths.push_back(points[i][2]);
+        }
+    REQUIRE(seen.points.size() > 200);
+    return seen;
+}
+
+} // namespace
+
+TEST_CASE("Undistorted points are the pinhole images of the scene points", "[undistort]")
+{
+    const WindowKind kind = GENERATE(from_range(allWindows()));
+    CAPTURE(name(kind), seed());
+    Random random(kind);
+    double worst = 0;
+    for (const LensKind& lens : allLenses())
+    {
+        CAPTURE(lens.name);
+        const Ptr<RefractiveCamera> camera = makeCamera(lens, makeWindow(kind, random, 15));
+        const Seen seen = somePoints(camera, lens, 400, 2000, random);
+        const Vec3d rvec = random.vector(0.1);
+        const Matx33d P(800, 0, 500, 0, 810, 400, 0, 0, 1);
+        Matx33d R;
+        Rodrigues(rvec, R);
+
+        std::vector<Vec2d> plain, rectified, byVector;
+        std::vector<uchar> status;
+        refractiveUndistortPoints(seen.pixels, plain, camera, seen.depths, noArray(), noArray(), status);
+        refractiveUndistortPoints(seen.pixels, rectified, camera, seen.depths, R, P);
+        Matx34d P34 = Matx34d::zeros();
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                P34(r, c) = P(r, c);
+        P34(0, 3) = -12345;     // a baseline of stereoRectify's: not part of the correction
+        refractiveUndistortPoints(seen.pixels, byVector, camera, seen.depths, rvec, P34);
+        CHECK(largestDifference(rectified, byVector) < 1e-9);
+        for (size_t i = 0; i < seen.points.size(); ++i)
+        {
+            const Vec3d X = seen.points[i], Y = P*(R*X);
+            REQUIRE(status[i] == REFRACT_OK);
+            const double error = norm(plain[i] - Vec2d(X[0]/X[2], X[1]/X[2]));
+            worst = std::max(worst, error);
+            REQUIRE(error < 1e-11);
+            if ((R*X)[2] > 0.1*norm(X))
+                REQUIRE(norm(rectified[i] - Vec2d(Y[0]/Y[2], Y[1]/Y[2])) < 1e-7);
+        }
+    }
+    printNumber(std::string("undistorted points, ") + name(kind) + ", worst", worst, "(normalised)");
+}
+
+TEST_CASE("Without window and depth only the lens is undone: converged cv::undistortPoints", "[undistort]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    if (kind.fisheye)
+        return;
+    CAPTURE(kind.name, seed());
+    Random random;
+    std::vector<Vec2d> pixels;
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 300; ++i)
+        points.push_back(randomNormal(random, std::min(30., kind.halfField)));
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), makeCamera(kind, GlassWindow()), pixels);
+    std::vector<Vec2d> ours, theirs;
+    refractiveUndistortPoints(pixels, ours, kind.K, kind.coefficients, GlassWindow());
+    undistortPoints(pixels, theirs, kind.K, kind.coefficients, noArray(), noArray(),
+                    TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-13));
+    CHECK(largestDifference(ours, theirs) < 1e-11);
+}
+
+TEST_CASE("Infinitely far: a window with equal media does nothing, water outside bends", "[undistort]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const std::vector<Vec2d> pixels = { { 640, 480 }, { 100, 200 }, { 1200, 900 } };
+    std::vector<Vec2d> none, pane, omitted, deep, water;
+    refractiveUndistortPoints(pixels, none, K, noArray(), GlassWindow());
+    const GlassWindow glass(Vec3d(0.2, -0.1, 1), 20, 1.5, 30);
+    refractiveUndistortPoints(pixels, pane, K, noArray(), glass, std::vector<double>{ INF });
+    refractiveUndistortPoints(pixels, omitted, K, noArray(), glass);
+    refractiveUndistortPoints(pixels, deep, K, noArray(), glass, std::vector<double>{ 1e15 });
+    CHECK(largestDifference(pane, none) < 1e-15);
+    CHECK(largestDifference(omitted, pane) == 0);
+    CHECK(largestDifference(deep, pane) < 1e-12);
+    refractiveUndistortPoints(pixels, water, K, noArray(), GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 30, 1.333));
+    CHECK(norm(water[0]) < 1e-15);
+    const double r = norm(none[1]), sine = r/std::sqrt(1 + r*r)/1.333;
+    CHECK(norm(water[1]) == Approx(sine/std::sqrt(1 - sine*sine)).epsilon(1e-13));
+}
+
+TEST_CASE("One depth serves all points, N depths one each", "[undistort]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const GlassWindow glass(Vec3d(0.2, -0.1, 1), 20, 1.5, 30);
+    const std::vector<Vec2d> pixels = { { 640, 480 }, { 100, 200 }, { 1200, 900 } };
+    std::vector<Vec2d> one, many, mixed;
+    std::vector<uchar> status;
+    refractiveUndistortPoints(pixels, one, K, noArray(), glass, std::vector<float>{ 500 });
+    for (const Mat& depth : { Mat(3, 1, CV_64F, Scalar(500)), Mat(1, 3, CV_64F, Scalar(500)), Mat(3, 1, CV_32F, Scalar(500)) })
+    {
+        refractiveUndistortPoints(pixels, many, K, noArray(), glass, depth);
+        CHECK(largestDifference(one, many) == 0);
+    }
+    refractiveUndistortPoints(pixels, mixed, K, noArray(), glass, std::vector<double>{ 500, NaN, INF }, noArray(),
+                              noArray(), status);
+    CHECK(mixed[0] == one[0]);
+    CHECK(status[1] == REFRACT_NOT_FINITE);
+    CHECK(std::isnan(mixed[1][0]));
+    CHECK(status[2] == REFRACT_OK);
+    CHECK(norm(mixed[2] - Vec2d(0.56, 0.42)) < 1e-15);
+}
+
+TEST_CASE("Depths with no point have a status", "[undistort]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const GlassWindow glass(Vec3d(0, 0, 1), 20, 1.5, 30);
+    const std::vector<Vec2d> pixels(5, Vec2d(700, 500));
+    std::vector<Vec2d> out;
+    std::vector<uchar> status;
+    refractiveUndistortPoints(pixels, out, K, noArray(), glass, std::vector<double>{ 51, 49, 20, -100, 500 }, noArray(),
+                              noArray(), status);
+    CHECK(status[0] == REFRACT_OK);
+    CHECK(status[1] == REFRACT_BEHIND_WINDOW);
+    CHECK(status[2] == REFRACT_BEHIND_WINDOW);
+    CHECK((status[3] == REFRACT_NO_INTERSECTION || status[3] == REFRACT_BEHIND_WINDOW));
+    CHECK(status[4] == REFRACT_OK);
+    for (int i = 1; i < 4; ++i)
+        CHECK((std::isnan(out[i][0]) && std::isnan(out[i][1])));
+
+    const Vec3d halfTurn(0, CV_PI, 0);
+    refractiveUndistortPoints(pixels, out, K, noArray(), glass, std::vector<double>{ 500 }, halfTurn, noArray(), status);
+    CHECK(status[0] == REFRACT_BEHIND_CAMERA);
+    CHECK(std::isnan(out[0][0]));
+}
+
+TEST_CASE("Bad arguments of refractiveUndistortPoints are named", "[undistort]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const std::vector<Vec2d> pixels(3, Vec2d(700, 500));
+    const auto undistort = [&](InputArray depth, InputArray R, InputArray P)
+    {
+        std::vector<Vec2d> out;
+        return thrown([&] { refractiveUndistortPoints(pixels, out, K, noArray(), GlassWindow(), depth, R, P); });
+    };
+    CHECK(undistort(noArray(), noArray(), noArray()) == "");
+    CHECK_THAT(undistort(std::vector<double>(2, 500.), noArray(), noArray()), Contains("depth") && Contains("2"));
+    CHECK_THAT(undistort(std::vector<double>(1, -5.), noArray(), noArray()), Contains("depth") && Contains("-5"));
+    CHECK_THAT(undistort(std::vector<double>(1, NaN), noArray(), noArray()), Contains("depth") && Contains("nan"));
+    CHECK_THAT(undistort(Mat(3, 1, CV_32S), noArray(), noArray()), Contains("depth") && Contains("32SC1"));
+    CHECK_THAT(undistort(noArray(), Matx22d::eye(), noArray()), Contains("R is 2x2"));
+    CHECK_THAT(undistort(noArray(), Matx33d::eye()*3, noArray()), Contains("R is not a rotation"));
+    CHECK_THAT(undistort(noArray(), noArray(), Matx22d::eye()), Contains("P is 2x2"));
+    CHECK_THAT(undistort(noArray(), noArray(), Matx33d(1, 0, INF, 0, 1, 0, 0, 0, 1)), Contains("P[2]") && Contains("inf"));
+}
