@@ -45,7 +45,7 @@ bool isCutJpeg(const std::vector<uchar>& bytes)
 }
 
 /* As the sensor saw it: the orientation in the EXIF data is ignored, which turns with how the camera was held, while
-the lens does not. More than 8 bits are scaled so that the brightest pixel becomes 255. */
+the lens does not. */
 cv::Mat decode(const std::string& path, int flags)
 {
     const std::vector<uchar> bytes = readBytes(path);
@@ -62,11 +62,6 @@ cv::Mat decode(const std::string& path, int flags)
     }
     if (image.empty())
         throw Failure("'" + path + "' is not an image that can be read, or is cut short: take or copy it again");
-    if (image.depth() == CV_8U)
-        return image;
-    double brightest = 0;
-    cv::minMaxLoc(image.reshape(1), nullptr, &brightest);
-    image.convertTo(image, CV_8U, brightest > 0 ? 255. / brightest : 1.);
     return image;
 }
 
@@ -91,12 +86,26 @@ std::vector<std::string> expandGlob(const std::string& pattern)
 
 cv::Mat readGrey(const std::string& path)
 {
-    return decode(path, cv::IMREAD_GRAYSCALE);
+    cv::Mat image = decode(path, cv::IMREAD_GRAYSCALE);
+    double brightest = 0;
+    if (image.depth() != CV_8U)
+    {
+        cv::minMaxLoc(image, nullptr, &brightest);
+        image.convertTo(image, CV_8U, brightest > 0 ? 255. / brightest : 1.);
+    }
+    return image;
 }
 
 cv::Mat readImage(const std::string& path)
 {
     return decode(path, cv::IMREAD_ANYCOLOR);
+}
+
+void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated)
+{
+    if (!calibrated.empty() && image.size() != calibrated)
+        throw Failure("'" + path + "'" + cv::format(" is %dx%d pixels, the calibration is for %dx%d: use the images of this "
+                      "camera, not resized", image.cols, image.rows, calibrated.width, calibrated.height));
 }
 
 std::string stemOf(const std::string& path)

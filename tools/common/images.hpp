@@ -10,11 +10,15 @@ namespace tools {
 //! Files that match, sorted; throws Failure if there are none.
 std::vector<std::string> expandGlob(const std::string& glob);
 
-//! The whole image, 8-bit grey; throws Failure that names the file if it is missing, cut or not an image.
+/** The whole image, 8-bit grey (more bits are scaled so that the brightest pixel becomes 255); throws Failure that names
+the file if it is missing, cut or not an image. */
 cv::Mat readGrey(const std::string& path);
 
-//! The same in colour where it has any (CV_8UC1 or CV_8UC3).
+//! The same with the file's channels (1 or 3) and depth.
 cv::Mat readImage(const std::string& path);
+
+//! Throws Failure if the calibration's image size is known (not empty) and the image has another.
+void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated);
 
 //! File name without folder and extension.
 std::string stemOf(const std::string& path);

@@ -1,0 +1,185 @@
+#include "drawing.hpp"
+#include "file_output.hpp"
+#include "images.hpp"
+#include "measurement.hpp"
+#include "point_file.hpp"
+#include "table.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+static const char MANUAL[] = R"(Draws where the partners of image points can lie in the other raw image.
+
+  refract_epilines calib.yml IMAGE1 IMAGE2 --size=6x5 --square=39 --out=picture.png    corners of a target
+  refract_epilines calib.yml IMAGE1 IMAGE2 --points=FILE --out=picture.png             your points: 'u v' a line
+
+Left the points in image 1, right their curves in image 2 (solid), each in its colour, and where the curve would run if
+the windows were ignored (dashed). With a target, its points in image 2 are marked too, and the table says how far they
+lie from their curves: next to 0 if the calibration is right.)";
+
+namespace {
+
+using namespace tools;
+using cv::Point2d;
+
+typedef std::vector<Point2d> Curve;
+
+struct Options
+{
+    std::string calibration, image1, image2, points, depth, out;
+    TargetOptions target;
+};
+
+std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& points, const cv::Vec2d& depth)
+{
+    std::vector<cv::Mat> lines;
+    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.R, rig.T, depth,
+                                           lines);
+    std::vector<Curve> curves;
+    for (const cv::Mat& line : lines)
+        curves.push_back(line.empty() ? Curve() : Curve(line.begin<Point2d>(), line.end<Point2d>()));
+    return curves;
+}
+
+double distanceTo(const Curve& curve, const Point2d& p)
+{
+    double smallest = std::numeric_limits<double>::infinity();
+    for (size_t i = 1; i < curve.size(); ++i)
+    {
+        const Point2d side = curve[i] - curve[i - 1];
+        const double at = std::min(1., std::max(0., (p - curve[i - 1]).dot(side) / side.dot(side)));
+        smallest = std::min(smallest, cv::norm(p - curve[i - 1] - at * side));
+    }
+    return smallest;
+}
+
+void addRow(Table& table, const std::string& name, const std::vector<Curve>& curves, const std::vector<Point2d>& partners)
+{
+    double squares = 0, largest = 0;
+    int count = 0;
+    for (size_t i = 0; i < partners.size(); ++i)
+    {
+        const double distance = distanceTo(curves[i], partners[i]);
+        if (!std::isfinite(distance))
+            continue;
+        squares += distance * distance;
+        largest = std::max(largest, distance);
+        ++count;
+    }
+    table.add({name, std::to_string(count), format("%.3f", std::sqrt(squares / count)), format("%.3f", largest)});
+}
+
+//! Near and far end of the scene in the frame of camera 1.
+cv::Vec2d depthRange(const Options& options, const Calibration& rig)
+{
+    if (options.depth.empty())      // closer than the cameras are to each other, hardly anything is seen by both
+        return cv::Vec2d(cv::norm(rig.T), std::numeric_limits<double>::infinity());
+    const size_t comma = options.depth.find(',');
+    const double near = parseNumbers(options.depth.substr(0, comma), "--depth")[0];
+    const std::string rest = comma == std::string::npos ? "" : options.depth.substr(comma + 1);
+    const double far = rest == "inf" ? std::numeric_limits<double>::infinity() : parseNumbers(rest, "--depth")[0];
+    if (!(near > 0 && far > near))
+        throw Failure("--depth=" + options.depth + ": give the near and the far end, 0 < near < far (far may be inf)");
+    return cv::Vec2d(near, far);
+}
+
+cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)
+{
+    const cv::Mat image = readGrey(path);
+    requireSize(image, path, camera.imageSize());
+    return image;
+}
+
+std::vector<Point2d> detectIn(const cv::Mat& image, const std::string& path, const Target& target)
+{
+    const std::vector<Point2d> points = target.detect(image);
+    if (points.empty())
+        throw Failure("the target was not found in '" + path + "': check --pattern and --size, or give --points=FILE");
+    return points;
+}
+
+//! A little darker, so that the lines stand out.
+cv::Mat ground(const cv::Mat& grey)
+{
+    cv::Mat colour;
+    cv::cvtColor(grey * 0.75, colour, cv::COLOR_GRAY2BGR);
+    return colour;
+}
+
+cv::Mat draw(const cv::Mat& image1, const cv::Mat& image2, const std::vector<Point2d>& points,
+             const std::vector<Point2d>& partners, const std::vector<Curve>& curves, const std::vector<Curve>& ignored)
+{
+    const int n = (int)points.size();
+    cv::Mat left = ground(image1), right = ground(image2);
+    for (int i = 0; i < n; ++i)
+    {
+        drawRing(left, points[i], colourOf(i, n));
+        drawCurve(right, ignored[i], colourOf(i, n) * 0.8, 7.);
+        drawCurve(right, curves[i], colourOf(i, n));
+    }
+    for (size_t i = 0; i < partners.size(); ++i)
+        drawRing(right, partners[i], colourOf((int)i, n));
+    drawCaption(left, "image 1: points", cv::Point(12, 26));
+    drawCaption(right, "image 2: solid through the windows, dashed windows ignored", cv::Point(12, 26));
+    cv::Mat picture(std::max(left.rows, right.rows), left.cols + right.cols + 8, CV_8UC3, cv::Scalar::all(255));
+    left.copyTo(picture(cv::Rect(cv::Point(0, 0), left.size())));
+    right.copyTo(picture(cv::Rect(cv::Point(left.cols + 8, 0), right.size())));
+    return picture;
+}
+
+void addOptions(CLI::App& app, Options& options)
+{
+    app.add_option("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote")->required();
+    app.add_option("IMAGE1", options.image1, "of camera 1")->required();
+    app.add_option("IMAGE2", options.image2, "of camera 2, of the same moment")->required();
+    app.add_option("--points", options.points, "file with points of image 1");
+    options.target.addTo(app, false);
+    app.add_option("--depth", options.depth, "near,far: z of the scene in the frame of camera 1 (default: from the "
+                   "distance of the cameras to inf)");
+    app.add_option("--out", options.out, "picture to write")->required();
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        Options options;
+        addOptions(command.app, options);
+        command.parse();
+        if (options.points.empty() == !options.target.given())
+            throw Failure("give either --points=FILE or a target (--size, --square)");
+
+        const Calibration rig = readCalibration(options.calibration);
+        if (!rig.stereo())
+            throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
+                          "(refract_calib --direct2 --glass2)");
+        const cv::Mat image1 = readRaw(options.image1, *rig.cameras[0].camera);
+        const cv::Mat image2 = readRaw(options.image2, *rig.cameras[1].camera);
+        std::vector<Point2d> points, partners;
+        if (options.target.given())
+        {
+            const Target target(options.target);
+            points = detectIn(image1, options.image1, target);
+            partners = target.alignWith(points, detectIn(image2, options.image2, target));
+        }
+        else
+            points = readPixels(options.points);
+
+        const cv::Vec2d depth = depthRange(options, rig);
+        const std::vector<Curve> curves = curvesOf(rig, points, depth);
+        const std::vector<Curve> ignored = curvesOf(withoutWindows(rig), points, depth);
+        writeImage(options.out, draw(image1, image2, points, partners, curves, ignored));
+        if (!command.quiet() && !partners.empty())
+        {
+            Table table({"distance of the partners from their curves, px", "points", "RMS", "largest"});
+            addRow(table, "windows ignored", ignored, partners);
+            addRow(table, "through the windows", curves, partners);
+            table.print(std::cout);
+        }
+        return DONE;
+    });
+}

@@ -1,0 +1,124 @@
+#include "calib_file.hpp"
+#include "cli.hpp"
+#include "file_output.hpp"
+#include "images.hpp"
+#include "progress.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+static const char MANUAL[] = R"(Turns images taken through the window into those that a pinhole camera without window would take.
+
+  refract_undistort calib.yml IMAGE... --depth=600 --out-dir=DIR
+  refract_undistort calib.yml IMAGE... --plane=0,0,1,600 --out-dir=DIR
+
+The correction depends on where the scene is: exact for points on the plane z = depth (or a x + b y + c z = d, in the
+camera's frame); --depth=inf for scenes far away. The new images have the old names, size and camera matrix; pixels that
+the old image does not show are black.)";
+
+namespace {
+
+using namespace tools;
+namespace fs = std::filesystem;
+
+struct Options
+{
+    std::string calibration, folder, depth, plane;
+    std::vector<std::string> sources;
+    int camera = 1;
+};
+
+//! What initRefractiveUndistortRectifyMap calls depth: one number, a plane, or nothing for infinitely far.
+std::vector<double> depthOf(const Options& options)
+{
+    if (options.depth.empty() == options.plane.empty())
+        throw Failure("give either --depth=Z or --plane=a,b,c,d: the correction depends on where the scene is");
+    if (options.depth == "inf")
+        return {};
+    const std::vector<double> numbers = options.depth.empty() ? parseNumbers(options.plane, "--plane")
+                                                              : parseNumbers(options.depth, "--depth");
+    if (!options.plane.empty() && numbers.size() != 4)
+        throw Failure("--plane=" + options.plane + ": four numbers a,b,c,d are needed");
+    if (options.plane.empty() && (numbers.size() != 1 || numbers[0] <= 0))
+        throw Failure("--depth=" + options.depth + ": one distance, more than 0, is needed (or inf)");
+    return numbers;
+}
+
+//! Image -> where its correction goes; the images themselves are never overwritten.
+std::map<std::string, std::string> listImages(const Options& options)
+{
+    std::map<std::string, std::string> inputOf, outputOf;
+    for (const std::string& source : options.sources)
+        for (const std::string& path : expandGlob(source))
+        {
+            const std::string output = (fs::path(options.folder) / fs::path(path).filename()).string();
+            if (fs::exists(output) && fs::equivalent(output, path))
+                throw Failure("'" + path + "' would be overwritten: name another folder in --out-dir");
+            if (inputOf.count(output) && inputOf[output] != path)
+                throw Failure("'" + path + "' and '" + inputOf[output] + "' have the same name: correct them one by one");
+            inputOf[output] = path;
+            outputOf[path] = output;
+        }
+    return outputOf;
+}
+
+class Corrector
+{
+public:
+    Corrector(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const std::vector<double>& depth)
+        : camera_(camera), depth_(depth) {}
+
+    cv::Mat correct(const std::string& path)
+    {
+        const cv::Mat image = readImage(path);
+        requireSize(image, path, camera_->imageSize());
+        if (map1_.size() != image.size())
+            cv::refract::initRefractiveUndistortRectifyMap(camera_, depth_, cv::noArray(), cv::noArray(), image.size(),
+                                                           CV_32FC1, map1_, map2_);
+        cv::Mat corrected;
+        cv::remap(image, corrected, map1_, map2_, cv::INTER_CUBIC);
+        return corrected;
+    }
+
+private:
+    cv::Ptr<cv::refract::RefractiveCamera> camera_;
+    std::vector<double> depth_;
+    cv::Mat map1_, map2_;
+};
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        Options options;
+        command.app.add_option("calib.yml", options.calibration, "what refract_calib wrote")->required();
+        command.app.add_option("IMAGE", options.sources, "images, or quoted globs")->required();
+        command.app.add_option("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
+        command.app.add_option("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
+        command.app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there")->required();
+        command.app.add_option("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
+            ->check(CLI::Range(1, 2))->capture_default_str();
+        command.parse();
+
+        const std::vector<double> depth = depthOf(options);
+        const Calibration calibration = readCalibration(options.calibration);
+        if (options.camera > (int)calibration.cameras.size())
+            throw Failure("--camera=2: '" + options.calibration + "' has one camera");
+        const auto images = listImages(options);
+        makeFolder(options.folder);
+        Corrector corrector(calibration.cameras[options.camera - 1].camera, depth);
+        Progress progress("correcting images", (int)images.size(), command.quiet());
+        for (const auto& image : images)
+        {
+            writeImage(image.second, corrector.correct(image.first));
+            progress.step();
+        }
+        if (!command.quiet())
+            std::cout << images.size() << " images written to " << options.folder << std::endl;
+        return DONE;
+    });
+}
