@@ -197,7 +197,7 @@ void writeLines(const std::vector<Polyline>& polylines, int depth, OutputArrayOf
         if (n == 0)
             continue;
         Mat line = lines.getMat((int)i);
-        Mat((int)n, 1, CV_64FC2, (void*)polylines[i].data()).convertTo(line, depth);
+        Mat(line.size(), CV_64FC2, (void*)polylines[i].data()).convertTo(line, depth);    // a vector is a row
     }
 }
 
