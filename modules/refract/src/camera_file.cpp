@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "camera.hpp"
 #include "cameramodel.hpp"
+#include <fstream>
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -74,6 +75,9 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
         camera->setImageSize(model.imageSize);
         return camera;
     }
+    // FileStorage would log a line of its own.
+    if (!std::ifstream(filename.c_str()))
+        CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
     FileStorage fs;
     try
     {
@@ -84,8 +88,6 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
         CV_Error_(Error::StsParseError, ("%s is not YAML, XML or JSON that OpenCV reads (%s)", filename.c_str(),
                                          e.err.c_str()));
     }
-    if (!fs.isOpened())
-        CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
     FileNode node = fs.root();
     if (node.isMap() && !name.empty())
         node = node[name];
