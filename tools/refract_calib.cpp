@@ -6,7 +6,7 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
 
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
 and extension) the target must not have moved between them: such pairs determine the window best. All direct images serve
-the lens, unless --camera gives it. With --direct2 and --glass2 the same name means the same moment in both cameras.
+the lens, unless --camera gives it; with pairs it is refined together with the window. With --direct2 and --glass2 the same name means the same moment in both cameras.
 
 Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
 
@@ -160,7 +160,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
                                                                       : RefractiveCamera::read(o.camera[k]);
     c.data = readImages(o, target, quiet, c.withoutTarget);
     c.start = startRig(c.data, c.options, c.lensSources);
-    c.fit = fitRig(c.data, c.start, usefulMoments(c.data, c.options.flags), c.options.flags);
+    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
     c.residuals = residualsOf(c.data, c.fit);
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);
     c.nearFar = crossValidate(c.data, c.start, c.fit, c.options.flags, c.lensSources);

@@ -14,6 +14,7 @@ namespace tools {
 namespace {
 
 const int MIN_POINTS = 4;       // of a view that is to have a pose
+const int MIN_PAIRS = 3;        // to refine a lens together with the window
 
 using Views = std::vector<std::vector<Point2d>>;
 
@@ -316,6 +317,25 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
                                        fit.rig.R, fit.rig.T, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance,
                                        fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS);
     return fit;
+}
+
+Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags)
+{
+    const Fit fit = fitRig(data, start, usefulMoments(data, flags), flags);
+    for (int c = 0; c < data.cameraCount; c++)
+        if (lensSources[c].kind != LensSource::FROM_DIRECT || data.countPairs(c) < MIN_PAIRS)
+            return fit;
+    try
+    {
+        const int freed = flags | GLASS_FREE_INTRINSICS;
+        const Fit refined = fitRig(data, fit.rig, usefulMoments(data, freed), freed);
+        flags = freed;
+        return refined;
+    }
+    catch (const cv::Exception&)
+    {
+        return fit;         // too few or too similar views to refine the lens; its own calibration stands
+    }
 }
 
 void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)

@@ -99,6 +99,12 @@ std::vector<int> usefulMoments(const RigData& data, int flags);
 //! calibrateGlass or stereoCalibrateGlass on some of the moments.
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
 
+/** fitRig on all that is useful. Lenses that came from the direct images are refined with the windows where pairs tie
+the two together: better by far for R and T, and +- that carry the lens's uncertainty. Views that are glass-only leave
+the lens alone, as it would take up part of the window.
+@param flags gets GLASS_FREE_INTRINSICS if so */
+Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags);
+
 //! All corners of the moments that took part.
 std::vector<Residual> residualsOf(const RigData& data, const Fit& fit);
 

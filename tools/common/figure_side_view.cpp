@@ -185,18 +185,21 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
     draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length * std::cos(angle), length * std::sin(angle))}});
     plot << "set size ratio -1\nset xlabel 'z (away from the camera)'\nset ylabel '" << (axis == 0 ? "x (right)" : "y (down)")
          << "'\nset yrange [*:*] " << "reverse\n"
-         << "set key outside top center horizontal samplen 1.5\nset offsets 0.02, 0.02, 0.02, 0.02\n"
-         << "set style fill solid 0.35\n"
-         << "plot $boards with lines linecolor rgb '#cbd5e1' title 'boards', "
-         << "$cone with filledcurves closed fillstyle solid 0.25 noborder linecolor rgb '#dc2626' title 'normal, +- 1 std x "
+         << "set key outside top center horizontal maxrows 1 samplen 1.5\n"
+         << "plot $boards with lines linecolor rgb '#94a3b8' title 'boards', "
+         << "$cone with filledcurves closed fillcolor rgb '#dc2626' fillstyle solid 0.25 noborder title 'normal, +- std x "
          << widened << "', $normal with lines linewidth 1.5 linecolor rgb '#dc2626' notitle, "
          << "$rays with lines linewidth 1.5 linecolor rgb '#f59e0b' title 'field of view', "
-         << (view.glass() > 0 ? "$glass with filledcurves closed fillstyle solid 0.55 border linecolor rgb '#0284c7'"
+         << (view.glass() > 0 ? "$glass with filledcurves closed fillcolor rgb '#0284c7' fillstyle solid 0.3 border rgb '#0284c7'"
                               : "$glass with lines linewidth 2 linecolor rgb '#0284c7'")
          << " title 'window', '+' using (0):(0) every ::0::0 with points pointtype 7 pointsize 1 linecolor rgb '#0f172a' "
          << "title 'camera'\n";
-    return {plot.svg(), widened > 1 ? format("the cone of the normal is widened %g times", widened)
-                                    : std::string("the cone of the normal is drawn as it is")};
+    const GlassWindow window = calibration.fit.rig.cameras[camera]->window();
+    std::string note = widened > 1 ? format("the cone of the normal is widened %g times", widened)
+                                   : std::string("the cone of the normal is drawn as it is");
+    if (window.innerIndex == window.outerIndex)
+        note += format("; the window's distance does not show in the images, it is drawn at %g", window.distance);
+    return {plot.svg(), note};
 }
 
 } // namespace tools

@@ -81,8 +81,7 @@ Figure drawDisplacement(const RigCalibration& c, int camera)
         if (seen(d))
             rows.push_back({from[i].x, from[i].y, d.x * scale, d.y * scale, norm(d)});
     }
-    Plot plot(560, 460);
-    plot.imageAxes(size);
+    Plot plot(size);
     plot.data("arrows", rows);
     plot << "set cblabel 'displacement, px'\nunset key\n"
          << "plot $arrows using 1:2:3:4:5 with vectors filled head size " << step / 5 << ",25 linewidth 1.3 linecolor palette\n";
@@ -105,7 +104,7 @@ Figure drawViewRms(const RigCalibration& c, int camera)
     Plot plot(std::max(560, 110 + 26 * (int)rows.size()), 320);
     plot.data("views", rows);
     plot << viewTics(c, moments) << "set ylabel 'RMS, px'\nset yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
-         << "set style fill solid 0.9 noborder\nset boxwidth 0.36\nset key outside top center horizontal\n"
+         << "set style fill solid 0.9 noborder\nset boxwidth 0.36\nset key outside top center horizontal maxrows 1 samplen 2\n"
          << "unset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using ($1-0.19):2 with boxes linecolor rgb '" << DIRECT_COLOUR << "' title 'direct', "
          << "$views using ($1+0.19):3 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'through the window', "
@@ -122,8 +121,7 @@ Figure drawResidualVectors(const RigCalibration& c, int camera)
     Rows rows;
     for (const Residual& r : residuals)
         rows.push_back({r.pixel.x, r.pixel.y, r.error.x * scale, r.error.y * scale, norm(r.error)});
-    Plot plot(560, 460);
-    plot.imageAxes(size);
+    Plot plot(size);
     plot.data("arrows", rows);
     plot << "set cblabel 'residual, px'\nunset key\n"
          << "plot $arrows using 1:2:3:4:5 with vectors filled head size " << size.width / 120. << ",25 linecolor palette\n";
@@ -132,27 +130,29 @@ Figure drawResidualVectors(const RigCalibration& c, int camera)
 
 Figure drawResidualMap(const RigCalibration& c, int camera)
 {
-    const int COLUMNS = 16;
+    const size_t CORNERS = 6;           // wanted in a cell, for noise to average out
     const Size size = c.data.imageSize[camera];
-    const double cell = (double)size.width / COLUMNS;
+    const std::vector<Residual> residuals = glassResiduals(c, camera);
+    const double wanted = std::sqrt((double)residuals.size() / CORNERS * size.width / size.height);
+    const int columnCount = std::min(16, std::max(4, (int)wanted));
+    const double cell = (double)size.width / columnCount;
     const int rowCount = (int)std::ceil(size.height / cell);
-    std::vector<Point2d> sum(COLUMNS * rowCount);
-    std::vector<int> count(sum.size());
-    for (const Residual& r : glassResiduals(c, camera))
+    std::vector<Point2d> sum(columnCount * rowCount);
+    std::vector<size_t> count(sum.size());
+    for (const Residual& r : residuals)
     {
-        const int column = std::min(COLUMNS - 1, std::max(0, (int)(r.pixel.x / cell)));
+        const int column = std::min(columnCount - 1, std::max(0, (int)(r.pixel.x / cell)));
         const int row = std::min(rowCount - 1, std::max(0, (int)(r.pixel.y / cell)));
-        sum[row * COLUMNS + column] += r.error;
-        count[row * COLUMNS + column]++;
+        sum[row * columnCount + column] += r.error;
+        count[row * columnCount + column]++;
     }
     Rows rows;
     for (size_t i = 0; i < sum.size(); i++)
-        rows.push_back({(i % COLUMNS + 0.5) * cell, (i / COLUMNS + 0.5) * cell,
-                        count[i] ? norm(sum[i]) / count[i] : NONE, cell / 2});
-    Plot plot(560, 460);
-    plot.imageAxes(size);
+        rows.push_back({(i % columnCount + 0.5) * cell, (i / columnCount + 0.5) * cell,
+                        2 * count[i] >= CORNERS ? norm(sum[i]) / count[i] : NONE, cell / 2});
+    Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel 'mean residual, px'\nset cbrange [0:*]\nunset key\nset style fill solid noborder\n"
+    plot << "set cblabel 'mean residual, px'\nset cbrange [0:" << rmsOf(c, camera, true).px << "]\nunset key\nset style fill solid noborder\n"
          << "plot $cells using 1:2:4:4:3 with boxxyerror linecolor palette\n";
     return {plot.svg(), ""};
 }
@@ -196,9 +196,8 @@ Figure drawCoverage(const RigCalibration& c, int camera)
             for (const Point2d& p : through ? m.glass[camera] : m.direct[camera])
                 if (seen(p))
                     (through ? glass : direct).push_back({p.x, p.y});
-    Plot plot(560, 460);
-    plot.imageAxes(c.data.imageSize[camera]);
-    plot << "set key outside top center horizontal\n";
+    Plot plot(c.data.imageSize[camera]);
+    plot << "set key outside top center horizontal maxrows 1 samplen 2\n";
     plot.data("glass", glass);
     if (!direct.empty())
         plot.data("direct", direct);
@@ -224,7 +223,7 @@ Figure drawInfluence(const RigCalibration& c, int camera)
     plot.data("views", rows);
     plot << viewTics(c, moments) << "set ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
          << "set xrange [-0.7:" << rows.size() - 0.3 << "]\nset style fill solid 0.9 noborder\nset boxwidth 0.6\n"
-         << "set key outside top center horizontal\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
+         << "set key outside top center horizontal maxrows 1 samplen 2\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'without this view', "
          << sigma << " with lines linecolor rgb '#dc2626' dashtype 2 title 'one standard deviation'\n";
     return {plot.svg(), ""};

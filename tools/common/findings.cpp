@@ -178,6 +178,23 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
     f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
 }
 
+//! "camera 1: x" and "camera 2: x" become "x".
+void mergeCameras(std::vector<std::string>& sentences)
+{
+    for (size_t i = 0; i < sentences.size(); i++)
+    {
+        const std::string first = "camera 1: ";
+        if (sentences[i].compare(0, first.size(), first) != 0)
+            continue;
+        const std::string rest = sentences[i].substr(first.size());
+        const auto twin = std::find(sentences.begin(), sentences.end(), "camera 2: " + rest);
+        if (twin == sentences.end())
+            continue;
+        sentences.erase(twin);
+        sentences[i] = rest;
+    }
+}
+
 void append(std::vector<FreeParameter>& list, const Fit& fit, const std::string& name, int column, double value)
 {
     const double std = fit.stdDeviations.at<double>(column);
@@ -312,6 +329,8 @@ Findings judge(const RigCalibration& calibration)
     }
     judgeCorrelations(calibration, findings);
     judgeAssumptions(calibration, findings);
+    for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
+        mergeCameras(*list);
     return findings;
 }
 

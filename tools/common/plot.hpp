@@ -20,6 +20,9 @@ class Plot
 public:
     Plot(int width, int height);
 
+    //! For a picture over an image: of a width that leaves room for a colour scale, and a height that fits.
+    explicit Plot(cv::Size image);
+
     //! Rows of numbers that commands call $name; NaN is a gap.
     void data(const std::string& name, const std::vector<std::vector<double>>& rows);
 
@@ -29,9 +32,6 @@ public:
         script_ << text;
         return *this;
     }
-
-    //! Axes of an image: pixels, y down, to scale, framed.
-    void imageAxes(cv::Size image);
 
     //! Runs gnuplot; throws Failure with its message if it fails.
     std::string svg() const;

@@ -85,8 +85,8 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
     add(drawResidualVectors(c, camera), "Residuals through the window",
         "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
     add(drawResidualMap(c, camera), "Mean residual over the image",
-        "Noise averages out, so all cells should be dark; bright neighbouring cells are a systematic error. Cells with few "
-        "corners are noisier");
+        "Noise averages out, so all cells should be blue; red cells, where residuals all point the same way, are a systematic "
+        "error. Cells with few corners are left white");
     add(drawResidualHistogram(c, camera), "Residuals against the normal law",
         "The bars should follow the curve; long tails are single bad corners");
     return list;
@@ -158,6 +158,7 @@ std::string makeReport(const RigCalibration& c, const Findings& findings, const 
     page.set("without_target", listOf(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
 
+    page.set("stereo", c.data.cameraCount == 2);
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
     setNearFar(page, c.nearFar);

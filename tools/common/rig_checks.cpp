@@ -107,6 +107,23 @@ double angleDeg(const Vec3d& a, const Vec3d& b)
     return std::atan2(norm(a.cross(b)), a.dot(b)) * 180. / CV_PI;
 }
 
+//! RMS px between the two images of each corner of a pair: what ignoring the glass costs if the board cannot give way.
+double shiftOfPairs(const RigData& data, int camera)
+{
+    double sum = 0.;
+    int count = 0;
+    for (const Moment& m : data.moments)
+        for (size_t i = 0; m.isPair(camera) && i < m.glass[camera].size(); i++)
+        {
+            const Point2d d = m.glass[camera][i] - m.direct[camera][i];
+            if (!seen(d))
+                continue;
+            sum += d.dot(d);
+            count++;
+        }
+    return count ? std::sqrt(sum / count) : NONE;
+}
+
 } // namespace
 
 Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources)
@@ -129,6 +146,7 @@ Baselines computeBaselines(const RigData& data, const Rig& start, const std::vec
         // A lens that itself came from the glass images knows no "without".
         const bool airLens = lensSources[c].kind != LensSource::FROM_GLASS;
         result.glassIgnored.push_back(airLens ? ignored.value() : NONE);
+        result.shift.push_back(shiftOfPairs(data, c));
         result.throughGlass.push_back(through.value());
     }
     return result;

@@ -14,6 +14,7 @@ const double NONE = std::numeric_limits<double>::quiet_NaN();
 struct Baselines
 {
     std::vector<double> glassIgnored;       //!< per camera: the start's lens alone
+    std::vector<double> shift;              //!< the same, board where the direct image of the pair shows it
     std::vector<double> throughGlass;       //!< per camera: a pinhole camera calibrated on the glass images
 };
 

@@ -33,10 +33,8 @@ std::string lensOf(const RigCalibration& c, int camera)
     const LensSource& source = c.lensSources[camera];
     std::string text = format("%s, %d coefficients, ", c.fit.rig.cameras[camera]->lensModel().c_str(),
                               c.fit.rig.cameras[camera]->lensParameters().rows - 4);
-    if (c.options.flags & GLASS_FREE_INTRINSICS)
-        return text + "refined";
-    return text + (source.kind == LensSource::FROM_FILE ? std::string("given")
-                                                        : format("%d views, %.3f px", source.views, source.rms));
+    text += source.kind == LensSource::FROM_FILE ? std::string("given") : format("%d views, %.3f px", source.views, source.rms);
+    return text + (c.options.flags & GLASS_FREE_INTRINSICS ? ", refined" : "");
 }
 
 std::string worstViews(const RigCalibration& c, int camera)
@@ -113,6 +111,7 @@ std::vector<SummaryRow> fitRows(const RigCalibration& c)
     std::vector<SummaryRow> rows;
     rows.push_back(row(c, "RMS through the window, px", [&](int k) { return px(rmsOf(c, k, true).px); }));
     rows.push_back(row(c, "  the same, glass ignored, px", [&](int k) { return px(c.baselines.glassIgnored[k]); }));
+    rows.push_back(row(c, "  the same, board where it is, px", [&](int k) { return px(c.baselines.shift[k]); }));
     rows.push_back(row(c, "  the same, pinhole through glass, px", [&](int k) { return px(c.baselines.throughGlass[k]); }));
     rows.push_back(row(c, "RMS direct, px", [&](int k) { return px(rmsOf(c, k, false).px); }));
     rows.push_back(row(c, "views / corners through the window", [&](int k) { return viewsAndCorners(rmsOf(c, k, true)); }));
