@@ -8,9 +8,11 @@
 
 /* The curve of possible partners of a pixel: the refracted ray tau n + s d of one camera, seen by the other (raw image).
 
-The parameter is mu = 1/s, in which the image of an evenly spaced row of depths is nearly evenly spaced and infinity is
-the ordinary point mu = 0. A chord over a step of mu misses the curve by |second difference across the curve| / 8, so
-nodes at equal steps of the integral of its square root share the error evenly: as few points as the tolerance takes. */
+The parameter t runs from infinity (0) to the ray's origin (1): the other camera sees the point (1 - t) d + t e, where e is
+the unit vector to the origin. Even steps of t are nearly even steps of the angle there, whatever the depth range; 1/s =
+t / ((1 - t) b) with b the distance of the origin. A chord over a step of t misses the curve by |second difference across
+the curve| / 8, so nodes at equal steps of the integral of its square root share the error evenly: as few points as the
+tolerance takes. */
 
 namespace cv { namespace refract {
 
@@ -20,39 +22,49 @@ typedef std::vector<Vec2d> Polyline;
 
 const double NOWHERE = std::numeric_limits<double>::quiet_NaN();
 
-//! The curve as a function of mu.
+//! The curve as a function of t.
 class EpipolarCurve
 {
 public:
     EpipolarCurve(const Camera& other, const Matx33d& R, const Vec3d& T, const Vec3d& normal, double tau, const Vec3d& d)
-        : other_(other), direction_(R*d), shift_(R*(tau*normal) + T) {}
+        : other_(other), direction_(R*d), origin_(R*(tau*normal) + T), unit_(1)
+    {
+        const double distance = cv::norm(origin_);
+        if (distance > 0)       // else the curve is one point in any unit
+            unit_ = 1/distance;
+    }
+
+    //! The parameter of the point at 1/s.
+    double parameter(double mu) const { return mu/(mu + unit_); }
 
     //! Pixel, NaN where there is no image.
-    Vec2d at(double mu) const
+    Vec2d at(double t) const
     {
         Vec2d pixel;
         uchar status;
-        evaluate(1, &mu, &pixel, &status);
+        evaluate(1, &t, &pixel, &status);
         return pixel;
     }
 
-    void evaluate(int n, const double* mu, Vec2d* pixel, uchar* status) const
+    void evaluate(int n, const double* t, Vec2d* pixel, uchar* status) const
     {
-        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
+        double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK], u[BLOCK], v[BLOCK];
         for (int i = 0; i < n; ++i)
         {
-            const Vec3d X = direction_ + mu[i]*shift_;
+            w[i] = t[i]*unit_;
+            const Vec3d X = (1 - t[i])*direction_ + w[i]*origin_;
             x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
             status[i] = REFRACT_OK;
         }
-        other_.project(n, x, y, z, mu, u, v, status);
+        other_.project(n, x, y, z, w, u, v, status);
         for (int i = 0; i < n; ++i)
             pixel[i] = status[i] == REFRACT_OK ? Vec2d(u[i], v[i]) : Vec2d(NOWHERE, NOWHERE);
     }
 
 private:
     const Camera& other_;
-    Vec3d direction_, shift_;
+    Vec3d direction_, origin_;  //!< in the frame of the other camera
+    double unit_;
 };
 
 double distanceToSegment(const Vec2d& p, const Vec2d& a, const Vec2d& b)
@@ -63,63 +75,65 @@ double distanceToSegment(const Vec2d& p, const Vec2d& a, const Vec2d& b)
 }
 
 //! Appends the nodes after `a` up to `b`, splitting where the curve leaves the chord by more than the tolerance.
-void appendSegment(const EpipolarCurve& curve, double muA, const Vec2d& a, double muB, const Vec2d& b, double tolerance,
+void appendSegment(const EpipolarCurve& curve, double tA, const Vec2d& a, double tB, const Vec2d& b, double tolerance,
                    int depth, Polyline& line)
 {
-    double mu[3];
+    double t[3];
     Vec2d p[3];
     uchar status[3];
     for (int i = 0; i < 3; ++i)
-        mu[i] = muA + 0.25*(i + 1)*(muB - muA);
-    curve.evaluate(3, mu, p, status);
+        t[i] = tA + 0.25*(i + 1)*(tB - tA);
+    curve.evaluate(3, t, p, status);
     // Three points see the largest distance to within a few percent.
     bool close = true;      // a NaN inside (grazing the edge of visibility) compares false and is split as well
     for (int i = 0; i < 3; ++i)
-        close = close && distanceToSegment(p[i], a, b) <= 0.97*tolerance;
+        close = close && distanceToSegment(p[i], a, b) <= 0.95*tolerance;
     if (close || depth == 0 || std::isnan(p[1][0]))
     {
         line.push_back(b);
         return;
     }
-    appendSegment(curve, muA, a, mu[1], p[1], tolerance, depth - 1, line);
-    appendSegment(curve, mu[1], p[1], muB, b, tolerance, depth - 1, line);
+    appendSegment(curve, tA, a, t[1], p[1], tolerance, depth - 1, line);
+    appendSegment(curve, t[1], p[1], tB, b, tolerance, depth - 1, line);
 }
 
-const int SAMPLES = 33;
+const int SAMPLES = 65;
 
-//! Nodes from muA to muB at equal shares of the chord error.
-std::vector<double> placeNodes(const EpipolarCurve& curve, double muA, double muB, double tolerance)
+//! Nodes from tA to tB at equal shares of the chord error.
+std::vector<double> placeNodes(const EpipolarCurve& curve, double tA, double tB, double tolerance)
 {
-    double mu[SAMPLES], share[SAMPLES];
+    double t[SAMPLES], density[SAMPLES], share[SAMPLES];
     Vec2d p[SAMPLES];
     uchar status[SAMPLES];
     for (int i = 0; i < SAMPLES; ++i)
-        mu[i] = muA + (muB - muA)*i/(SAMPLES - 1);
-    curve.evaluate(SAMPLES, mu, p, status);
-    share[0] = 0;
-    for (int i = 1; i < SAMPLES; ++i)
+        t[i] = tA + (tB - tA)*i/(SAMPLES - 1);
+    curve.evaluate(SAMPLES, t, p, status);
+    for (int i = 0; i < SAMPLES; ++i)
     {
         const int c = std::min(std::max(i, 1), SAMPLES - 2);
         const Vec2d bend = p[c + 1] - 2*p[c] + p[c - 1], chord = p[c + 1] - p[c - 1];
         const double across = std::abs(bend[0]*chord[1] - bend[1]*chord[0])/std::max(cv::norm(chord), DBL_MIN);
-        share[i] = share[i - 1] + (std::isfinite(across) ? std::sqrt(across/8/tolerance) : 0);
+        density[i] = std::isfinite(across) ? std::sqrt(across/8/tolerance) : 0;
     }
+    share[0] = 0;
+    for (int i = 1; i < SAMPLES; ++i)
+        share[i] = share[i - 1] + 0.5*(density[i - 1] + density[i]);
     // A little more than the estimate, so that the check of the finished segments seldom has to split one.
     const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*share[SAMPLES - 1])));
-    std::vector<double> nodes(1, muA);
+    std::vector<double> nodes(1, tA);
     for (int j = 1, i = 1; j < segments; ++j)
     {
         const double wanted = share[SAMPLES - 1]*j/segments;
         while (i < SAMPLES - 1 && share[i] < wanted)
             ++i;
         const double part = (wanted - share[i - 1])/std::max(share[i] - share[i - 1], DBL_MIN);
-        nodes.push_back(mu[i - 1] + (mu[i] - mu[i - 1])*std::min(1., part));
+        nodes.push_back(t[i - 1] + (t[i] - t[i - 1])*std::min(1., part));
     }
-    nodes.push_back(muB);
+    nodes.push_back(tB);
     return nodes;
 }
 
-//! The end of visibility between a visible and an invisible mu, from the visible side.
+//! The end of visibility between a visible and an invisible t, from the visible side.
 double edgeOfVisibility(const EpipolarCurve& curve, double visible, double invisible)
 {
     const double enough = 1e-9*std::abs(visible - invisible);
@@ -131,16 +145,16 @@ double edgeOfVisibility(const EpipolarCurve& curve, double visible, double invis
     return visible;
 }
 
-/* The visible part of [muNear, muFar]: one interval, because what lies beyond a window and inside a lens' field is
+/* The visible part of [tNear, tFar]: one interval, because what lies beyond a window and inside a lens' field is
 convex. Returns the status of the far end if nothing is visible. */
-uchar visiblePart(const EpipolarCurve& curve, double& muNear, double& muFar)
+uchar visiblePart(const EpipolarCurve& curve, double& tNear, double& tFar)
 {
-    double mu[SAMPLES];
+    double t[SAMPLES];
     Vec2d p[SAMPLES];
     uchar status[SAMPLES];
     for (int i = 0; i < SAMPLES; ++i)
-        mu[i] = muNear + (muFar - muNear)*i/(SAMPLES - 1);
-    curve.evaluate(SAMPLES, mu, p, status);
+        t[i] = tNear + (tFar - tNear)*i/(SAMPLES - 1);
+    curve.evaluate(SAMPLES, t, p, status);
     int first = 0, last = SAMPLES - 1;
     while (first < SAMPLES && status[first] != REFRACT_OK)
         ++first;
@@ -149,9 +163,9 @@ uchar visiblePart(const EpipolarCurve& curve, double& muNear, double& muFar)
     while (status[last] != REFRACT_OK)
         --last;
     if (first > 0)
-        muNear = edgeOfVisibility(curve, mu[first], mu[first - 1]);
+        tNear = edgeOfVisibility(curve, t[first], t[first - 1]);
     if (last < SAMPLES - 1)
-        muFar = edgeOfVisibility(curve, mu[last], mu[last + 1]);
+        tFar = edgeOfVisibility(curve, t[last], t[last + 1]);
     return REFRACT_OK;
 }
 
@@ -168,12 +182,12 @@ uchar depthToMu(const Camera& camera, double tau, const Vec3d& d, const Vec2d& d
     return muFar >= 0 && muFar < muNear ? REFRACT_OK : REFRACT_BEHIND_WINDOW;
 }
 
-uchar tracePolyline(const EpipolarCurve& curve, double muNear, double muFar, double tolerance, Polyline& line)
+uchar tracePolyline(const EpipolarCurve& curve, double tNear, double tFar, double tolerance, Polyline& line)
 {
-    const uchar status = visiblePart(curve, muNear, muFar);
+    const uchar status = visiblePart(curve, tNear, tFar);
     if (status != REFRACT_OK)
         return status;
-    const std::vector<double> nodes = placeNodes(curve, muNear, muFar, tolerance);
+    const std::vector<double> nodes = placeNodes(curve, tNear, tFar, tolerance);
     Vec2d a = curve.at(nodes[0]);
     line.assign(1, a);
     for (size_t i = 1; i < nodes.size(); ++i)
@@ -239,9 +253,11 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
             double muNear, muFar;
             if (st[i] == REFRACT_OK)
                 st[i] = depthToMu(from, tau[i], d, depthRange, muNear, muFar);
-            if (st[i] == REFRACT_OK)
-                st[i] = tracePolyline(EpipolarCurve(to, R, T, from.layers().normal(), tau[i], d), muNear, muFar,
-                                      tolerance, polylines[begin + i]);
+            if (st[i] != REFRACT_OK)
+                continue;
+            const EpipolarCurve curve(to, R, T, from.layers().normal(), tau[i], d);
+            st[i] = tracePolyline(curve, curve.parameter(muNear), curve.parameter(muFar), tolerance,
+                                  polylines[begin + i]);
         }
         outStatus.store(begin, n, st);
     });
