@@ -73,17 +73,31 @@ void addRow(Table& table, const std::string& name, const std::vector<Curve>& cur
 }
 
 //! Near and far end of the scene in the frame of camera 1.
-cv::Vec2d depthRange(const Options& options, const Calibration& rig)
+cv::Vec2d readDepthRange(const std::string& text)
 {
-    if (options.depth.empty())      // closer than the cameras are to each other, hardly anything is seen by both
-        return cv::Vec2d(cv::norm(rig.T), std::numeric_limits<double>::infinity());
-    const size_t comma = options.depth.find(',');
-    const double near = parseNumbers(options.depth.substr(0, comma), "--depth")[0];
-    const std::string rest = comma == std::string::npos ? "" : options.depth.substr(comma + 1);
+    const size_t comma = text.find(',');
+    const double near = parseNumbers(text.substr(0, comma), "--depth")[0];
+    const std::string rest = comma == std::string::npos ? "" : text.substr(comma + 1);
     const double far = rest == "inf" ? std::numeric_limits<double>::infinity() : parseNumbers(rest, "--depth")[0];
     if (!(near > 0 && far > near))
-        throw Failure("--depth=" + options.depth + ": give the near and the far end, 0 < near < far (far may be inf)");
+        throw Failure("--depth=" + text + ": give the near and the far end, 0 < near < far (far may be inf)");
     return cv::Vec2d(near, far);
+}
+
+//! Around a target as far before and behind it as keeps the curves of its points apart; else all that both can see.
+cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& points, const std::vector<Point2d>& partners)
+{
+    double near = std::numeric_limits<double>::infinity(), far = 0;
+    if (!partners.empty())
+        for (const cv::Point3d& p : measureStereo(rig, points, partners, 0.).points)
+            if (p.z > 0)
+            {
+                near = std::min(near, p.z);
+                far = std::max(far, p.z);
+            }
+    if (far > 0)
+        return cv::Vec2d(0.92 * near, 1.08 * far);
+    return cv::Vec2d(cv::norm(rig.T), std::numeric_limits<double>::infinity());
 }
 
 cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)
@@ -137,8 +151,8 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("IMAGE2", options.image2, "of camera 2, of the same moment")->required();
     app.add_option("--points", options.points, "file with points of image 1");
     options.target.addTo(app, false);
-    app.add_option("--depth", options.depth, "near,far: z of the scene in the frame of camera 1 (default: from the "
-                   "distance of the cameras to inf)");
+    app.add_option("--depth", options.depth, "near,far: z of the scene in the frame of camera 1; far may be inf (default: "
+                   "around the target; with --points from the distance of the cameras to inf)");
     app.add_option("--out", options.out, "picture to write")->required();
 }
 
@@ -169,7 +183,8 @@ int main(int argc, char** argv)
         else
             points = readPixels(options.points);
 
-        const cv::Vec2d depth = depthRange(options, rig);
+        const cv::Vec2d depth = options.depth.empty() ? usualDepthRange(rig, points, partners)
+                                                      : readDepthRange(options.depth);
         const std::vector<Curve> curves = curvesOf(rig, points, depth);
         const std::vector<Curve> ignored = curvesOf(withoutWindows(rig), points, depth);
         writeImage(options.out, draw(image1, image2, points, partners, curves, ignored));

@@ -110,7 +110,8 @@ std::string csvOf(const std::vector<Measurement>& measurements)
     return csv.str();
 }
 
-std::vector<std::string> rowOf(const std::string& name, const Target& target, const std::vector<Measurement>& results)
+std::vector<std::string> rowOf(const std::string& name, const Target& target, const std::vector<Measurement>& results,
+                               bool lengthsMeasured)
 {
     double squares = 0, sum = 0, largest = 0, near = std::numeric_limits<double>::infinity(), far = -near, depthSigma = 0;
     int lengths = 0, answers = 0, points = 0;
@@ -133,27 +134,37 @@ std::vector<std::string> rowOf(const std::string& name, const Target& target, co
         answers += m.answers();
         points += (int)m.points.size();
     }
-    return {name, format("%d of %d", answers, points), format("%.4f", std::sqrt(squares / lengths)),
-            format("%+.4f", sum / lengths), format("%.4f", largest), format("%.1f ... %.1f", near, far),
-            std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma / answers)};
+    std::vector<std::string> row = {name, format("%d of %d", answers, points), format("%.1f ... %.1f", near, far),
+                                    std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma / answers)};
+    if (lengthsMeasured)
+        row.insert(row.end(), {format("%.4f", std::sqrt(squares / lengths)), format("%+.4f", sum / lengths),
+                               format("%.4f", largest)});
+    return row;
 }
 
 void printTable(const Options& options, const Calibration& calibration, const Target& target,
                 const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
-    Table table({"", "points", "length RMS error", "mean error", "largest", "depth z", "mean sz"});
+    // From the pose of a target of known shape, the distances come out as they went in.
+    const bool lengthsMeasured = !options.image2.empty() || !options.plane.empty();
+    Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
+                                                           "mean error", "largest"}
+                                : std::vector<std::string>{"", "points", "depth z", "mean sz"});
     if (options.compare)
-        table.add(rowOf("glass ignored", target, measureAll(options, withoutWindows(calibration), target, sights)));
+        table.add(rowOf("glass ignored", target, measureAll(options, withoutWindows(calibration), target, sights),
+                        lengthsMeasured));
     for (const std::string& file : options.compareWith)
     {
         const Calibration other = readCalibration(file);
         if (other.cameras.size() != calibration.cameras.size())
             throw Failure("'" + file + "' has another number of cameras than '" + options.calibration + "'");
-        table.add(rowOf(file, target, measureAll(options, other, target, sights)));
+        table.add(rowOf(file, target, measureAll(options, other, target, sights), lengthsMeasured));
     }
-    table.add(rowOf(options.compare || !options.compareWith.empty() ? "with the window" : "measured", target, results));
-    std::cout << sights.size() << (sights.size() == 1 ? " view" : " views") << "; distances between neighbouring points, "
-              << "measured minus true:\n\n";
+    const bool alone = !options.compare && options.compareWith.empty();
+    table.add(rowOf(alone ? "measured" : "with the window", target, results, lengthsMeasured));
+    std::cout << sights.size() << (sights.size() == 1 ? " view" : " views")
+              << (lengthsMeasured ? "; distances between neighbouring points, measured minus true:\n\n"
+                                  : "; points from the pose of the target:\n\n");
     table.print(std::cout);
 }
 

@@ -1,0 +1,12 @@
+#!/bin/sh
+# Remakes the bundled images and their truth from samples/data/stereo/rig.yml:  tools/make_sample_data.sh [BUILD_DIR]
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=$(cd "${1:-$root/build}" && pwd)
+if [ ! -x "$build/bin/refract_simulate" ]; then
+    echo "$0: there is no $build/bin/refract_simulate: build the tools first, or name the build folder" >&2
+    exit 1
+fi
+cd "$root/samples/data/stereo"
+PATH="$build/bin:$PATH"
+refract_simulate rig.yml --out-dir=. --format=jpg --quality=88
