@@ -1,0 +1,13 @@
+"""Cameras that look through a flat window (glass, a vessel's port, a water surface): cv::refract for Python.
+
+Every call of the C++ module refract is a function here, with NumPy arrays for matrices, as in cv2. Where cv2 is
+installed the same functions are cv2.refract.* after `import opencv_refract`, and errors are cv2.error.
+"""
+import sys as _sys
+
+from ._native import *      # noqa: F401,F403  the calls, the two classes, the constants, error
+from ._native import __version__    # noqa: F401
+
+_cv2 = _sys.modules.get("cv2")      # _native has imported it, if it is installed
+if _cv2 is not None and not hasattr(_cv2, "refract"):   # an OpenCV that was built with the module has its own
+    _cv2.refract = _sys.modules["cv2.refract"] = _sys.modules[__name__]
