@@ -157,7 +157,7 @@ plane takes in what is not radial, with steps cut so that it stays inside the do
 uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 {
     const double target = std::sqrt(xd*xd + yd*yd);
-    double r = invertMonotone([this](double r, double& slope) { return radial(r, slope); }, target, std::sqrt(sMax_));
+    double r = invertMonotone([this](double radius, double& slope) { return radial(radius, slope); }, target, std::sqrt(sMax_));
     if (!std::isfinite(r))
     {
         if (radialOnly_)

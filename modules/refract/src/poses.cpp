@@ -12,7 +12,6 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 #include "arrays.hpp"
 #include "residual.hpp"
 #include "rotation.hpp"
-#include "opencv2/calib3d.hpp"
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 

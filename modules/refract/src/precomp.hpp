@@ -6,6 +6,11 @@
 #define OPENCV_REFRACT_PRECOMP_HPP
 
 #include "opencv2/refract.hpp"
+#if CV_VERSION_MAJOR < 5
+#include "opencv2/calib3d.hpp"
+#else
+#include "opencv2/geometry.hpp"     // the part of calib3d that is used here
+#endif
 
 #ifdef __OPENCV_BUILD
 #include "opencv2/core/private.hpp"

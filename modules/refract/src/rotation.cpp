@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "rotation.hpp"
-#include "opencv2/calib3d.hpp"
 
 namespace cv { namespace refract {
 
