@@ -1,17 +1,20 @@
 #!/bin/sh
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
-# Usage: tools/install_dependencies.sh [build|test]     test adds what only the tests use
+# Usage: tools/install_dependencies.sh [build|test|in-tree]     test adds what only the tests use,
+#                                                               in-tree what OpenCV's own build needs
 set -eu
 
 build="build-essential cmake ninja-build pkg-config
   libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
   libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev gnuplot-nox"
-test="catch2 libmrcal-dev"
+test="catch2 libgtest-dev libmrcal-dev"
+in_tree="python3-pip python3-dev python3-numpy"
 
 case "${1:-build}" in
   build) wanted=$build ;;
   test) wanted="$build $test" ;;
-  *) echo "usage: $0 [build|test]" >&2; exit 1 ;;
+  in-tree) wanted="$build $in_tree" ;;
+  *) echo "usage: $0 [build|test|in-tree]" >&2; exit 1 ;;
 esac
 
 missing=""

@@ -1,0 +1,71 @@
+#!/bin/sh
+# Builds modules/refract unchanged inside OpenCV's own tree and tests it there: warnings as errors in the module, its ts
+# tests, one pass of its performance tests, its Python test; and that OpenCV configures without it where Ceres or Eigen
+# is missing. Everything is kept in build/opencv-VERSION: the first run compiles OpenCV (some 15 minutes on two cores), the
+# next ones only what has changed.
+#
+# Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93      a version of the package opencv-contrib-python-headless, whose
+#                                                       source holds OpenCV's
+set -eu
+cd "$(dirname "$0")/.."
+version=${1:-}
+case $version in
+  4.14.0.94) hash=6cd98a20010c80bf9e6a9cff6189dd2c10bd111fb0aa4d5c6361389514a0ff6c ;;
+  5.0.0.93) hash=6a8c34de905f59b038f6ab0475e73fb0a0f345c3582ec3aeaeb1c0912e80cddb ;;
+  *) echo "usage: $0 4.14.0.94|5.0.0.93" >&2; exit 1 ;;
+esac
+
+tools/install_dependencies.sh in-tree
+package=opencv-contrib-python-headless
+python=/usr/bin/python3                 # the one that Debian's NumPy belongs to
+work=$PWD/build/opencv-$version
+source=$work/source/opencv
+build=$work/build
+mkdir -p "$work"
+
+if [ ! -e "$work/source.complete" ]; then
+  echo "Getting the source of OpenCV $version"
+  echo "$package==$version --hash=sha256:$hash" >"$work/requirements.txt"
+  "$python" -m pip download --quiet --no-deps --no-binary $package --require-hashes -r "$work/requirements.txt" -d "$work"
+  rm -rf "$work/source"
+  mkdir "$work/source"
+  tar -xzf "$work"/opencv_contrib_python_headless-*.tar.gz -C "$work/source" --strip-components=1
+  rm "$work"/opencv_contrib_python_headless-*.tar.gz
+  touch "$work/source.complete"
+fi
+
+configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds refract, its tests and Python
+  directory=$1; shift
+  off=""
+  for part in ADE AVIF FFMPEG FLATBUFFERS GSTREAMER GTK IPP ITT JASPER JPEG LAPACK OBSENSOR OPENCL OPENEXR OPENJPEG \
+              PROTOBUF QUIRC TIFF UNIFONT V4L VULKAN WEBP; do
+    off="$off -DWITH_$part=OFF"
+  done
+  launcher=""
+  command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache"
+  # shellcheck disable=SC2086  # lists of options
+  cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher $off \
+    -DOPENCV_EXTRA_MODULES_PATH="$PWD/modules" -DBUILD_LIST=refract,ts,python3,python_tests \
+    -DOPENCV_CMAKE_HOOKS_DIR="$PWD/test/opencv_hooks" \
+    -DBUILD_TESTS=ON -DBUILD_PERF_TESTS=ON -DBUILD_opencv_apps=OFF -DBUILD_JAVA=OFF -DCPU_DISPATCH= \
+    -DENABLE_PRECOMPILED_HEADERS=OFF -DPYTHON3_EXECUTABLE="$python" "$@" >"$directory.log" 2>&1 ||
+    { cat "$directory.log"; exit 1; }
+}
+
+# A build without one of the two says that the module is unavailable, and goes on.
+for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
+  configure "$work/without" $missing
+  grep -q "^-- *Unavailable:.* refract" "$work/without.log" ||
+    { echo "FAILED: with $missing OpenCV does not report refract as unavailable: $work/without.log" >&2; exit 1; }
+  rm -rf "$work/without"
+  echo "passed: unavailable with $missing"
+done
+
+configure "$build"
+ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3
+
+"$build/bin/opencv_test_refract"
+"$build/bin/opencv_perf_refract" --perf_min_samples=1 --perf_force_samples=1
+PYTHONPATH=$build/python_loader:$source/modules/python/test \
+  "$python" -B modules/refract/misc/python/test/test_refract.py
+echo "passed: OpenCV $version"
