@@ -60,9 +60,7 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
         CV_Error(Error::StsBadArg, "imagePointsRefracted has no point that was seen");
 
     std::vector<Camera> cameras(1, camera);
-    GlassWindow window = camera.window();
-    window.normal = startNormal(camera, seen, views.object, !(flags & GLASS_FREE_INTRINSICS));
-    cameras[0].setWindow(window);
+    cameras[0].setWindow(startWindow(camera, seen, views.object, flags));
     Pose none;
     const RigFit fit = fitRig(cameras, none, views, flags, criteria, jacobian.needed());
     camera = cameras[0];
@@ -111,37 +109,35 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
 
 namespace {
 
-//! Starts of the normals; a shared window is described in the frame of camera 1.
+//! Camera 2's window is camera 1's; the fit refuses one that is behind camera 2.
+GlassWindow seenByCamera2(GlassWindow window, const Pose& extrinsics)
+{
+    windowInCamera2(rotationMatrix(extrinsics.rvec), extrinsics.tvec, window.normal, window.distance);
+    window.distance = std::max(window.distance, 0.);
+    return window;
+}
+
+//! A window in the frame of camera 2 -> the same in the frame of camera 1.
+GlassWindow seenByCamera1(GlassWindow window, const Pose& extrinsics)
+{
+    window.distance -= window.normal.dot(extrinsics.tvec);
+    window.distance = std::max(window.distance, 0.);
+    window.normal = rotationMatrix(extrinsics.rvec).t()*window.normal;
+    return window;
+}
+
 void startWindows(std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views, int flags)
 {
-    const bool lensIsKnown = !(flags & GLASS_FREE_INTRINSICS);
-    GlassWindow window = cameras[0].window();
-    if (!(flags & GLASS_SHARED_WINDOW))
-    {
-        for (int c = 0; c < 2; c++)
-        {
-            window = cameras[c].window();
-            window.normal = startNormal(cameras[c], views.cameras[c], views.object, lensIsKnown);
-            cameras[c].setWindow(window);
-        }
-        return;
-    }
-    const bool seenBy1 = seesAnything(views.cameras[0].refracted);
+    const bool shared = (flags & GLASS_SHARED_WINDOW) != 0, seenBy1 = seesAnything(views.cameras[0].refracted);
     if (seenBy1)
-        window.normal = startNormal(cameras[0], views.cameras[0], views.object, lensIsKnown);
-    cameras[0].setWindow(window);
-    const Matx33d R = rotationMatrix(extrinsics.rvec);
-    windowInCamera2(R, extrinsics.tvec, window.normal, window.distance);
-    window.distance = std::max(window.distance, 0.);    // the fit refuses a window behind camera 2
-    cameras[1].setWindow(window);
-    if (seenBy1)
+        cameras[0].setWindow(startWindow(cameras[0], views.cameras[0], views.object, flags));
+    if (shared)
+        cameras[1].setWindow(seenByCamera2(cameras[0].window(), extrinsics));
+    if (shared && seenBy1)
         return;
-    window = cameras[0].window();
-    window.normal = R.t()*startNormal(cameras[1], views.cameras[1], views.object, lensIsKnown);
-    cameras[0].setWindow(window);
-    windowInCamera2(R, extrinsics.tvec, window.normal, window.distance);
-    window.distance = std::max(window.distance, 0.);
-    cameras[1].setWindow(window);
+    cameras[1].setWindow(startWindow(cameras[1], views.cameras[1], views.object, flags));
+    if (shared)
+        cameras[0].setWindow(seenByCamera1(cameras[1].window(), extrinsics));
 }
 
 } // namespace

@@ -206,11 +206,8 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
 
 MatrixXd rigCovariance(const RigProblem& rig)
 {
-    double sum = 0;
-    for (const RigImage& image : rig.images())
-        sum += rig.squaredError(image);
     const int freedom = 2*rig.pointCount() - rig.freeCount() - 6*rig.viewCount();
-    const MatrixXd free = freeCovariance(rig, freeParameters(rig), sum/freedom);
+    const MatrixXd free = freeCovariance(rig, freeParameters(rig), rig.squaredError()/freedom);
     const MatrixXd basis = rig.publicBasis();
     return basis*free*basis.transpose();
 }

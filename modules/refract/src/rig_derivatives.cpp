@@ -61,6 +61,14 @@ double RigProblem::squaredError(const RigImage& image) const
     return residuals.squaredNorm();
 }
 
+double RigProblem::squaredError() const
+{
+    double sum = 0;
+    for (const RigImage& image : images_)
+        sum += squaredError(image);
+    return sum;
+}
+
 RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
 {
     const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
@@ -72,8 +80,8 @@ RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
         result.byBlock.push_back(RowMajorMatrix(cost->num_residuals(), blocks_[i].values.size()));
     for (RowMajorMatrix& byBlock : result.byBlock)
         jacobians.push_back(byBlock.data());
-    Eigen::VectorXd residuals(cost->num_residuals());
-    CV_Assert(cost->Evaluate(valuesOf(image).data(), residuals.data(), jacobians.data()));
+    result.residuals.resize(cost->num_residuals());
+    CV_Assert(cost->Evaluate(valuesOf(image).data(), result.residuals.data(), jacobians.data()));
     return result;
 }
 

@@ -39,10 +39,7 @@ RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& vi
     fit.perViewErrors = rmsPerView(rig, (int)cameras.size());
     if (wantsJacobian)
         eigen2cv(rigJacobian(rig), fit.jacobian);
-    double sum = 0;
-    for (const RigImage& image : rig.images())
-        sum += rig.squaredError(image);
-    fit.rms = std::sqrt(sum/rig.pointCount());
+    fit.rms = std::sqrt(rig.squaredError()/rig.pointCount());
     for (int view = 0; view < rig.viewCount(); view++)
         fit.poses.push_back(rig.pose(view));
     for (int c = 0; c < (int)cameras.size(); c++)

@@ -3,18 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "rig_problem.hpp"
-#include <ceres/manifold.h>
-#include <ceres/ordered_groups.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
-#include <ceres/sphere_manifold.h>
 
 namespace cv { namespace refract {
 
 namespace {
-
-// A layer's thickness stays above this part of its start, a focal length too.
-const double SMALLEST_PART = 1e-6;
 
 std::array<double, 6> sixOf(const Pose& pose)
 {
@@ -56,35 +48,16 @@ std::vector<bool> freeLens(const std::vector<double>& lens, int flags)
     return isFree;
 }
 
-void addToProblem(ceres::Problem& problem, RigBlock& block)
+//! Thicknesses and focal lengths stay above a small part of their start.
+double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>& values)
 {
-    double* values = block.values.data();
-    const int size = (int)block.values.size();
-    std::vector<int> fixed;
-    for (int i = 0; i < size; i++)
-        if (!block.isFree[i])
-            fixed.push_back(i);
-    problem.AddParameterBlock(values, size);
-    if ((int)fixed.size() == size)
-    {
-        problem.SetParameterBlockConstant(values);
-        return;
-    }
-    if (block.kind == RigBlock::NORMAL)
-        problem.SetManifold(values, new ceres::SphereManifold<3>());
-    else if (!fixed.empty())
-        problem.SetManifold(values, new ceres::SubsetManifold(size, fixed));
-
-    const int layers = (size - 3)/2;
-    for (int i = 0; i < size; i++)
-    {
-        if (!block.isFree[i])
-            continue;
-        if (block.kind == RigBlock::LENS && i < 2)
-            problem.SetParameterLowerBound(values, i, SMALLEST_PART*values[i]);
-        if (block.kind == RigBlock::MEDIA)
-            problem.SetParameterLowerBound(values, i, i == 0 ? 0. : i <= layers ? SMALLEST_PART*values[i] : 1.);
-    }
+    const double SMALLEST_PART = 1e-6;
+    const int layers = ((int)values.size() - 3)/2;
+    if (kind == RigBlock::LENS && coordinate < 2)
+        return SMALLEST_PART*values[coordinate];
+    if (kind == RigBlock::MEDIA)
+        return coordinate == 0 ? 0. : coordinate <= layers ? SMALLEST_PART*values[coordinate] : 1.;
+    return -std::numeric_limits<double>::infinity();
 }
 
 } // namespace
@@ -124,6 +97,9 @@ void RigProblem::addBlock(RigBlock::Kind kind, int camera, const std::vector<dou
     block.camera = camera;
     block.values = values;
     block.isFree = isFree;
+    block.isHeld.assign(values.size(), false);
+    for (int i = 0; i < (int)values.size(); i++)
+        block.lower.push_back(lowerBound(kind, i, values));
     blocks_.push_back(block);
 }
 
@@ -175,67 +151,6 @@ ceres::CostFunction* RigProblem::makeCost(const RigImage& image) const
     const ImageResidual::Window window = !image.refracted ? ImageResidual::WITHOUT :
         isCamera2 && shared_ ? ImageResidual::OF_CAMERA_1 : ImageResidual::OWN;
     return ImageResidual::Create(cameras_[isCamera2 && shared_ ? 1 : image.camera], image.points, isCamera2, window);
-}
-
-void RigProblem::checkStart() const
-{
-    for (const RigImage& image : images_)
-    {
-        Camera seenBy = camera(image.camera);
-        if (!image.refracted)
-            seenBy.setWindow(GlassWindow());
-        const Rotation object(poses_[image.view].data());
-        const Pose toCamera2 = image.camera == 1 ? extrinsics() : Pose();
-        for (const Point3d& point : image.points.object)
-        {
-            const Vec3d inCamera1 = object.R*Vec3d(point) + pose(image.view).tvec;
-            Vec2d pixel;
-            double byPoint[6];
-            const int status = seenBy.projectJacobian(Rotation(toCamera2.rvec.val).R*inCamera1 + toCamera2.tvec, pixel,
-                                                      byPoint, nullptr);
-            if (status != REFRACT_OK)
-                CV_Error_(Error::StsBadArg, ("view %d of camera %d, point (%g, %g, %g): no image %s at the start "
-                                             "(RefractiveStatus %d); check the window's distance and thickness, the "
-                                             "lens and the units", image.view, image.camera + 1, point.x, point.y,
-                                             point.z, image.refracted ? "through the window" : "without window",
-                                             status));
-        }
-    }
-}
-
-bool RigProblem::solve(const TermCriteria& criteria)
-{
-    checkStart();
-    ceres::Problem problem;
-    const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (RigBlock& block : blocks_)
-    {
-        addToProblem(problem, block);
-        ordering->AddElementToGroup(block.values.data(), 1);
-    }
-    for (const RigImage& image : images_)
-    {
-        std::vector<double*> values(1, poses_[image.view].data());
-        for (int i : blocksOf(image))
-            values.push_back(blocks_[i].values.data());
-        problem.AddResidualBlock(makeCost(image), nullptr, values);
-        ordering->AddElementToGroup(values[0], 0);
-    }
-
-    const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = ordering;
-    options.max_num_iterations = (criteria.type & TermCriteria::COUNT) ? criteria.maxCount : 1000;
-    options.function_tolerance = stopsByChange ? criteria.epsilon : 1e-12;
-    options.gradient_tolerance = options.parameter_tolerance = 1e-14;
-    options.num_threads = 1;        // sums in one order: the same result every time
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    if (!summary.IsSolutionUsable())
-        CV_Error_(Error::StsNoConv, ("the calibration failed: %s", summary.message.c_str()));
-    return !stopsByChange || summary.termination_type != ceres::NO_CONVERGENCE;
 }
 
 Camera RigProblem::camera(int c) const

@@ -31,6 +31,8 @@ struct RigBlock
     int camera;
     std::vector<double> values;
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
+    std::vector<double> lower;      //!< bounds
+    std::vector<bool> isHeld;       //!< on its bound while solving
 
     //! d values / d free coordinates; orthonormal. A normal moves on the sphere.
     Eigen::MatrixXd tangentBasis() const;
@@ -50,6 +52,9 @@ public:
     RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
                const std::vector<Pose>& poses, int flags);
 
+    //! Empty, or which point has no image at the start.
+    String startFault() const;
+
     /** False if the iterations that the criteria allow did not reach the change that they ask for. Throws StsBadArg that
     names a point without image at the start, or StsNoConv. */
     bool solve(const TermCriteria& criteria);
@@ -66,13 +71,15 @@ public:
     int pointCount() const;
     int freeCount() const;              //!< without the poses
     double squaredError(const RigImage& image) const;
+    double squaredError() const;
 
-    //! Derivatives of one image's residuals: by its pose, and by all coordinates of the blocks that it depends on.
+    //! One image's residuals and their derivatives: by its pose, and by all coordinates of the blocks that it depends on.
     struct Derivatives
     {
         std::vector<int> blocks;                    //!< indices into blocks()
         std::vector<RowMajorMatrix> byBlock;        //!< of the same
         RowMajorMatrix byPose;
+        Eigen::VectorXd residuals;
     };
     Derivatives derivatives(const RigImage& image) const;
 
@@ -90,7 +97,8 @@ private:
     ceres::CostFunction* makeCost(const RigImage& image) const;
     int publicRow(const RigBlock& block) const;
     void addSharedWindow(Eigen::MatrixXd& basis) const;
-    void checkStart() const;
+    bool solveInside(double change, int& iterations, double& radius);   //!< in: how many, out: how many were made
+    bool holdAtBounds();            //!< true if that changes what is held
 
     std::vector<Camera> cameras_;       //!< lens models and numbers of layers
     bool shared_;

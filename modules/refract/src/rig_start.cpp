@@ -4,6 +4,7 @@
 
 #include "rig_start.hpp"
 #include "calibrate_normal.hpp"
+#include "rig_problem.hpp"
 #include "rotation.hpp"
 
 namespace cv { namespace refract {
@@ -11,7 +12,7 @@ namespace cv { namespace refract {
 namespace {
 
 // The search needs the rough shape of the cost only.
-const int SEARCH_VIEWS = 8;
+const int SEARCH_VIEWS = 8, SEARCH_FITS = 4;
 
 //! The given normal first, then tilts from the optical axis.
 std::vector<Vec3d> candidateNormals(const Vec3d& given)
@@ -41,36 +42,67 @@ int countSeen(const std::vector<Point2d>& pixels)
     return (int)std::count_if(pixels.begin(), pixels.end(), isSeen);
 }
 
-//! Every view, or SEARCH_VIEWS of them evenly.
-std::vector<int> searchViews(const PixelViews& refracted)
+//! What the camera saw through the window: every view, or SEARCH_VIEWS of them evenly.
+RigViews searchViews(const PixelViews& refracted, const std::vector<std::vector<Point3d> >& object)
 {
     std::vector<int> good;
     for (int i = 0; i < (int)refracted.size(); i++)
         if (countSeen(refracted[i]) >= 4)
             good.push_back(i);
-    std::vector<int> chosen;
+    RigViews views;
+    views.cameras.resize(1);
     const int count = std::min(SEARCH_VIEWS, (int)good.size());
     for (int i = 0; i < count; i++)
-        chosen.push_back(good[i*good.size()/count]);
-    return chosen;
+    {
+        const int view = good[i*good.size()/count];
+        views.object.push_back(object[view]);
+        views.cameras[0].refracted.push_back(refracted[view]);
+    }
+    views.cameras[0].direct.resize(count);
+    return views;
 }
 
-//! Sum of squared residuals of the views' best poses; infinite if one has none.
-double searchCost(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
-                  const std::vector<int>& views, std::vector<Pose>& poses)
+struct Candidate
 {
-    double cost = 0;
-    for (size_t i = 0; i < views.size(); i++)
+    Vec3d normal;
+    std::vector<Pose> poses;
+    double cost;        //!< sum of squared residuals; infinite if a view has no pose
+    bool operator<(const Candidate& other) const { return cost < other.cost; }
+};
+
+//! The best poses with this normal, started from others.
+Candidate tryNormal(const Camera& camera, const Vec3d& normal, const RigViews& views, const std::vector<Pose>& starts)
+{
+    Candidate candidate = { normal, starts, 0 };
+    const Camera turned = withNormal(camera, normal);
+    for (int i = 0; i < views.count(); i++)
     {
-        const std::vector<Point2d>& pixels = seen.refracted[views[i]];
+        const std::vector<Point2d>& pixels = views.cameras[0].refracted[i];
         double rms;
-        const Pose pose = solvePose(camera, object[views[i]], pixels, poses[i], rms);
-        if (!pose.found)
-            return std::numeric_limits<double>::infinity();
-        poses[i] = pose;
-        cost += rms*rms*countSeen(pixels);
+        candidate.poses[i] = solvePose(turned, views.object[i], pixels, starts[i], rms);
+        if (!candidate.poses[i].found)
+            candidate.cost = std::numeric_limits<double>::infinity();
+        else
+            candidate.cost += rms*rms*countSeen(pixels);
     }
-    return cost;
+    return candidate;
+}
+
+//! All candidates that have poses, the best first.
+std::vector<Candidate> tryNormals(const Camera& camera, const RigViews& views)
+{
+    std::vector<Candidate> candidates;
+    std::vector<Pose> starts(views.count());
+    for (const Vec3d& normal : candidateNormals(camera.layers().normal()))
+    {
+        const Candidate candidate = tryNormal(camera, normal, views, starts);
+        if (!std::isfinite(candidate.cost))
+            continue;
+        candidates.push_back(candidate);
+        starts = candidate.poses;
+    }
+    std::stable_sort(candidates.begin(), candidates.end());
+    return candidates;
 }
 
 struct PoseSource
@@ -108,31 +140,33 @@ Pose inCamera1(const Pose& inCamera2, const Pose& extrinsics)
 
 } // namespace
 
-Vec3d startNormal(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
-                  bool lensIsKnown)
+GlassWindow startWindow(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
+                        int flags)
 {
+    GlassWindow window = camera.window();
     const NormalEstimate fromPairs = normalFromPairs(camera, seen.direct, seen.refracted);
     if (fromPairs.undetermined.empty() && fromPairs.normal[2] > 0)
-        return fromPairs.normal;
-    const Vec3d given = camera.layers().normal();
-    if (!lensIsKnown)
-        return given;
+        window.normal = fromPairs.normal;
+    if (fromPairs.undetermined.empty() || (flags & GLASS_FREE_INTRINSICS))
+        return window;
 
-    const std::vector<int> views = searchViews(seen.refracted);
-    std::vector<Pose> poses(views.size());
-    Vec3d best = given;
+    const RigViews views = searchViews(seen.refracted, object);
+    if (views.count() == 0)
+        return window;
+    const std::vector<Candidate> candidates = tryNormals(camera, views);
     double least = std::numeric_limits<double>::infinity();
-    for (const Vec3d& normal : candidateNormals(given))
+    for (size_t i = 0; i < std::min(candidates.size(), (size_t)SEARCH_FITS); i++)
     {
-        std::vector<Pose> tried(poses);
-        const double cost = searchCost(withNormal(camera, normal), seen, object, views, tried);
+        const std::vector<Camera> cameras(1, withNormal(camera, candidates[i].normal));
+        RigProblem rig(cameras, Pose(), views, candidates[i].poses, flags & GLASS_FREE_DISTANCE);
+        rig.solve(TermCriteria(TermCriteria::COUNT | TermCriteria::EPS, 100, 1e-6));
+        const double cost = rig.squaredError();
         if (!(cost < least))
             continue;
         least = cost;
-        best = normal;
-        poses = tried;
+        window = rig.camera(0).window();
     }
-    return best;
+    return window;
 }
 
 std::vector<Pose> startPoses(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views)

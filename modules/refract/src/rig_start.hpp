@@ -10,10 +10,12 @@
 
 namespace cv { namespace refract {
 
-/** Start of one camera's normal: from pairs if there are any; else, with the lens known, the best of the given normal and
-a ring of tilts, by the poses' reprojection error through the window; else the given normal. */
-Vec3d startNormal(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
-                  bool lensIsKnown);
+/** Start of one camera's window: its normal and, if free, its distance; the rest as given.
+
+From pairs if there are any. Else, with the lens known, some views are fitted from the best few of a ring of tilts, as the
+cost through the window alone has more than one minimum. Else the given window. */
+GlassWindow startWindow(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
+                        int flags);
 
 /** Start of every view's pose, object -> camera 1: from its direct image with the most points, else from one through the
 window. Throws, naming the view, if no image gives a pose. */

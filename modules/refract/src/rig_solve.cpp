@@ -1,0 +1,145 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* The joint problem on Ceres' trust region.
+
+Ceres keeps bounds by projecting each step, and creeps where a step's other coordinates rely on the one that was cut off.
+So every few iterations a coordinate that lies on its bound, with the cost falling beyond it, is held there, and is let go
+when the cost falls towards the inside. */
+
+#include "rig_problem.hpp"
+#include <ceres/manifold.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <ceres/sphere_manifold.h>
+
+namespace cv { namespace refract {
+
+static void addToProblem(ceres::Problem& problem, RigBlock& block)
+{
+    double* values = block.values.data();
+    const int size = (int)block.values.size();
+    problem.AddParameterBlock(values, size);
+    std::vector<int> fixed;
+    for (int i = 0; i < size; i++)
+        if (!block.isFree[i] || block.isHeld[i])
+            fixed.push_back(i);
+        else if (std::isfinite(block.lower[i]))
+            problem.SetParameterLowerBound(values, i, block.lower[i]);
+    if ((int)fixed.size() == size)
+        problem.SetParameterBlockConstant(values);
+    else if (block.kind == RigBlock::NORMAL)
+        problem.SetManifold(values, new ceres::SphereManifold<3>());
+    else if (!fixed.empty())
+        problem.SetManifold(values, new ceres::SubsetManifold(size, fixed));
+}
+
+String RigProblem::startFault() const
+{
+    for (const RigImage& image : images_)
+    {
+        Camera seenBy = camera(image.camera);
+        if (!image.refracted)
+            seenBy.setWindow(GlassWindow());
+        const Rotation object(poses_[image.view].data());
+        const Pose toCamera2 = image.camera == 1 ? extrinsics() : Pose();
+        for (const Point3d& point : image.points.object)
+        {
+            const Vec3d inCamera1 = object.R*Vec3d(point) + pose(image.view).tvec;
+            Vec2d pixel;
+            double byPoint[6];
+            const int status = seenBy.projectJacobian(Rotation(toCamera2.rvec.val).R*inCamera1 + toCamera2.tvec, pixel,
+                                                      byPoint, nullptr);
+            if (status != REFRACT_OK)
+                return format("view %d of camera %d, point (%g, %g, %g): no image %s at the start (RefractiveStatus %d); "
+                              "check the window's distance and thickness, the lens and the units", image.view,
+                              image.camera + 1, point.x, point.y, point.z,
+                              image.refracted ? "through the window" : "without window", status);
+        }
+    }
+    return String();
+}
+
+bool RigProblem::solve(const TermCriteria& criteria)
+{
+    const String fault = startFault();
+    if (!fault.empty())
+        CV_Error(Error::StsBadArg, fault);
+    const int ITERATIONS_BETWEEN = 20;
+    const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
+    int left = (criteria.type & TermCriteria::COUNT) ? criteria.maxCount : 1000;
+    double radius = ceres::Solver::Options().initial_trust_region_radius;
+    while (left > 0)
+    {
+        int iterations = std::min(left, ITERATIONS_BETWEEN);
+        const bool converged = solveInside(stopsByChange ? criteria.epsilon : 0., iterations, radius);
+        left -= iterations;
+        if (!holdAtBounds() && converged)
+            return true;
+    }
+    // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
+    return !stopsByChange;
+}
+
+bool RigProblem::holdAtBounds()
+{
+    std::vector<RowMajorMatrix> gradients;
+    for (const RigBlock& block : blocks_)
+        gradients.push_back(RowMajorMatrix::Zero(block.values.size(), 1));
+    for (const RigImage& image : images_)
+    {
+        const Derivatives d = derivatives(image);
+        for (size_t i = 0; i < d.blocks.size(); i++)
+            gradients[d.blocks[i]] += d.byBlock[i].transpose()*d.residuals;
+    }
+    bool changed = false;
+    for (size_t b = 0; b < blocks_.size(); b++)
+        for (size_t i = 0; i < blocks_[b].values.size(); i++)
+        {
+            RigBlock& block = blocks_[b];
+            const bool hold = block.isFree[i] && block.values[i] <= block.lower[i] && gradients[b](i) >= 0;
+            changed = changed || hold != block.isHeld[i];
+            block.isHeld[i] = hold;
+        }
+    return changed;
+}
+
+bool RigProblem::solveInside(double change, int& iterations, double& radius)
+{
+    ceres::Problem problem;
+    const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (RigBlock& block : blocks_)
+    {
+        addToProblem(problem, block);
+        ordering->AddElementToGroup(block.values.data(), 1);
+    }
+    for (const RigImage& image : images_)
+    {
+        std::vector<double*> values(1, poses_[image.view].data());
+        for (int i : blocksOf(image))
+            values.push_back(blocks_[i].values.data());
+        problem.AddResidualBlock(makeCost(image), nullptr, values);
+        ordering->AddElementToGroup(values[0], 0);
+    }
+
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_SCHUR;
+    options.linear_solver_ordering = ordering;
+    options.max_num_iterations = iterations;
+    options.initial_trust_region_radius = radius;
+    options.function_tolerance = change;
+    options.gradient_tolerance = options.parameter_tolerance = 1e-14;
+    options.num_threads = 1;        // sums in one order: the same result every time
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    if (!summary.IsSolutionUsable())
+        CV_Error_(Error::StsNoConv, ("the calibration failed: %s", summary.message.c_str()));
+    iterations = std::max(1, (int)summary.iterations.size() - 1);
+    radius = summary.iterations.back().trust_region_radius;
+    return summary.termination_type == ceres::CONVERGENCE;
+}
+
+}} // namespace
