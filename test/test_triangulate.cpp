@@ -85,7 +85,7 @@ TEST_CASE("Perfect data gives the true point, every window and lens, both flags"
                 triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, found, status, flags);
                 for (size_t i = 0; i < s.points.size(); ++i)
                 {
-                    CAPTURE(name(kind), lens1.name, lens2.name, flags, i, s.points[i]);
+                    CAPTURE(name(kind), lens1.name, lens2.name, flags, i, s.points[i], s.pixels1[i], s.pixels2[i]);
                     REQUIRE(status[i] == REFRACT_OK);
                     const double error = norm(found[i] - s.points[i])/norm(s.points[i]);
                     REQUIRE(error < 1e-8);
