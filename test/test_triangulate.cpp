@@ -39,7 +39,8 @@ Scene makeScene(const LensKind& lens1, const LensKind& lens2, const GlassWindow&
     refractiveProjectPoints(all, Vec3d(), Vec3d(), s.camera1, p1, st1);
     refractiveProjectPoints(all, s.R, s.T, s.camera2, p2, st2);
     for (size_t i = 0; i < all.size() && (int)s.points.size() < count; ++i)
-        if (st1[i] == REFRACT_OK && st2[i] == REFRACT_OK)
+        // The paper's lens has no end; far beyond any image its pixels are rounding only.
+        if (st1[i] == REFRACT_OK && st2[i] == REFRACT_OK && norm(p1[i]) < 1e5 && norm(p2[i]) < 1e5)
         {
             s.points.push_back(all[i]);
             s.pixels1.push_back(p1[i]);
