@@ -135,6 +135,8 @@ TEST_CASE("One depth serves all points, N depths one each", "[undistort]")
         refractiveUndistortPoints(pixels, many, K, noArray(), glass, depth);
         CHECK(largestDifference(one, many) == 0);
     }
+    refractiveUndistortPoints(pixels, many, K, noArray(), glass, Scalar(500));     // as a number comes from Python
+    CHECK(largestDifference(one, many) == 0);
     refractiveUndistortPoints(pixels, mixed, K, noArray(), glass, std::vector<double>{ 500, NaN, INF }, noArray(),
                               noArray(), status);
     CHECK(mixed[0] == one[0]);

@@ -181,8 +181,11 @@ std::vector<double> readDepths(InputArray a, int size, const char* name)
     if (a.empty())
         return std::vector<double>(1, std::numeric_limits<double>::infinity());
     const Mat m = doubles(a, name);
-    const int n = (int)(m.total()*m.channels());
+    int n = (int)(m.total()*m.channels());
     const double* p = m.ptr<double>();
+    // One number comes from Python as cv::Scalar, (d, 0, 0, 0): 0 is no depth, and (d, 0, 0, 0) no plane one can see.
+    if (n == 4 && p[1] == 0 && p[2] == 0 && p[3] == 0)
+        n = 1;
     if (size >= 0 && n != 1 && n != size)
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d values; it must have 1 or one per point (%d)", name, n, size));
     if (n == 1 && !(p[0] > 0))
