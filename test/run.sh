@@ -46,6 +46,7 @@ suite() {   # suite EXECUTABLE [FILTER]: all cases of a Catch2 program, counted 
 mkdir -p build
 build build/release
 suite build/release/bin/refract_tests
+run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"

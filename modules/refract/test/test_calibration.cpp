@@ -1,0 +1,125 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "test_scene.hpp"
+
+namespace opencv_test { namespace {
+
+using namespace scene;
+
+Ptr<RefractiveCamera> bare1() { return RefractiveCamera::create(K1(), D1()); }
+Ptr<RefractiveCamera> bare2() { return RefractiveCamera::create(K2(), D2()); }
+// The pane as its data sheet has it, straight ahead.
+GlassWindow straight(const GlassWindow& window) { return GlassWindow(Vec3d(0, 0, 1), 20, 1.5437, window.distance); }
+
+TEST(Refract_CalibrateGlassNormal, from_pairs)
+{
+    Vec3d normal;
+    Vec2d center;
+    Matx33d covariance;
+    const double rms = calibrateGlassNormal(views(bare1()), views(camera1()), K1(), D1(), normal, center, covariance);
+    const Vec3d n = window1().normal;
+    EXPECT_NEAR(0, rms, 1e-6);
+    EXPECT_NEAR(0, angle(normal, n), 1e-8);
+    EXPECT_NEAR(K1()(0, 2) + K1()(0, 0)*n[0]/n[2], center[0], 1e-3);
+    EXPECT_NEAR(K1()(1, 2) + K1()(1, 1)*n[1]/n[2], center[1], 1e-3);
+
+    Vec3d same;
+    calibrateGlassNormal(views(bare1()), views(camera1()), bare1(), same);
+    EXPECT_EQ(normal, same);
+}
+
+TEST(Refract_CalibrateGlassNormal, refuses_views_that_do_not_differ)
+{
+    Vec3d normal;
+    EXPECT_TRUE(contains(thrown([&] { calibrateGlassNormal(views(bare1()), views(bare1()), K1(), D1(), normal); }),
+                         "the normal is undetermined"));
+    EXPECT_TRUE(contains(thrown([&] { calibrateGlassNormal(PixelViews(2), views(camera1()), K1(), D1(), normal); }),
+                         "imagePointsDirect has 2 views"));
+}
+
+TEST(Refract_CalibrateGlass, from_pairs)
+{
+    GlassWindow window = straight(window1());
+    window.thickness[0] = 15;
+    std::vector<Vec3d> rvecs, tvecs;
+    const double rms = calibrateGlass(boards(), views(camera1()), views(bare1()), K1(), D1(), window, rvecs, tvecs,
+                                      GLASS_FREE_THICKNESS);
+    EXPECT_NEAR(0, rms, 1e-6);
+    EXPECT_NEAR(0, angle(window.normal, window1().normal), 1e-6);
+    EXPECT_NEAR(20, window.thickness[0], 1e-4);
+    ASSERT_EQ(5u, rvecs.size());
+    EXPECT_NEAR(590, tvecs[0][2], 1e-3);
+}
+
+TEST(Refract_CalibrateGlass, without_pairs)
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K1(), D1(), straight(window1()));
+    std::vector<Vec3d> rvecs, tvecs;
+    Mat deviations, covariance, perView, jacobian;
+    const double rms = calibrateGlass(boards(), views(camera1()), noArray(), camera, rvecs, tvecs,
+                                      deviations, covariance, perView, jacobian);
+    EXPECT_NEAR(0, rms, 1e-6);
+    EXPECT_NEAR(0, angle(camera->window().normal, window1().normal), 1e-6);
+    const int parameters = 8 + 8;           // lens; normal, distance, one layer, two media
+    EXPECT_EQ(Size(1, parameters), deviations.size());
+    EXPECT_EQ(Size(parameters, parameters), covariance.size());
+    EXPECT_EQ(Size(2, 5), perView.size());
+    EXPECT_EQ(Size(parameters + 6*5, 2*30*5), jacobian.size());
+}
+
+TEST(Refract_CalibrateGlass, refuses_what_cannot_be_seen)
+{
+    GlassWindow window = straight(window1());
+    std::vector<Vec3d> rvecs, tvecs;
+    const auto why = [&](int flags) { return thrown([&] {
+        calibrateGlass(boards(), views(camera1()), views(bare1()), K1(), D1(), window, rvecs, tvecs, flags); }); };
+    EXPECT_TRUE(contains(why(GLASS_FREE_DISTANCE), "GLASS_FREE_DISTANCE"));     // no effect in air
+    EXPECT_TRUE(contains(why(GLASS_FREE_INTRINSICS), "GLASS_FREE_INTRINSICS")); // no camera to return the lens in
+    EXPECT_TRUE(contains(why(1 << 20), "flags"));
+}
+
+TEST(Refract_StereoCalibrateGlass, finds_both_windows)
+{
+    const Ptr<RefractiveCamera> first = RefractiveCamera::create(K1(), D1(), straight(window1())),
+                                second = RefractiveCamera::create(K2(), D2(), straight(window2()));
+    Mat rotation(R()), translation(T());
+    std::vector<Vec3d> rvecs, tvecs;
+    Mat deviations, covariance, perView;
+    const double rms = stereoCalibrateGlass(boards(), views(camera1()), views(bare1()), views(camera2(), true),
+                                            views(bare2(), true), first, second, rotation, translation, rvecs, tvecs,
+                                            deviations, covariance, perView);
+    EXPECT_NEAR(0, rms, 1e-6);
+    EXPECT_NEAR(0, angle(first->window().normal, window1().normal), 1e-6);
+    EXPECT_NEAR(0, angle(second->window().normal, window2().normal), 1e-6);
+    EXPECT_EQ(Size(4, 5), perView.size());
+
+    EXPECT_TRUE(contains(thrown([&] {
+        stereoCalibrateGlass(boards(), views(camera1()), noArray(), PixelViews(1), noArray(), first, second, rotation,
+                             translation, rvecs, tvecs, deviations, covariance, perView); }), "imagePointsRefracted2"));
+}
+
+TEST(Refract_SolvePnP, finds_the_pose)
+{
+    const Vec3d rvec(0, 0.2, 0), tvec(10, -5, 620);
+    const std::vector<Point2d> pixels = project(board(), camera1(), rotation(0, 0.2), tvec);
+    Vec3d r, t, r2 = rvec, t2 = tvec;
+    EXPECT_NEAR(0, refractiveSolvePnP(board(), pixels, K1(), D1(), window1(), r, t), 1e-6);
+    EXPECT_NEAR(0, cv::norm(r - rvec), 1e-6);
+    EXPECT_NEAR(0, cv::norm(t - tvec), 1e-4);
+    EXPECT_NEAR(0, refractiveSolvePnP(board(), pixels, camera1(), r2, t2, true), 1e-6);
+    EXPECT_NEAR(0, cv::norm(t2 - tvec), 1e-4);
+}
+
+TEST(Refract_SolvePnP, no_pose_is_NaN)
+{
+    const std::vector<Point2d> unseen(board().size(), Point2d(NaN, NaN));
+    Vec3d r, t;
+    EXPECT_TRUE(cvIsNaN(refractiveSolvePnP(board(), unseen, camera1(), r, t)) != 0);
+    EXPECT_TRUE(cvIsNaN(r[0]) && cvIsNaN(t[2]));
+    EXPECT_TRUE(contains(thrown([&] { refractiveSolvePnP(board(), std::vector<Point2d>(3), camera1(), r, t); }),
+                         "imagePoints 3"));
+}
+
+}} // namespace

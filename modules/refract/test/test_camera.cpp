@@ -1,0 +1,92 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "test_scene.hpp"
+
+namespace opencv_test { namespace {
+
+using namespace scene;
+
+TEST(Refract_GlassWindow, is_checked)
+{
+    EXPECT_NO_THROW(GlassWindow().check());
+    EXPECT_NEAR(1, cv::norm(GlassWindow(Vec3d(1, 2, 3), 10, 1.5).normal), 1e-15);
+    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(), 10, 1.5); }), "normal is (0, 0, 0)"));
+    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(0, 0, 1), -2, 1.5); }), "thickness"));
+    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(0, 0, 1), 10, 0.5); }), "index"));
+    GlassWindow window = window1();
+    window.outerIndex = NaN;
+    EXPECT_TRUE(contains(thrown([&] { window.check(); }), "outerIndex"));
+    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::create(K1(), D1(), window); }), "outerIndex"));
+}
+
+TEST(Refract_GlassWindow, is_written_and_read)
+{
+    GlassWindow window = window1(), copy;
+    window.thickness.push_back(0.76);       // laminated, into water
+    window.index.push_back(1.48);
+    window.outerIndex = 1.333;
+    FileStorage fs("window.yml", FileStorage::WRITE | FileStorage::MEMORY);
+    fs << "window" << window;
+    FileStorage in(fs.releaseAndGetString(), FileStorage::READ | FileStorage::MEMORY);
+    in["window"] >> copy;
+    EXPECT_NEAR(0, cv::norm(copy.normal - window.normal), 1e-15);
+    EXPECT_EQ(window.distance, copy.distance);
+    EXPECT_EQ(window.thickness, copy.thickness);
+    EXPECT_EQ(window.index, copy.index);
+    EXPECT_EQ(window.outerIndex, copy.outerIndex);
+}
+
+TEST(Refract_Camera, keeps_what_it_was_made_of)
+{
+    const Ptr<RefractiveCamera> camera = camera2();
+    EXPECT_EQ("opencv", camera->lensModel());
+    EXPECT_EQ(0, cvtest::norm(camera->cameraMatrix(), Mat(K2()), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(camera->distCoeffs(), D2(), NORM_INF));
+    EXPECT_EQ(Size(1, 9), camera->lensParameters().size());
+    EXPECT_EQ(Size(), camera->imageSize());
+    camera->setImageSize(Size(1280, 1024));
+    EXPECT_EQ(Size(1280, 1024), camera->imageSize());
+}
+
+TEST(Refract_Camera, changes_what_is_projected)
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K1(), D1());
+    camera->setWindow(window1());
+    EXPECT_EQ(project(scenePoints(), camera1()), project(scenePoints(), camera));
+
+    Mat parameters = camera->lensParameters();
+    parameters.at<double>(2) += 5;          // cx
+    camera->setLensParameters(parameters);
+    EXPECT_NEAR(5, project(scenePoints(), camera)[0].x - project(scenePoints(), camera1())[0].x, 1e-9);
+    EXPECT_TRUE(contains(thrown([&] { camera->setLensParameters(std::vector<double>(3, 1.)); }), "parameters has 3 values"));
+}
+
+TEST(Refract_Camera, fisheye_and_mrcal)
+{
+    const Ptr<RefractiveCamera> fisheye = RefractiveCamera::createFisheye(K1(), noArray(), window1());
+    EXPECT_EQ("fisheye", fisheye->lensModel());
+    const std::vector<double> intrinsics = { K1()(0, 0), K1()(1, 1), K1()(0, 2), K1()(1, 2), -0.4082, 0.4359, 0, 0 };
+    const Ptr<RefractiveCamera> mrcal = RefractiveCamera::createMrcal("LENSMODEL_OPENCV4", intrinsics, window1());
+    EXPECT_EQ("LENSMODEL_OPENCV4", mrcal->lensModel());
+    EXPECT_EQ(project(scenePoints(), camera1()), project(scenePoints(), mrcal));
+    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::createMrcal("LENSMODEL_NONE", intrinsics); }), "LENSMODEL_NONE"));
+    EXPECT_TRUE(contains(thrown([] { RefractiveCamera::create(K1(), std::vector<double>(3)); }), "distCoeffs has 3 values"));
+}
+
+TEST(Refract_Camera, is_written_and_read)
+{
+    const String filename = cv::tempfile(".yml");
+    {
+        FileStorage fs(filename, FileStorage::WRITE);
+        camera2()->write(fs);
+    }
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::read(filename);
+    remove(filename.c_str());
+    EXPECT_EQ(0, cvtest::norm(camera->lensParameters(), camera2()->lensParameters(), NORM_INF));
+    EXPECT_EQ(window2().index, camera->window().index);
+    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::read(filename); }), filename.c_str()));
+}
+
+}} // namespace
