@@ -22,8 +22,8 @@ int main(int argc, char** argv)
 {
     const CommandLineParser args(argc, argv,
         "{camera | samples/data/stereo/truth.yml     | lens: camera_matrix, distortion_coefficients}"
-        "{direct | samples/data/stereo/direct1/pair00.jpg | image without the window}"
-        "{glass  | samples/data/stereo/glass1/pair00.jpg  | image through the window, board not moved}"
+        "{direct | samples/data/stereo/direct1/pair1.jpg | image without the window}"
+        "{glass  | samples/data/stereo/glass1/pair1.jpg  | image through the window, board not moved}"
         "{cols   | 6 | inner corners in a row} {rows | 5 | inner corners in a column}");
     const Size size(args.get<int>("cols"), args.get<int>("rows"));
     const Ptr<refract::RefractiveCamera> camera = refract::RefractiveCamera::read(args.get<String>("camera"));

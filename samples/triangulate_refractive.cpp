@@ -38,8 +38,8 @@ int main(int argc, char** argv)
 {
     const CommandLineParser args(argc, argv,
         "{calib | samples/data/stereo/truth.yml | calibrated stereo rig}"
-        "{left  | samples/data/stereo/measure1/measure00.jpg | image of camera 1}"
-        "{right | samples/data/stereo/measure2/measure00.jpg | image of camera 2}"
+        "{left  | samples/data/stereo/measure1/z600_1.jpg | image of camera 1}"
+        "{right | samples/data/stereo/measure2/z600_1.jpg | image of camera 2}"
         "{cols  | 6 | inner corners in a row} {rows | 5 | inner corners in a column} {square | 39 | side of a square}");
     const String filename = args.get<String>("calib");
     const Ptr<refract::RefractiveCamera> camera1 = refract::RefractiveCamera::read(filename, "camera1");
