@@ -306,3 +306,36 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
     }
     CHECK(camera->window().normal == before);       // a refusal leaves the start alone
 }
+
+TEST_CASE("A distance that ends on zero is held there", "[calibrate_glass]")
+{
+    Random random(360);
+    GlassWindow window({ -0.1, 0.2, 1 }, 8, 1.49, 0, 1.333);
+    const Ptr<RefractiveCamera> camera = paperCamera(window);
+    window.distance = 30;
+    int onBound = 0;
+    for (int run = 0; run < 12; run++)
+    {
+        CAPTURE(run, seed());
+        const CalibrationScene scene = makeScene(camera, 6, random, 0.3);
+        const Ptr<RefractiveCamera> found = startCamera(camera, straight(window));
+        calibrate(scene, run % 2 == 0, found, GLASS_FREE_DISTANCE);
+        CHECK(found->window().distance < 5);
+        onBound += found->window().distance == 0;
+    }
+    CHECK(onBound > 0);
+}
+
+TEST_CASE("One view through a pane: the search finds the deeper of two minima", "[calibrate_glass]")
+{
+    for (int run = 0; run < 20; run++)
+    {
+        Random random(3700 + run);
+        CAPTURE(run, seed());
+        const Ptr<RefractiveCamera> camera = paperCamera(makeWindow(PANE_IN_AIR, random));
+        const CalibrationScene scene = makeScene(camera, 1, random, 0.1);
+        const double fromTruth = calibrate(scene, false, startCamera(camera, camera->window()));
+        const double fromStraight = calibrate(scene, false, startCamera(camera, straight(camera->window())));
+        CHECK(fromStraight <= fromTruth + 1e-6);
+    }
+}

@@ -169,9 +169,21 @@ void refuse(const std::vector<FreeParameter>& parameters, const VectorXd& part, 
     for (size_t i = 0; i < words.size(); i++)
         text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
     if ((int)words.size() > dimension)
-        text += hint.empty() ? String("; only a combination of them shows") : hint;
+        text += hint.empty() ? String("; only combinations of them show") : hint;
     CV_Error_(Error::StsNoConv, ("the views do not determine %s. Fix what is known otherwise, or add views: pairs without "
                                  "and with the window, more tilt, more depth", text.c_str()));
+}
+
+//! 1 for every parameter that is beyond its limit or tied to the worst one, else 0.
+VectorXd hopelessPart(const MatrixXd& half, const VectorXd& excess, int worst)
+{
+    const double TIED = 0.9;        // correlation
+    const MatrixXd unit = half.rowwise().normalized();
+    VectorXd part = VectorXd::Zero(excess.size());
+    for (int i = 0; i < excess.size(); i++)
+        if (excess[i] > 1 || std::abs(unit.row(i).dot(unit.row(worst))) > TIED)
+            part[i] = 1;
+    return part;
 }
 
 //! Covariance of the free parameters; refuses if a direction is lost or a standard deviation is no answer.
@@ -191,14 +203,12 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
 
     const double floor = std::max(variance, LEAST_SIGMA*LEAST_SIGMA);
     const VectorXd sigma = half.rowwise().norm()*std::sqrt(floor);
-    VectorXd inverseLimit(parameters.size());
+    VectorXd excess(parameters.size());
     for (int i = 0; i < (int)parameters.size(); i++)
-        inverseLimit[i] = 1/parameters[i].hopeless;
-    if ((sigma.cwiseProduct(inverseLimit)).maxCoeff() > 1)
-    {
-        const Eigen::JacobiSVD<MatrixXd> worst(inverseLimit.asDiagonal()*half, Eigen::ComputeFullU);
-        refuse(parameters, worst.matrixU().col(0).cwiseAbs(), 1, sigma);
-    }
+        excess[i] = sigma[i]/parameters[i].hopeless;
+    int worst;
+    if (excess.maxCoeff(&worst) > 1)
+        refuse(parameters, hopelessPart(half, excess, worst), 1, sigma);
     return variance*half*half.transpose();
 }
 

@@ -22,6 +22,8 @@ RowsMap rowsOf(double* jacobian, int i, int size)
 
 Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 
+Eigen::RowVector3d row(const Vec3d& v) { return Eigen::RowVector3d(v[0], v[1], v[2]); }
+
 } // namespace
 
 Rotation::Rotation(const double* rvec)
@@ -104,75 +106,90 @@ bool ImageResidual::setCamera(double const* const* parameters, Camera& camera) c
     return true;
 }
 
+//! The path from the object to the camera.
+struct ImageResidual::Frames
+{
+    Frames(const double* pose, const double* extrinsics, const double* normal)
+        : object(pose), camera2(extrinsics), tPose(vec3(pose + 3)), T(vec3(extrinsics + 3)), normal1(vec3(normal)) {}
+    const Rotation object, camera2;
+    const Vec3d tPose, T, normal1;      //!< the normal in the frame that its block is in
+};
+
+//! One point on its way, and the derivatives of its pixel.
+struct ImageResidual::Point
+{
+    Vec3d inObject, inCamera1;
+    Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
+    Rows byParameters;
+};
+
+//! The rows of point i in every jacobian that is wanted.
+void ImageResidual::writeJacobians(const Frames& frames, Point& point, int i, double** jacobians) const
+{
+    const int lensCount = camera_.lensCount(), mediaCount = camera_.windowCount() - 3;
+    const auto wanted = [&](int block) { return block >= 0 && jacobians[block]; };
+    if (wanted(0))
+    {
+        RowsMap pose = rowsOf(jacobians[0], i, 6);
+        pose.rightCols<3>() = point.byPoint*eigen(frames.camera2.R);
+        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(frames.object.derivativeOf(point.inObject));
+    }
+    if (wanted(extrinsics_))
+    {
+        RowsMap rows = rowsOf(jacobians[extrinsics_], i, 6);
+        rows.leftCols<3>() = point.byPoint*eigen(frames.camera2.derivativeOf(point.inCamera1));
+        rows.rightCols<3>() = point.byPoint;
+    }
+    if (wanted(lens_))
+        rowsOf(jacobians[lens_], i, lensCount) = point.byParameters.leftCols(lensCount);
+    if (!hasWindow())
+        return;
+
+    Rows byNormal = point.byParameters.middleCols(lensCount, 3);
+    if (window_ == OF_CAMERA_1)
+    {
+        const Eigen::Vector2d byDistance = point.byParameters.col(lensCount + 3);
+        byNormal += byDistance*row(frames.T);       // d2 = d1 + n2.T moves with n2 = R n1
+        if (wanted(extrinsics_))
+        {
+            RowsMap rows = rowsOf(jacobians[extrinsics_], i, 6);
+            rows.leftCols<3>() += byNormal*eigen(frames.camera2.derivativeOf(frames.normal1));
+            rows.rightCols<3>() += byDistance*row(frames.camera2.R*frames.normal1);
+        }
+        byNormal = byNormal*eigen(frames.camera2.R);
+    }
+    if (wanted(normal_))
+        rowsOf(jacobians[normal_], i, 3) = byNormal;
+    if (wanted(media_))
+        rowsOf(jacobians[media_], i, mediaCount) = point.byParameters.middleCols(lensCount + 3, mediaCount);
+}
+
 bool ImageResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
 {
     Camera camera(camera_);
     if (!setCamera(parameters, camera))
         return false;
+    const double nothing[6] = { 0, 0, 0, 0, 0, 0 };
+    const Frames frames(parameters[0], extrinsics_ > 0 ? parameters[extrinsics_] : nothing,
+                        hasWindow() ? parameters[normal_] : nothing);
 
-    const Rotation object(parameters[0]);
-    const double still[6] = { 0, 0, 0, 0, 0, 0 };
-    const double* extrinsics = extrinsics_ > 0 ? parameters[extrinsics_] : still;
-    const Rotation cam2(extrinsics);
-    const Vec3d T = vec3(extrinsics + 3);
-    const Vec3d normal1 = hasWindow() ? vec3(parameters[normal_]) : Vec3d();
-    const Vec3d normal2 = cam2.R*normal1;
-    const Matx33d dNormal2 = cam2.derivativeOf(normal1);
-
-    const auto wanted = [&](int block) { return jacobians && block > 0 && jacobians[block]; };
-    const bool wantsExtrinsics = wanted(extrinsics_);
-    const bool wantsNormal = hasWindow() && wanted(normal_), wantsMedia = hasWindow() && wanted(media_);
-    const bool shared = window_ == OF_CAMERA_1;
-    const bool wantsParameters = wanted(lens_) || wantsNormal || wantsMedia || (shared && wantsExtrinsics);
-
-    const int lensCount = camera.lensCount(), mediaCount = camera.windowCount() - 3;
-    Rows byParameters(2, camera.parameterCount());
-    Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
-
+    // A pose alone (solvePose) does without the derivatives by camera parameters.
+    const bool byParameters = jacobians && std::any_of(jacobians + 1, jacobians + parameter_block_sizes().size(),
+                                                       [](const double* jacobian) { return jacobian != nullptr; });
+    Point point;
+    point.byParameters = Rows::Zero(2, camera.parameterCount());
     for (int i = 0; i < (int)points_.pixel.size(); i++)
     {
-        const Vec3d inObject(points_.object[i]);
-        const Vec3d inCamera1 = object.R*inObject + vec3(parameters[0] + 3);
+        point.inObject = points_.object[i];
+        point.inCamera1 = frames.object.R*point.inObject + frames.tPose;
         Vec2d pixel;
-        if (camera.projectJacobian(cam2.R*inCamera1 + T, pixel, byPoint.data(),
-                                   wantsParameters ? byParameters.data() : nullptr) != REFRACT_OK)
+        if (camera.projectJacobian(frames.camera2.R*point.inCamera1 + frames.T, pixel, point.byPoint.data(),
+                                   byParameters ? point.byParameters.data() : nullptr) != REFRACT_OK)
             return false;
         residuals[2*i] = pixel[0] - points_.pixel[i].x;
         residuals[2*i + 1] = pixel[1] - points_.pixel[i].y;
-        if (!jacobians)
-            continue;
-
-        if (jacobians[0])
-        {
-            RowsMap pose = rowsOf(jacobians[0], i, 6);
-            pose.rightCols<3>() = byPoint*eigen(cam2.R);
-            pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(object.derivativeOf(inObject));
-        }
-        Rows byNormal = byParameters.middleCols(lensCount, 3);
-        const Eigen::Vector2d byDistance = byParameters.col(lensCount + 3);
-        if (shared && wantsParameters)      // d2 = d1 + n2.T moves with n2
-            byNormal += byDistance*Eigen::RowVector3d(T[0], T[1], T[2]);
-        if (wantsExtrinsics)
-        {
-            RowsMap rows = rowsOf(jacobians[extrinsics_], i, 6);
-            rows.leftCols<3>() = byPoint*eigen(cam2.derivativeOf(inCamera1));
-            rows.rightCols<3>() = byPoint;
-            if (shared)
-            {
-                rows.leftCols<3>() += byNormal*eigen(dNormal2);
-                rows.rightCols<3>() += byDistance*Eigen::RowVector3d(normal2[0], normal2[1], normal2[2]);
-            }
-        }
-        if (wanted(lens_))
-            rowsOf(jacobians[lens_], i, lensCount) = byParameters.leftCols(lensCount);
-        if (wantsNormal)
-        {
-            if (shared)
-                byNormal = byNormal*eigen(cam2.R);
-            rowsOf(jacobians[normal_], i, 3) = byNormal;
-        }
-        if (wantsMedia)
-            rowsOf(jacobians[media_], i, mediaCount) = byParameters.middleCols(lensCount + 3, mediaCount);
+        if (jacobians)
+            writeJacobians(frames, point, i, jacobians);
     }
     return true;
 }

@@ -35,8 +35,11 @@ public:
 private:
     ImageResidual(const Camera& camera, const ImagePoints& points, bool isCamera2, Window window);
 
+    struct Point;
+    struct Frames;
     bool hasWindow() const { return window_ != WITHOUT; }
     bool setCamera(double const* const* parameters, Camera& camera) const;
+    void writeJacobians(const Frames& frames, Point& point, int i, double** jacobians) const;
 
     const Camera& camera_;
     const ImagePoints& points_;

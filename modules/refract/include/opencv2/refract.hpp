@@ -361,8 +361,8 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
 /** @brief The window's normal from image pairs taken without and with the window, the board not moved
 (@cite Plate2024, section 3.1.1).
 
-Direct bearing, refracted bearing and normal are coplanar for every point at any depth when inner and outer medium are
-equal; the normal is the vector closest to all these planes. Works on bearings, so the distortion centre may lie at
+Direct bearing, refracted bearing and normal are coplanar for every point at any depth, whatever the layers and the
+media; the normal is the vector closest to all these planes. Works on bearings, so the distortion centre may lie at
 infinity; each pair is weighted by its propagated noise, iterated. The lens model is undone first. Thickness and index
 need not be known.
 
@@ -395,7 +395,7 @@ view is allowed where the direct one is not empty.
 where there is none. A NaN point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
-@param window in: the known values and, for glass-only views, the start of the normal. With pairs and equal media the
+@param window in: the known values and, for glass-only views, the start of the normal. With pairs the
 start of the normal comes from the data. Out: the estimate.
 @param rvecs object -> camera rotation vector of each view.
 @param tvecs object -> camera translation of each view.
@@ -403,7 +403,8 @@ start of the normal comes from the data. Out: the estimate.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels, by cv::calibrateCamera's definition, over all observed points.
 
-Throws where the data cannot determine what is free; the text names the direction that is undetermined.
+Throws where the data cannot determine what is free; the text names the direction that is undetermined. Throws too if
+criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
         InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
