@@ -15,6 +15,16 @@
 
 using namespace cv;
 
+// Arrays of the other byte order, and views into packed records, are copied first: the conversion of cv2 reads the former
+// as if they were native and refuses the latter. Every conversion of the generated code to Mat comes here.
+static bool pyopencv_to(PyObject* o, Mat& m, const ArgInfo& info)
+{
+    if (!o || !PyArray_Check(o) || PyArray_ISBEHAVED_RO((PyArrayObject*)o) || info.outputarg)
+        return pyopencv_to<Mat>(o, m, info);
+    PySafeObject copy(PyArray_FROM_OF(o, NPY_ARRAY_ALIGNED | NPY_ARRAY_NOTSWAPPED));
+    return copy && pyopencv_to<Mat>(copy, m, info);
+}
+
 typedef std::vector<Mat> vector_Mat;
 typedef std::vector<double> vector_double;
 
@@ -36,6 +46,15 @@ static bool addObject(PyObject* module, const char* name, PyObject* object)
     Py_XDECREF(object);
     return false;
 }
+
+//! The type's constructor; a type that has none in C++ must not be made empty in Python.
+static int refuseToMake(PyObject* self, PyObject*, PyObject*)
+{
+    PyErr_Format(PyExc_TypeError, "%R is made by its create functions", (PyObject*)Py_TYPE(self));
+    return -1;
+}
+static initproc constructorOf(int) { return refuseToMake; }
+template<typename Function> static initproc constructorOf(Function* f) { return (initproc)f; }
 
 static bool registerNewType(PyObject* module, const char* name, PyObject* type, const std::string&)
 {
@@ -97,7 +116,7 @@ static bool fill(PyObject* m)
 
     PyObject* pyopencv_NoBase_TypePtr = NULL;
 #define CVPY_TYPE(EXPORT_NAME, CLASS_ID, _1, _2, BASE, CONSTRUCTOR, SCOPE) \
-    CVPY_TYPE_INIT_DYNAMIC(EXPORT_NAME, CLASS_ID, return false, BASE, CONSTRUCTOR, "")
+    CVPY_TYPE_INIT_DYNAMIC(EXPORT_NAME, CLASS_ID, return false, BASE, constructorOf(CONSTRUCTOR), "")
 #include "pyopencv_generated_types.h"
 #undef CVPY_TYPE
 

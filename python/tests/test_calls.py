@@ -1,0 +1,173 @@
+"""Every call once, in both overloads, against what it must give by construction."""
+import numpy as np
+import pytest
+
+import opencv_refract as refract
+
+ZERO = np.zeros(3)
+
+
+def test_project_and_unproject(rig):
+    pixels, status = refract.refractiveProjectPoints(rig.points, ZERO, ZERO, *rig.lens1)
+    assert pixels.shape == (40, 1, 2) and pixels.dtype == np.float64
+    assert status.shape == (40, 1) and status.dtype == np.uint8 and not status.any()
+    np.testing.assert_array_equal(pixels, rig.pixels1)
+
+    for camera in (rig.lens1, (rig.camera1,)):
+        origins, directions, status = refract.refractiveUnprojectPoints(pixels, *camera)
+        to_point = rig.points - origins[:, 0]
+        along = np.sum(to_point*directions[:, 0], axis=1)
+        miss = np.linalg.norm(to_point - along[:, None]*directions[:, 0], axis=1)
+        assert miss.max() < 1e-8 and along.min() > 0 and not status.any()
+
+
+def test_project_extended_gives_the_jacobian(rig):
+    rvec, tvec = np.array([0.1, -0.2, 0.05]), np.array([1., 2., 3.])
+    pixels, status, jacobian = refract.refractiveProjectPointsExtended(rig.points, rvec, tvec, rig.camera1)
+    # rvec, tvec; fx, fy, cx, cy and 5 coefficients; normal, distance, thickness, index, innerIndex, outerIndex
+    assert jacobian.shape == (80, 6 + 9 + 8)
+    step = 1e-4
+    moved = [refract.refractiveProjectPoints(rig.points, rvec, tvec + (0, 0, s), rig.camera1)[0] for s in (step, -step)]
+    np.testing.assert_allclose(jacobian[:, 5], (moved[0] - moved[1]).ravel()/(2*step), rtol=1e-6, atol=1e-8)
+
+
+def test_undistort(rig):
+    expected = rig.points[:, :2]/rig.points[:, 2:]
+    for camera in (rig.lens1, (rig.camera1,)):
+        corrected, status = refract.refractiveUndistortPoints(rig.pixels1, *camera, depth=rig.points[:, 2].copy())
+        np.testing.assert_allclose(corrected[:, 0], expected, atol=1e-10)
+        assert not status.any()
+    corrected, _ = refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, depth=rig.points[:, 2].copy(), P=rig.K1)
+    np.testing.assert_allclose(corrected[:, 0], expected*rig.K1[[0, 1], [0, 1]] + rig.K1[:2, 2], atol=1e-6)
+
+
+@pytest.mark.parametrize("depth", [600., 600, np.float64(600), (600.,), np.array([600.]), np.array(600.),
+                                   np.full(4, 600., np.float32)])
+@pytest.mark.parametrize("count", [1, 4])
+def test_one_depth_in_every_form(rig, depth, count):
+    if np.size(depth) > count:
+        pytest.skip("as many depths as points")
+    points = np.column_stack((rig.points[:count, :2], np.full(count, 600.)))
+    pixels, _ = refract.refractiveProjectPoints(points, ZERO, ZERO, rig.camera1)
+    corrected, status = refract.refractiveUndistortPoints(pixels, rig.camera1, depth=depth)
+    assert not status.any()
+    np.testing.assert_allclose(corrected[:, 0], points[:, :2]/600., atol=1e-10)
+
+
+def test_points_on_plane(rig):
+    normal = np.array([0.1, -0.05, 1.])
+    on_plane = rig.points.copy()
+    on_plane[:, 2] = 610. - on_plane[:, :2] @ normal[:2]
+    pixels, _ = refract.refractiveProjectPoints(on_plane, ZERO, ZERO, rig.camera1)
+    for camera in (rig.lens1, (rig.camera1,)):
+        found, status = refract.refractivePointsOnPlane(pixels, *camera, (*normal, 610.))
+        np.testing.assert_allclose(found[:, 0], on_plane, atol=1e-7)
+        assert not status.any()
+
+
+@pytest.mark.parametrize("depth", [600., np.array([0., 0., 1., 600.])])
+def test_map(rig, depth):
+    size = (64, 48)
+    K = np.array([[100., 0, 32], [0, 100, 24], [0, 0, 1]])
+    for camera in ((rig.K1, None, rig.window1), (refract.RefractiveCamera.create(rig.K1, None, rig.window1),)):
+        x, y = refract.initRefractiveUndistortRectifyMap(*camera, depth, None, K, size, 5)     # 5 = CV_32FC1
+        assert x.shape == y.shape == (48, 64) and x.dtype == np.float32
+        point = np.array([[(40 - 32)/100.*600., (30 - 24)/100.*600., 600.]])
+        pixel, _ = refract.refractiveProjectPoints(point, ZERO, ZERO, rig.K1, None, rig.window1)
+        np.testing.assert_allclose([x[30, 40], y[30, 40]], pixel.ravel(), rtol=1e-6)
+
+
+def distance_to_polyline(line, point):
+    start, step = line[:-1], np.diff(line, axis=0)
+    t = np.clip(np.sum((point - start)*step, axis=1)/np.sum(step*step, axis=1), 0, 1)
+    return np.linalg.norm(start + t[:, None]*step - point, axis=1).min()
+
+
+def test_epilines(rig):
+    for cameras in ((*rig.lens1, *rig.lens2), (rig.camera1, rig.camera2)):
+        lines, status = refract.computeRefractiveEpilines(rig.pixels1, 1, *cameras, rig.R, rig.T, (400., np.inf))
+        assert len(lines) == 40 and not status.any()
+        for line, partner in zip(lines, rig.pixels2[:, 0]):
+            assert distance_to_polyline(line[:, 0], partner) < 0.0105
+    lines, _ = refract.computeRefractiveEpilines(rig.pixels2, 2, rig.camera1, rig.camera2, rig.R, rig.T, (300., 1500.),
+                                                 tolerance=0.001)
+    for line, partner in zip(lines, rig.pixels1[:, 0]):
+        assert distance_to_polyline(line[:, 0], partner) < 0.00105
+
+
+def test_triangulate(rig):
+    for cameras in ((*rig.lens1, *rig.lens2), (rig.camera1, rig.camera2)):
+        for flags in (refract.TRIANGULATE_OPTIMAL, refract.TRIANGULATE_MIDPOINT):
+            points, status = refract.triangulateRefractive(*cameras, rig.R, rig.T, rig.pixels1, rig.pixels2, flags=flags)
+            np.testing.assert_allclose(points[:, 0], rig.points, atol=1e-6)
+            assert points.shape == (40, 1, 3) and not status.any()
+
+
+def test_triangulate_extended(rig):
+    points, status, covariance = refract.triangulateRefractiveExtended(
+        rig.camera1, rig.camera2, rig.R, rig.T, rig.pixels1, rig.pixels2, 0, 0.1, None)
+    np.testing.assert_allclose(points[:, 0], rig.points, atol=1e-6)
+    assert covariance.shape == (40, 9)
+    sigma = np.sqrt(covariance[:, [0, 4, 8]])
+    assert (sigma > 0.001).all() and (sigma < 1.).all() and not status.any()
+
+
+def test_calibrate_normal(rig, board):
+    for camera in ((rig.K1, rig.D1), (rig.camera1,)):
+        rms, normal, center, covariance = refract.calibrateGlassNormal(board.direct1, board.glass1, *camera)
+        assert rms < 1e-6 and normal.shape == (3, 1) and covariance.shape == (3, 3)
+        np.testing.assert_allclose(normal.ravel(), rig.window1.normal, atol=1e-9)
+        expected = rig.K1[:2, 2] + rig.K1[[0, 1], [0, 1]]*normal.ravel()[:2]/normal[2]
+        np.testing.assert_allclose(center.ravel(), expected, rtol=1e-12)
+
+
+def test_calibrate_glass(rig, board):
+    start = refract.GlassWindow((0., 0., 1.), 21., 1.5437, 50.)
+    flags = refract.GLASS_FREE_THICKNESS
+    rms, window, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start,
+                                                       flags=flags)
+    assert rms < 1e-5 and start.thickness[0] == 21.
+    np.testing.assert_allclose(window.normal, rig.window1.normal, atol=1e-7)
+    np.testing.assert_allclose(window.thickness, [20.], atol=1e-5)
+    np.testing.assert_allclose(np.squeeze(rvecs), board.rvecs, atol=1e-7)
+    np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
+
+    camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
+    rms, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, camera, flags=flags)
+    np.testing.assert_allclose(camera.window().normal, rig.window1.normal, atol=1e-7)
+
+
+def test_calibrate_glass_extended(rig, board):
+    start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
+    rms, window, rvecs, tvecs, deviations, covariance, per_view, jacobian = refract.calibrateGlassExtended(
+        board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
+    parameters = 9 + 8
+    assert deviations.shape == (parameters, 1) and covariance.shape == (parameters, parameters)
+    assert per_view.shape == (8, 2) and jacobian.shape == (2*2*8*30, parameters + 6*8)
+    camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
+    result = refract.calibrateGlassExtended(board.target, board.glass1, board.direct1, camera)
+    np.testing.assert_allclose(result[-1], jacobian, rtol=1e-6, atol=1e-6)
+
+
+def test_calibrate_stereo(rig, board):
+    windows = [refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.) for _ in range(2)]
+    camera1 = refract.RefractiveCamera.create(rig.K1, rig.D1, windows[0])
+    camera2 = refract.RefractiveCamera.create(rig.K2, rig.D2, windows[1])
+    from conftest import rotation
+    rms, R, T, rvecs, tvecs, deviations, covariance, per_view = refract.stereoCalibrateGlass(
+        board.target, board.glass1, board.direct1, board.glass2, board.direct2, camera1, camera2,
+        rotation(rig.R), rig.T.reshape(3, 1))
+    assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
+    np.testing.assert_allclose(camera1.window().normal, rig.window1.normal, atol=1e-7)
+    np.testing.assert_allclose(camera2.window().normal, rig.window2.normal, atol=1e-7)
+
+
+def test_pose(rig, board):
+    for camera in (rig.lens1, (rig.camera1,)):
+        rms, rvec, tvec = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)
+        assert rms < 1e-6
+        np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)
+        np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-5)
+    rms, rvec, tvec = refract.refractiveSolvePnP(board.target[0], board.glass1[0], rig.camera1, board.rvecs[0] + 0.01,
+                                                 board.tvecs[0] + 1., useExtrinsicGuess=True)
+    np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)

@@ -1,0 +1,114 @@
+"""GlassWindow and RefractiveCamera."""
+import numpy as np
+import pytest
+
+import opencv_refract as refract
+
+K = np.array([[1000., 0, 640], [0, 1000, 480], [0, 0, 1]])
+
+
+def test_a_window_is_none_by_default():
+    window = refract.GlassWindow()
+    assert window.normal == (0., 0., 1.) and window.distance == 0.
+    assert len(window.thickness) == len(window.index) == 0
+    assert window.innerIndex == window.outerIndex == 1.
+
+
+def test_a_pane():
+    window = refract.GlassWindow((0.3, 0., 0.4), 20., 1.5, distance=50., outerIndex=1.33)
+    np.testing.assert_allclose(window.normal, (0.6, 0., 0.8))
+    assert list(window.thickness) == [20.] and list(window.index) == [1.5]
+    assert window.distance == 50. and window.outerIndex == 1.33
+    for normal in (np.array([0.3, 0., 0.4]), np.array([[0.3], [0.], [0.4]]), np.array([0.3, 0., 0.4], np.float32)):
+        np.testing.assert_allclose(refract.GlassWindow(normal, 20., 1.5).normal, (0.6, 0., 0.8))
+
+
+def test_layers_are_set_as_lists_tuples_or_arrays():
+    window = refract.GlassWindow()
+    for layers in ([3., 0.8, 3.], (3., 0.8, 3.), np.array([3., 0.8, 3.]), np.array([3., 0., 0.8, 0., 3.])[::2]):
+        window.thickness = layers
+        assert list(window.thickness) == [3., 0.8, 3.]
+    window.index = [1.52, 1.48, 1.52]
+    window.normal = (0., 0.6, 0.8)
+    window.distance, window.innerIndex, window.outerIndex = 12.5, 1., 1.33
+    window.check()
+
+
+@pytest.mark.parametrize("field, value", [("normal", (0., 0., 2.)), ("distance", -1.), ("thickness", [-20.]),
+                                          ("index", [0.9]), ("outerIndex", 0.5), ("innerIndex", float("nan")),
+                                          ("thickness", [1., 2.])])
+def test_a_wrong_field_is_named(field, value):
+    window = refract.GlassWindow((0., 0., 1.), 20., 1.5)
+    setattr(window, field, value)
+    with pytest.raises(refract.error, match=field):
+        window.check()
+    with pytest.raises(refract.error, match=field):
+        refract.RefractiveCamera.create(K, None, window)
+
+
+def test_wrong_types_are_refused():
+    with pytest.raises((TypeError, refract.error)):
+        refract.GlassWindow("normal", 20., 1.5)
+    with pytest.raises((TypeError, refract.error)):
+        refract.GlassWindow((0., 0., 1.), "thick", 1.5)
+    with pytest.raises((TypeError, refract.error)):
+        refract.RefractiveCamera.create(K, None, "window")
+    with pytest.raises(TypeError):
+        refract.RefractiveCamera()
+    window = refract.GlassWindow()
+    with pytest.raises((TypeError, refract.error)):
+        window.distance = "far"
+
+
+def test_a_camera_keeps_what_it_was_given():
+    window = refract.GlassWindow((0.3, 0., 0.4), 20., 1.5)
+    for count in (0, 4, 5, 8, 12, 14):
+        coefficients = np.linspace(-0.01, 0.01, count)
+        camera = refract.RefractiveCamera.create(K, coefficients, window)
+        np.testing.assert_array_equal(camera.cameraMatrix(), K)
+        np.testing.assert_array_equal(np.ravel(camera.distCoeffs()) if count else [], coefficients)
+        assert camera.lensModel() == "opencv"
+        assert len(camera.lensParameters()) == 4 + count
+        assert camera.window().normal == window.normal
+    assert refract.RefractiveCamera.createFisheye(K, np.zeros(4)).lensModel() == "fisheye"
+    mrcal = refract.RefractiveCamera.createMrcal("LENSMODEL_OPENCV4", np.array([1000., 1000., 640., 480., 0, 0, 0, 0]))
+    assert mrcal.lensModel() == "LENSMODEL_OPENCV4"
+
+
+def test_a_camera_changes():
+    camera = refract.RefractiveCamera.create(K, None)
+    pixel = camera.lensParameters()
+    camera.setLensParameters(pixel + 1.)
+    np.testing.assert_array_equal(camera.lensParameters(), pixel + 1.)
+    window = camera.window()
+    window.thickness, window.index = [10.], [1.5]
+    assert len(camera.window().thickness) == 0      # a copy until it is set
+    camera.setWindow(window)
+    assert list(camera.window().thickness) == [10.]
+    camera.setImageSize((1280, 960))
+    assert camera.imageSize() == (1280, 960)
+
+
+def test_a_camera_is_read_from_a_file(tmp_path):
+    path = tmp_path / "camera.yml"
+    path.write_text("""%YAML:1.0
+---
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 1000., 0., 640., 0., 1000., 480., 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 1
+   cols: 5
+   dt: d
+   data: [ -0.1, 0.01, 0., 0., 0. ]
+glass_window: { normal: [ 0., 0.6, 0.8 ], distance: 5., thickness: [ 20. ], index: [ 1.5 ], inner_index: 1.,
+   outer_index: 1.33 }
+""")
+    for name in (str(path), path):      # os.PathLike too
+        camera = refract.RefractiveCamera.read(name)
+        np.testing.assert_array_equal(camera.cameraMatrix(), K)
+        assert camera.window().outerIndex == 1.33 and camera.window().distance == 5.
+    with pytest.raises(refract.error, match="missing.yml"):
+        refract.RefractiveCamera.read(str(tmp_path / "missing.yml"))
