@@ -1,0 +1,265 @@
+#!/usr/bin/env python
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+import math
+import os
+import tempfile
+import unittest
+
+import cv2 as cv
+import numpy as np
+
+from tests_common import NewOpenCVTests
+
+K = np.array([[2438., 0, 644], [0, 2438, 500], [0, 0, 1]])
+D = np.array([-0.4082, 0.4359, 0, 0])
+R = cv.Rodrigues(np.array([0.01, 0.3, 0]))[0]
+T = np.array([-180., 2, 25])
+
+
+def make_window(x=-0.25):
+    return cv.refract.GlassWindow((x, 0.1, 1), 20, 1.5437, 50)
+
+
+def make_camera(x=-0.25):
+    return cv.refract.RefractiveCamera.create(K, D, make_window(x))
+
+
+def make_board():
+    grid = np.mgrid[0:6, 0:5].T.reshape(-1, 2)*39. - (97.5, 78)
+    return np.hstack([grid, np.zeros((len(grid), 1))])
+
+
+def make_views(camera, second=False):
+    """Perfect views of the board in five poses, in camera 1 or, by R and T, in camera 2."""
+    views = []
+    for i in range(5):
+        r = cv.Rodrigues(np.array([0.3 - 0.15*i, 0.25*(i % 3) - 0.2, 0.1*i]))[0]
+        t = np.array([10.*(i % 2), 8.*i - 15, 590. + 10*i])
+        if second:
+            r, t = R.dot(r), R.dot(t) + T
+        pixels, status = cv.refract.refractiveProjectPoints(make_board(), r, t, camera)
+        assert not status.any()
+        views.append(pixels)
+    return views
+
+
+class refract_test(NewOpenCVTests):
+
+    def setUp(self):
+        super().setUp()
+        self.zero = np.zeros(3)
+        self.camera1, self.camera2 = make_camera(), make_camera(0.18)
+        self.points = make_board()*0.8 + (0, 0, 600)
+        self.points[:, 2] += np.arange(30) % 9
+        self.pixels1, status1 = cv.refract.refractiveProjectPoints(self.points, self.zero, self.zero, self.camera1)
+        self.pixels2, status2 = cv.refract.refractiveProjectPoints(self.points, R, T, self.camera2)
+        self.assertFalse(status1.any() or status2.any())
+
+    def assertClose(self, a, b, tolerance):
+        a, b = np.asarray(a), np.asarray(b)
+        np.testing.assert_allclose(a.ravel(), b.ravel(), rtol=0, atol=tolerance)
+
+    def test_window(self):
+        window = cv.refract.GlassWindow()
+        self.assertEqual(((0, 0, 1), 0, 1, 1), (window.normal, window.distance, window.innerIndex, window.outerIndex))
+        self.assertEqual(0, len(window.thickness) + len(window.index))
+        window.normal = (0, 0.6, 0.8)
+        window.distance = 30
+        window.thickness = [6, 0.76, 6]
+        window.index = [1.52, 1.48, 1.52]
+        window.innerIndex, window.outerIndex = 1.333, 1.0
+        window.check()
+        self.assertEqual((0, 0.6, 0.8), window.normal)
+        self.assertEqual((30, 1.333, 1), (window.distance, window.innerIndex, window.outerIndex))
+        self.assertEqual([6, 0.76, 6], list(window.thickness))
+        self.assertEqual([1.52, 1.48, 1.52], list(window.index))
+        window.index = [0.9, 1.48, 1.52]
+        with self.assertRaisesRegex(cv.error, r'window\.index\[0\] is 0\.9'):
+            window.check()
+
+    def test_window_defaults(self):
+        window = cv.refract.GlassWindow(normal=(0, 0, 2), thickness=10, index=1.5)
+        self.assertEqual(((0, 0, 1), 0, 1), (window.normal, window.distance, window.outerIndex))
+
+    def test_camera(self):
+        self.assertClose(K, self.camera1.cameraMatrix(), 0)
+        self.assertClose(D, self.camera1.distCoeffs(), 0)
+        self.assertEqual('opencv', self.camera1.lensModel())
+        self.assertEqual((0, 0), self.camera1.imageSize())
+        self.camera1.setImageSize((1280, 1024))
+        self.assertEqual((1280, 1024), self.camera1.imageSize())
+        self.assertEqual(8, self.camera1.lensParameters().size)
+        self.camera1.setLensParameters(self.camera1.lensParameters()*1.01)
+        self.assertClose(2438*1.01, self.camera1.cameraMatrix()[0, 0], 1e-9)
+        self.camera1.setWindow(cv.refract.GlassWindow())
+        self.assertEqual(0, len(self.camera1.window().thickness))
+        self.assertEqual('fisheye', cv.refract.RefractiveCamera.createFisheye(K, None, make_window()).lensModel())
+        mrcal = cv.refract.RefractiveCamera.createMrcal('LENSMODEL_PINHOLE', np.array([2438., 2438, 644, 500]))
+        self.assertEqual('LENSMODEL_PINHOLE', mrcal.lensModel())
+
+    def test_camera_is_read(self):
+        handle, filename = tempfile.mkstemp('.yml')
+        os.close(handle)
+        try:
+            storage = cv.FileStorage(filename, cv.FILE_STORAGE_WRITE)
+            storage.write('camera_matrix', K)
+            storage.write('distortion_coefficients', D)
+            storage.release()
+            self.assertClose(K, cv.refract.RefractiveCamera.read(filename).cameraMatrix(), 0)
+        finally:
+            os.remove(filename)
+        with self.assertRaisesRegex(cv.error, 'cannot be opened'):
+            cv.refract.RefractiveCamera.read(filename)
+
+    def test_project(self):
+        pixels, status = cv.refract.refractiveProjectPoints(self.points, self.zero, self.zero, K, D, make_window())
+        self.assertClose(self.pixels1, pixels, 0)
+        self.assertEqual(((30, 1, 2), np.float64, np.uint8), (pixels.shape, pixels.dtype, status.dtype))
+        pinhole = cv.projectPoints(self.points, self.zero, self.zero, K, D)[0]
+        self.assertClose(pinhole, cv.refract.refractiveProjectPoints(self.points, self.zero, self.zero, K, D,
+                                                                     cv.refract.GlassWindow())[0], 1e-9)
+        pixels, status, jacobian = cv.refract.refractiveProjectPointsExtended(self.points, self.zero, self.zero,
+                                                                              self.camera1)
+        self.assertEqual((60, 6 + 8 + 8), jacobian.shape)
+        self.assertClose(self.pixels1, pixels, 1e-9)
+
+    def test_arrays(self):
+        def project(points):
+            return cv.refract.refractiveProjectPoints(points, self.zero, self.zero, self.camera1)[0]
+
+        wide = np.empty((60, 5))
+        wide[::2, 1:4] = self.points
+        expected = project(self.points)
+        for view in (wide[::2, 1:4], np.asfortranarray(self.points), self.points[:, None, :], self.points[None, :, :],
+                     self.points.tolist()):
+            self.assertClose(expected, project(np.asarray(view)), 0)
+        single = project(self.points.astype(np.float32))
+        self.assertEqual(np.float32, single.dtype)
+        self.assertClose(expected, single, 1e-3)
+        backwards = project(self.points[::-1])
+        self.assertClose(expected[::-1], backwards, 0)
+        with self.assertRaisesRegex(cv.error, 'objectPoints'):
+            project(np.zeros((5, 4)))
+
+    def test_no_answer(self):
+        points = np.array([[0, 0, 600.], [0, 0, 40], [math.nan, 0, 600]])
+        pixels, status = cv.refract.refractiveProjectPoints(points, self.zero, self.zero, self.camera1)
+        self.assertEqual([cv.refract.REFRACT_OK, cv.refract.REFRACT_BEHIND_WINDOW, cv.refract.REFRACT_NOT_FINITE],
+                         list(status.ravel()))
+        self.assertEqual([False, True, True], list(np.isnan(pixels).all(axis=(1, 2))))
+        with self.assertRaisesRegex(cv.error, 'camera is empty'):
+            cv.refract.refractiveProjectPoints(points, self.zero, self.zero, None)
+
+    def test_unproject(self):
+        origins, directions, status = cv.refract.refractiveUnprojectPoints(self.pixels1, self.camera1)
+        self.assertFalse(status.any())
+        misses = np.cross(directions.reshape(-1, 3), self.points - origins.reshape(-1, 3))
+        self.assertClose(misses, np.zeros_like(misses), 1e-8)
+        self.assertClose(directions, cv.refract.refractiveUnprojectPoints(self.pixels1, K, D, make_window())[1], 0)
+
+    def test_undistort(self):
+        depth = self.points[:, 2]
+        expected = self.points[:, :2]/depth[:, None]
+        normalized, status = cv.refract.refractiveUndistortPoints(self.pixels1, self.camera1, depth)
+        self.assertClose(expected, normalized, 1e-12)
+        pixels, status = cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window(), depth=depth, P=K)
+        self.assertClose(expected*2438 + (644, 500), pixels, 1e-9)
+        self.assertEqual(30, len(cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window())[0]))
+
+    def test_map(self):
+        new = np.array([[120., 0, 32], [0, 120, 24], [0, 0, 1]])
+        for args in ((self.camera1,), (K, D, make_window())):
+            x, y = cv.refract.initRefractiveUndistortRectifyMap(*args, np.array([600.]), None, new, (64, 48), cv.CV_32FC1)
+            self.assertEqual(((48, 64), (48, 64)), (x.shape, y.shape))
+            point = np.array([[(40 - 32)*5., (8 - 24)*5, 600]])
+            expected = cv.refract.refractiveProjectPoints(point, self.zero, self.zero, self.camera1)[0]
+            self.assertClose(expected, (x[8, 40], y[8, 40]), 1e-3)
+
+    def test_plane(self):
+        points = self.points.copy()
+        points[:, 2] = 600 - 0.2*points[:, 0]
+        pixels = cv.refract.refractiveProjectPoints(points, self.zero, self.zero, self.camera1)[0]
+        found, status = cv.refract.refractivePointsOnPlane(pixels, self.camera1, (0.2, 0, 1, 600))
+        self.assertClose(points, found, 1e-8)
+        self.assertClose(found, cv.refract.refractivePointsOnPlane(pixels, K, D, make_window(), (0.2, 0, 1, 600))[0], 0)
+
+    def test_epilines(self):
+        lines, status = cv.refract.computeRefractiveEpilines(self.pixels1, 1, self.camera1, self.camera2, R, T,
+                                                             (300, math.inf), tolerance=0.01)
+        self.assertEqual((30, 0), (len(lines), np.count_nonzero(status)))
+        for line, pixel in zip(lines, self.pixels2):
+            a, b = line[:-1, 0], line[1:, 0]
+            t = np.clip(np.sum((pixel - a)*(b - a), axis=1)/np.sum((b - a)**2, axis=1), 0, 1)
+            self.assertLess(np.linalg.norm(pixel - a - t[:, None]*(b - a), axis=1).min(), 0.0105)
+        same, _ = cv.refract.computeRefractiveEpilines(self.pixels1, 1, K, D, make_window(), K, D, make_window(0.18), R, T,
+                                                       (300, math.inf))
+        self.assertClose(lines[7], same[7], 0)
+
+    def test_triangulate(self):
+        points, status = cv.refract.triangulateRefractive(self.camera1, self.camera2, R, T, self.pixels1, self.pixels2)
+        self.assertEqual((30, 1, 3), points.shape)
+        self.assertClose(self.points, points, 1e-6)
+        points, status = cv.refract.triangulateRefractive(
+            K, D, make_window(), K, D, make_window(0.18), R, T, self.pixels1, self.pixels2,
+            flags=cv.refract.TRIANGULATE_MIDPOINT)
+        self.assertClose(self.points, points, 1e-6)
+        points, status, covariance = cv.refract.triangulateRefractiveExtended(
+            self.camera1, self.camera2, R, T, self.pixels1, self.pixels2, cv.refract.TRIANGULATE_OPTIMAL, 0.1, None)
+        self.assertEqual((30, 9), covariance.shape)
+        self.assertTrue((covariance[:, [0, 4, 8]] > 0).all())
+
+    def test_calibrate_normal(self):
+        direct = make_views(cv.refract.RefractiveCamera.create(K, D))
+        refracted = make_views(self.camera1)
+        rms, normal, center, covariance = cv.refract.calibrateGlassNormal(direct, refracted, K, D)
+        self.assertClose(make_window().normal, normal, 1e-8)
+        self.assertEqual(((2, 1), (3, 3)), (center.shape, covariance.shape))
+        self.assertClose(normal, cv.refract.calibrateGlassNormal(direct, refracted, self.camera1)[1], 0)
+        with self.assertRaisesRegex(cv.error, 'the normal is undetermined'):
+            cv.refract.calibrateGlassNormal(direct, direct, K, D)
+
+    def test_calibrate_glass(self):
+        boards = [make_board()]*5
+        direct, refracted = make_views(cv.refract.RefractiveCamera.create(K, D)), make_views(self.camera1)
+        start = cv.refract.GlassWindow((0, 0, 1), 15, 1.5437, 50)
+        rms, window, rvecs, tvecs = cv.refract.calibrateGlass(boards, refracted, direct, K, D, start,
+                                                              flags=cv.refract.GLASS_FREE_THICKNESS)
+        self.assertLess(rms, 1e-6)
+        self.assertClose(make_window().normal, window.normal, 1e-6)
+        self.assertClose(20, window.thickness[0], 1e-4)
+        self.assertEqual((5, 5), (len(rvecs), len(tvecs)))
+
+        camera = cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
+        rms, rvecs, tvecs, deviations, covariance, per_view, jacobian = cv.refract.calibrateGlassExtended(
+            boards, refracted, None, camera)
+        self.assertLess(rms, 1e-6)
+        self.assertClose(make_window().normal, camera.window().normal, 1e-6)
+        self.assertEqual(((16, 1), (16, 16), (5, 2)), (deviations.shape, covariance.shape, per_view.shape))
+
+    def test_calibrate_stereo(self):
+        boards = [make_board()]*5
+        bare = cv.refract.RefractiveCamera.create(K, D)
+        first, second = (cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
+                         for _ in range(2))
+        result = cv.refract.stereoCalibrateGlass(boards, make_views(self.camera1), make_views(bare),
+                                                 make_views(self.camera2, True), make_views(bare, True),
+                                                 first, second, R.copy(), T.copy())
+        self.assertLess(result[0], 1e-6)
+        self.assertClose(make_window().normal, first.window().normal, 1e-6)
+        self.assertClose(make_window(0.18).normal, second.window().normal, 1e-6)
+
+    def test_pnp(self):
+        pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
+        pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
+        for args in ((self.camera1,), (K, D, make_window())):
+            rms, rvec, tvec = cv.refract.refractiveSolvePnP(make_board(), pixels, *args, None, None)
+            self.assertLess(rms, 1e-6)
+            self.assertClose(pose[0], rvec, 1e-6)
+            self.assertClose(pose[1], tvec, 1e-4)
+
+
+if __name__ == '__main__':
+    NewOpenCVTests.bootstrap()
