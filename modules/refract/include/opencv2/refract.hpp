@@ -411,7 +411,9 @@ CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOf
         CV_IN_OUT GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
-//! @overload The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
+/** @overload
+The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
+*/
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
         InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
@@ -440,7 +442,8 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
         int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
-/** @overload The same for (cameraMatrix, distCoeffs, window).
+/** @overload
+The same for (cameraMatrix, distCoeffs, window).
 */
 CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
         InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
