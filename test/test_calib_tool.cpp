@@ -286,6 +286,24 @@ TEST_CASE("refract_calib refines the lens with --free=intrinsics", "[calib_tool]
     CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
 }
 
+TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the lens", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 14;
+    writeScene(f, options, 112);
+    const ToolResult r = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "do not agree"));
+    CHECK_FALSE(mentions(r.out, "refined"));
+    CHECK(RefractiveCamera::read(f / "calib.yml")->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
+
+    const ToolResult right = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
+    CHECK_FALSE(mentions(right.out, "do not agree"));
+    CHECK(mentions(right.out, "refined"));
+}
+
 TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_tool]")
 {
     const TemporaryFolder f;

@@ -16,10 +16,13 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "cli.hpp"
 #include "file_output.hpp"
 #include "plot.hpp"
+#include "progress.hpp"
 #include "report.hpp"
 #include "summary.hpp"
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
+#include <map>
 
 using namespace cv::refract;
 using namespace tools;
@@ -81,9 +84,9 @@ Options parseOptions(Command& command)
     app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
     app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--report", o.report, "HTML page to judge the calibration by (needs gnuplot)");
-    app.add_option("--max-rms", o.maxRms, "Limit: RMS over all corners, px")->check(CLI::PositiveNumber);
+    app.add_option("--max-rms", o.maxRms, "Limit: RMS over all corners, px")->check(moreThanZero());
     app.add_option("--max-normal-std", o.maxNormalStd, "Limit: uncertainty of the normal (larger principal one), degrees")
-        ->check(CLI::PositiveNumber);
+        ->check(moreThanZero());
     command.parse();
     o.distanceGiven = distance->count() > 0;
     o.stereo = glass2->count() > 0;
@@ -159,14 +162,33 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.options.known[k] = k == 1 && o.camera[1] == o.camera[0] ? RefractiveCamera::read(o.camera[k], "camera2")
                                                                       : RefractiveCamera::read(o.camera[k]);
     c.data = readImages(o, target, quiet, c.withoutTarget);
-    c.start = startRig(c.data, c.options, c.lensSources);
-    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
-    c.residuals = residualsOf(c.data, c.fit);
-    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
-    c.nearFar = crossValidate(c.data, c.start, c.fit, c.options.flags, c.lensSources);
+    {
+        Progress progress("calibrating", 4, quiet);
+        c.start = startRig(c.data, c.options, c.lensSources);
+        progress.step();
+        c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+        c.residuals = residualsOf(c.data, c.fit);
+        progress.step();
+        c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+        progress.step();
+        c.nearFar = crossValidate(c.data, c.start, c.fit, c.options.flags, c.lensSources);
+    }
     if (!o.report.empty())
         c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
     return c;
+}
+
+//! What would fail at the end, after all the work.
+void checkOutputs(const Options& o)
+{
+    if (!o.report.empty())
+        Plot::checkAvailable();
+    for (const std::string& path : {o.out, o.report})
+    {
+        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        if (!folder.empty() && !std::filesystem::is_directory(folder))
+            throw Failure("cannot write '" + path + "': there is no folder '" + folder.string() + "'; make it first");
+    }
 }
 
 } // namespace
@@ -175,8 +197,7 @@ int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parseOptions(command);
-        if (!options.report.empty())
-            Plot::checkAvailable();
+        checkOutputs(options);
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Findings findings = judge(calibration);
         if (!options.report.empty())

@@ -15,6 +15,8 @@ namespace {
 
 const int MIN_POINTS = 4;       // of a view that is to have a pose
 const int MIN_PAIRS = 3;        // to refine a lens together with the window
+const double SPOILT = 1.2;      // RMS of the direct images after / before the refinement, where it has failed
+const int MAX_ITERATIONS = 1000;
 
 using Views = std::vector<std::vector<Point2d>>;
 
@@ -84,6 +86,25 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
     return calibratePinhole(data.objectPoints, views, data.imageSize[camera], options.lensCoefficients, source.rms);
+}
+
+//! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.
+void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camera, const LensSource& source)
+{
+    int outside = 0;
+    for (const Views& views : {directViews(data, camera), glassViews(data, camera)})
+        for (const std::vector<Point2d>& view : views)
+        {
+            Mat origins, directions;
+            std::vector<uchar> status;
+            refractiveUnprojectPoints(view, origins, directions, lens, status);
+            outside += (int)std::count(status.begin(), status.end(), (uchar)REFRACT_OUTSIDE_LENS_MODEL);
+        }
+    if (outside)
+        throw Failure(format("camera %d: %d corners lie where the lens model is not one-to-one: ", camera + 1, outside)
+                      + (source.kind == LensSource::FROM_FILE ? "--camera does not belong to these images"
+                         : "these images do not determine that many coefficients; choose a smaller --lens (opencv5, opencv4) "
+                           "or show the target in the image's corners too"));
 }
 
 //! Board -> camera of one view, and the sum of squared errors; false if there is none.
@@ -271,6 +292,7 @@ Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSou
         if (!known.empty() && known != data.imageSize[c])
             throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", c ? "2" : "",
                                  known.width, known.height, data.imageSize[c].width, data.imageSize[c].height));
+        checkLens(data, withWindow(lens, GlassWindow()), c, lensSources[c]);
         rig.cameras.push_back(withWindow(lens, options.window));
         rig.cameras.back()->setImageSize(data.imageSize[c]);
     }
@@ -309,14 +331,28 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
             glass[c].push_back(data.moments[i].glass[c]);
         }
     std::vector<Ptr<RefractiveCamera>>& cameras = fit.rig.cameras;
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, MAX_ITERATIONS, 1e-12);
     if (data.cameraCount == 1)
         fit.rms = calibrateGlass(object, glass[0], direct[0], cameras[0], fit.rvecs, fit.tvecs, fit.stdDeviations,
-                                 fit.covariance, fit.perViewErrors, noArray(), flags);
+                                 fit.covariance, fit.perViewErrors, noArray(), flags, criteria);
     else
         fit.rms = stereoCalibrateGlass(object, glass[0], direct[0], glass[1], direct[1], cameras[0], cameras[1],
                                        fit.rig.R, fit.rig.T, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance,
-                                       fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS);
+                                       fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS, criteria);
     return fit;
+}
+
+static double directRms(const RigData& data, const Fit& fit, int camera)
+{
+    double sum = 0.;
+    int count = 0;
+    for (const Residual& r : residualsOf(data, fit))
+        if (r.camera == camera && !r.glass)
+        {
+            sum += r.error.dot(r.error);
+            count++;
+        }
+    return std::sqrt(sum / count);
 }
 
 Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags)
@@ -329,6 +365,9 @@ Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>&
     {
         const int freed = flags | GLASS_FREE_INTRINSICS;
         const Fit refined = fitRig(data, fit.rig, usefulMoments(data, freed), freed);
+        for (int c = 0; c < data.cameraCount; c++)
+            if (directRms(data, refined, c) > SPOILT * lensSources[c].rms)
+                return fit;     // a wrong thickness or index must not spoil the lens
         flags = freed;
         return refined;
     }

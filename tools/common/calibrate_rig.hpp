@@ -101,7 +101,7 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
 
 /** fitRig on all that is useful. Lenses that came from the direct images are refined with the windows where pairs tie
 the two together: better by far for R and T, and +- that carry the lens's uncertainty. Views that are glass-only leave
-the lens alone, as it would take up part of the window.
+the lens alone, as it would take up part of the window; so does a refinement that makes the direct images fit worse.
 @param flags gets GLASS_FREE_INTRINSICS if so */
 Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags);
 

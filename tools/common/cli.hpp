@@ -62,6 +62,16 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
 //! "6x5" -> Size(6, 5); `option` names the option in the error text.
 cv::Size parseSize(const std::string& text, const std::string& option);
 
+//! Check of an option's number; CLI11's own names the largest double in its error.
+inline CLI::Validator moreThanZero()
+{
+    return CLI::Validator([](std::string& text) {
+        double number;
+        return CLI::detail::lexical_cast(text, number) && number > 0 ? std::string()
+                                                                     : "give a number more than 0, not " + text;
+    }, "> 0");
+}
+
 //! "a,b,c" -> numbers; all finite.
 std::vector<double> parseNumbers(const std::string& text, const std::string& option);
 

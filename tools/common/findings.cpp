@@ -91,6 +91,8 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
     for (size_t i = 0; i < free.size(); i++)
         for (size_t j = i + 1; j < free.size(); j++)
         {
+            if (free[i].isNormal && free[j].isNormal)       // told by the two principal deviations
+                continue;
             const double r = c.fit.covariance.at<double>(free[i].column, free[j].column) / (free[i].std * free[j].std);
             if (std::abs(r) > TIED)
                 f.cannotTell.push_back(format("%s and %s apart: their correlation is %.4f, a change of one is nearly made up "
@@ -104,10 +106,13 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
 void judgeFit(const RigCalibration& c, int camera, Findings& f)
 {
     const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
-    if (glass.px > MISFIT_RATIO * direct.px && c.data.countPairs(camera))
-        f.weak.push_back(of(c, camera) + format("images through the window fit worse (%.3f px) than direct ones (%.3f px): "
-                         "check thickness and index, whether the board moved within a pair, and whether the window is flat",
-                         glass.px, direct.px));
+    // What the direct images reach without the window; in the joint fit a wrong window drags them along.
+    const LensSource& lens = c.lensSources[camera];
+    const double alone = lens.kind == LensSource::FROM_DIRECT ? std::min(lens.rms, direct.px) : direct.px;
+    if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO * alone)
+        f.weak.push_back(of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
+                         "together, direct alone %.3f px): check thickness and index, whether the board moved within a pair, "
+                         "and whether the window is flat", direct.px, glass.px, alone));
     const double through = c.baselines.throughGlass[camera];
     if (glass.px > MISFIT_RATIO * through)
         f.weak.push_back(of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
@@ -195,11 +200,12 @@ void mergeCameras(std::vector<std::string>& sentences)
     }
 }
 
-void append(std::vector<FreeParameter>& list, const Fit& fit, const std::string& name, int column, double value)
+void append(std::vector<FreeParameter>& list, const Fit& fit, const std::string& name, int column, double value,
+            bool isNormal = false)
 {
     const double std = fit.stdDeviations.at<double>(column);
     if (std > 0)
-        list.push_back({name, column, value, std});
+        list.push_back({name, column, value, std, isNormal});
 }
 
 } // namespace
@@ -245,8 +251,8 @@ std::vector<FreeParameter> freeWindowParameters(const Fit& fit)
         const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
         const GlassWindow window = fit.rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(fit.rig, c);
-        append(list, fit, prefix + "normal x", at.normal, window.normal[0]);
-        append(list, fit, prefix + "normal y", at.normal + 1, window.normal[1]);
+        append(list, fit, prefix + "normal x", at.normal, window.normal[0], true);
+        append(list, fit, prefix + "normal y", at.normal + 1, window.normal[1], true);
         append(list, fit, prefix + "distance", at.distance, window.distance);
         for (int i = 0; i < at.layers; i++)
         {

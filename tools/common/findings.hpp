@@ -39,6 +39,7 @@ struct FreeParameter
     std::string name;
     int column;                 //!< of Fit::covariance
     double value, std;
+    bool isNormal;
 };
 
 //! Window parameters that were free, camera after camera; of the normal x and y (z follows).

@@ -40,7 +40,7 @@ std::string cellPx(double value) { return std::isnan(value) ? "–" : format("%.
 //! Verdict in plain words: the class colours the card.
 void setVerdict(data& page, const RigCalibration& c, const Findings& f)
 {
-    const char* verdict = !f.limitsNotMet.empty() ? "Limits not met" : !f.weak.empty() ? "Usable, with weak points" : "Good";
+    const char* verdict = !f.limitsNotMet.empty() ? "Limits not met" : !f.weak.empty() ? "Look at the weak points" : "Good";
     page.set("verdict", verdict);
     page.set("verdict_class", !f.limitsNotMet.empty() ? "bad" : !f.weak.empty() ? "weak" : "good");
     std::string sentence = format("All %zu corners fit within %.3f px RMS.", c.residuals.size(), c.fit.rms);

@@ -142,6 +142,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Findings& fi
         halves.print(out);
     }
     out << format("\nRMS over all corners %.4f px.\n", c.fit.rms);
+    printSentences(out, "Images in which the target was not found:", c.withoutTarget);
     printSentences(out, "Limits not met:", findings.limitsNotMet);
     printSentences(out, "Weak:", findings.weak);
     printSentences(out, "The data cannot tell:", findings.cannotTell);

@@ -114,9 +114,9 @@ void TargetOptions::addTo(CLI::App& app, bool required)
         ->check(CLI::IsMember({"chessboard", "circles", "acircles", "charuco"}))->capture_default_str();
     app.add_option("--size", size, "COLSxROWS: inner corners (chessboard, charuco) or dots")->required(required);
     app.add_option("--square", square, "side of a square; distance between dots; acircles: half the distance "
-                   "between the dots of a row")->required(required)->check(CLI::PositiveNumber);
+                   "between the dots of a row")->required(required)->check(moreThanZero());
     app.add_option("--marker", marker, "charuco: side of a marker (default: 3/4 of a square)")
-        ->check(CLI::PositiveNumber);
+        ->check(moreThanZero());
     app.add_option("--dictionary", dictionary, "charuco: OpenCV's name of the marker dictionary")
         ->capture_default_str();
 }
