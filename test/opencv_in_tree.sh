@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds modules/refract unchanged inside OpenCV's own tree and tests it there: warnings as errors in the module, its ts
-# tests, one pass of its performance tests, its Python test; and that OpenCV configures without it where Ceres or Eigen
-# is missing. Everything is kept in build/opencv-VERSION: the first run compiles OpenCV (some 15 minutes on two cores), the
+# tests, one pass of its performance tests, its sample, its Python test, its documentation; and that OpenCV configures
+# without it where Ceres or Eigen is missing. Everything is kept in build/opencv-VERSION: the first run compiles OpenCV (some 15 minutes on two cores), the
 # next ones only what has changed.
 #
 # Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93      a version of the package opencv-contrib-python-headless, whose
@@ -47,9 +47,9 @@ configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds
   cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher $off \
     -DOPENCV_EXTRA_MODULES_PATH="$PWD/modules" -DBUILD_LIST=refract,ts,python3,python_tests \
     -DOPENCV_CMAKE_HOOKS_DIR="$PWD/test/opencv_hooks" \
-    -DBUILD_TESTS=ON -DBUILD_PERF_TESTS=ON -DBUILD_opencv_apps=OFF -DBUILD_JAVA=OFF -DCPU_DISPATCH= \
-    -DENABLE_PRECOMPILED_HEADERS=OFF -DPYTHON3_EXECUTABLE="$python" "$@" >"$directory.log" 2>&1 ||
-    { cat "$directory.log"; exit 1; }
+    -DBUILD_TESTS=ON -DBUILD_PERF_TESTS=ON -DBUILD_EXAMPLES=ON -DBUILD_DOCS=ON -DBUILD_opencv_apps=OFF \
+    -DBUILD_JAVA=OFF -DCPU_DISPATCH= -DENABLE_PRECOMPILED_HEADERS=OFF -DPYTHON3_EXECUTABLE="$python" \
+    "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
 }
 
 # A build without one of the two says that the module is unavailable, and goes on.
@@ -62,10 +62,28 @@ for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
 done
 
 configure "$build"
-ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3
+ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example_refract_measure_behind_glass
 
 "$build/bin/opencv_test_refract"
 "$build/bin/opencv_perf_refract" --perf_min_samples=1 --perf_force_samples=1
+"$build/bin/example_refract_measure_behind_glass"
 PYTHONPATH=$build/python_loader:$source/modules/python/test \
   "$python" -B modules/refract/misc/python/test/test_refract.py
+stubs=$build/modules/python_bindings_generator/cv2/refract/__init__.pyi
+grep -q "^def triangulateRefractive" "$stubs" || { echo "FAILED: no typing stubs for Python: $stubs" >&2; exit 1; }
+
+# OpenCV's documentation, of this module and of what its text refers to (calib3d is geometry since OpenCV 5).
+if command -v doxygen >/dev/null && command -v bibtex >/dev/null; then
+  mkdir -p "$work/doc"
+  { cat "$build/doc/Doxyfile"
+    echo "INPUT = $build/doc/contrib_tutorials.markdown modules/refract/include modules/refract/tutorials"
+    for module in core calib3d geometry; do echo "INPUT += $source/modules/$module/include"; done
+    echo "OUTPUT_DIRECTORY = $work/doc"
+    echo "HAVE_DOT = NO"
+  } | doxygen - >"$work/doc.log" 2>&1
+  if grep "modules/refract" "$work/doc.log"; then echo "FAILED: documentation" >&2; exit 1; fi
+  echo "passed: documentation"
+else
+  echo "skipped: documentation (needs doxygen, and bibtex of texlive-base)"
+fi
 echo "passed: OpenCV $version"
