@@ -33,10 +33,10 @@ TEST(Refract_CalibrateGlassNormal, from_pairs)
 TEST(Refract_CalibrateGlassNormal, refuses_views_that_do_not_differ)
 {
     Vec3d normal;
-    EXPECT_TRUE(contains(thrown([&] { calibrateGlassNormal(views(bare1()), views(bare1()), K1(), D1(), normal); }),
-                         "the normal is undetermined"));
-    EXPECT_TRUE(contains(thrown([&] { calibrateGlassNormal(PixelViews(2), views(camera1()), K1(), D1(), normal); }),
-                         "imagePointsDirect has 2 views"));
+    EXPECT_REFUSED(calibrateGlassNormal(views(bare1()), views(bare1()), K1(), D1(), normal),
+                   "the normal is undetermined");
+    EXPECT_REFUSED(calibrateGlassNormal(PixelViews(2), views(camera1()), K1(), D1(), normal),
+                   "imagePointsDirect has 2 views");
 }
 
 TEST(Refract_CalibrateGlass, from_pairs)
@@ -95,9 +95,9 @@ TEST(Refract_StereoCalibrateGlass, finds_both_windows)
     EXPECT_NEAR(0, angle(second->window().normal, window2().normal), 1e-6);
     EXPECT_EQ(Size(4, 5), perView.size());
 
-    EXPECT_TRUE(contains(thrown([&] {
-        stereoCalibrateGlass(boards(), views(camera1()), noArray(), PixelViews(1), noArray(), first, second, rotation,
-                             translation, rvecs, tvecs, deviations, covariance, perView); }), "imagePointsRefracted2"));
+    EXPECT_REFUSED(stereoCalibrateGlass(boards(), views(camera1()), noArray(), PixelViews(1), noArray(), first,
+                                        second, rotation, translation, rvecs, tvecs, deviations, covariance, perView),
+                   "imagePointsRefracted2");
 }
 
 TEST(Refract_SolvePnP, finds_the_pose)
@@ -118,8 +118,7 @@ TEST(Refract_SolvePnP, no_pose_is_NaN)
     Vec3d r, t;
     EXPECT_TRUE(cvIsNaN(refractiveSolvePnP(board(), unseen, camera1(), r, t)) != 0);
     EXPECT_TRUE(cvIsNaN(r[0]) && cvIsNaN(t[2]));
-    EXPECT_TRUE(contains(thrown([&] { refractiveSolvePnP(board(), std::vector<Point2d>(3), camera1(), r, t); }),
-                         "imagePoints 3"));
+    EXPECT_REFUSED(refractiveSolvePnP(board(), std::vector<Point2d>(3), camera1(), r, t), "imagePoints 3");
 }
 
 }} // namespace

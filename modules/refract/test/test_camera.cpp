@@ -12,13 +12,13 @@ TEST(Refract_GlassWindow, is_checked)
 {
     EXPECT_NO_THROW(GlassWindow().check());
     EXPECT_NEAR(1, cv::norm(GlassWindow(Vec3d(1, 2, 3), 10, 1.5).normal), 1e-15);
-    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(), 10, 1.5); }), "normal is (0, 0, 0)"));
-    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(0, 0, 1), -2, 1.5); }), "thickness"));
-    EXPECT_TRUE(contains(thrown([] { GlassWindow(Vec3d(0, 0, 1), 10, 0.5); }), "index"));
+    EXPECT_REFUSED(GlassWindow(Vec3d(), 10, 1.5), "normal is (0, 0, 0)");
+    EXPECT_REFUSED(GlassWindow(Vec3d(0, 0, 1), -2, 1.5), "thickness");
+    EXPECT_REFUSED(GlassWindow(Vec3d(0, 0, 1), 10, 0.5), "index");
     GlassWindow window = window1();
     window.outerIndex = NaN;
-    EXPECT_TRUE(contains(thrown([&] { window.check(); }), "outerIndex"));
-    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::create(K1(), D1(), window); }), "outerIndex"));
+    EXPECT_REFUSED(window.check(), "outerIndex");
+    EXPECT_REFUSED(RefractiveCamera::create(K1(), D1(), window), "outerIndex");
 }
 
 TEST(Refract_GlassWindow, is_written_and_read)
@@ -60,7 +60,7 @@ TEST(Refract_Camera, changes_what_is_projected)
     parameters.at<double>(2) += 5;          // cx
     camera->setLensParameters(parameters);
     EXPECT_NEAR(5, project(scenePoints(), camera)[0].x - project(scenePoints(), camera1())[0].x, 1e-9);
-    EXPECT_TRUE(contains(thrown([&] { camera->setLensParameters(std::vector<double>(3, 1.)); }), "parameters has 3 values"));
+    EXPECT_REFUSED(camera->setLensParameters(std::vector<double>(3, 1.)), "parameters has 3 values");
 }
 
 TEST(Refract_Camera, fisheye_and_mrcal)
@@ -71,8 +71,8 @@ TEST(Refract_Camera, fisheye_and_mrcal)
     const Ptr<RefractiveCamera> mrcal = RefractiveCamera::createMrcal("LENSMODEL_OPENCV4", intrinsics, window1());
     EXPECT_EQ("LENSMODEL_OPENCV4", mrcal->lensModel());
     EXPECT_EQ(project(scenePoints(), camera1()), project(scenePoints(), mrcal));
-    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::createMrcal("LENSMODEL_NONE", intrinsics); }), "LENSMODEL_NONE"));
-    EXPECT_TRUE(contains(thrown([] { RefractiveCamera::create(K1(), std::vector<double>(3)); }), "distCoeffs has 3 values"));
+    EXPECT_REFUSED(RefractiveCamera::createMrcal("LENSMODEL_NONE", intrinsics), "LENSMODEL_NONE");
+    EXPECT_REFUSED(RefractiveCamera::create(K1(), std::vector<double>(3)), "distCoeffs has 3 values");
 }
 
 TEST(Refract_Camera, is_written_and_read)
@@ -86,7 +86,7 @@ TEST(Refract_Camera, is_written_and_read)
     remove(filename.c_str());
     EXPECT_EQ(0, cvtest::norm(camera->lensParameters(), camera2()->lensParameters(), NORM_INF));
     EXPECT_EQ(window2().index, camera->window().index);
-    EXPECT_TRUE(contains(thrown([&] { RefractiveCamera::read(filename); }), filename.c_str()));
+    EXPECT_REFUSED(RefractiveCamera::read(filename), filename);
 }
 
 }} // namespace

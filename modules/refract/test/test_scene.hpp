@@ -88,7 +88,10 @@ template<typename F> std::string thrown(const F& f)
     return std::string();
 }
 
-inline bool contains(const std::string& text, const char* word) { return text.find(word) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& word) { return text.find(word) != std::string::npos; }
+
+// The call throws cv::Exception, whose text says so.
+#define EXPECT_REFUSED(call, text) EXPECT_PRED2(contains, thrown([&] { call; }), text)
 
 }} // namespace
 

@@ -32,10 +32,9 @@ TEST(Refract_UndistortPoints, refuses_what_is_no_depth)
 {
     const std::vector<Point2d> raw = project(scenePoints(), camera1());
     std::vector<Point2d> points;
-    EXPECT_TRUE(contains(thrown([&] { refractiveUndistortPoints(raw, points, camera1(), std::vector<double>(7, 600.)); }),
-                         "depth has 7 values"));
-    EXPECT_TRUE(contains(thrown([&] { refractiveUndistortPoints(raw, points, camera1(), std::vector<double>(1, -1.)); }),
-                         "depth is -1"));
+    EXPECT_REFUSED(refractiveUndistortPoints(raw, points, camera1(), std::vector<double>(7, 600.)),
+                   "depth has 7 values");
+    EXPECT_REFUSED(refractiveUndistortPoints(raw, points, camera1(), std::vector<double>(1, -1.)), "depth is -1");
 
     std::vector<uchar> status;
     std::vector<double> depths(raw.size(), 600.);
@@ -54,8 +53,10 @@ TEST(Refract_UndistortRectifyMap, is_the_raw_image_of_the_plane)
     const Size size(64, 48);
     const Matx33d K(120, 0, 32, 0, 120, 24, 0, 0, 1);
     Mat map, map1, map2;
-    initRefractiveUndistortRectifyMap(camera1(), std::vector<double>(1, depth), noArray(), K, size, CV_32FC2, map, noArray());
-    initRefractiveUndistortRectifyMap(K1(), D1(), window1(), Vec4d(0, 0, 1, depth), noArray(), K, size, CV_32FC1, map1, map2);
+    initRefractiveUndistortRectifyMap(camera1(), std::vector<double>(1, depth), noArray(), K, size, CV_32FC2,
+                                      map, noArray());
+    initRefractiveUndistortRectifyMap(K1(), D1(), window1(), Vec4d(0, 0, 1, depth), noArray(), K, size, CV_32FC1,
+                                      map1, map2);
     ASSERT_EQ(size, map.size());
     for (int v = 0; v < size.height; v += 8)
         for (int u = 0; u < size.width; u += 8)
@@ -71,11 +72,13 @@ TEST(Refract_UndistortRectifyMap, is_the_raw_image_of_the_plane)
 TEST(Refract_UndistortRectifyMap, no_answer_is_outside_the_image)
 {
     Mat map;
-    initRefractiveUndistortRectifyMap(camera1(), std::vector<double>(1, 40.), noArray(), noArray(), Size(8, 8), CV_32FC2, map,
-                                      noArray());       // inside the window
+    const std::vector<double> insideTheWindow(1, 40.);
+    initRefractiveUndistortRectifyMap(camera1(), insideTheWindow, noArray(), noArray(), Size(8, 8), CV_32FC2,
+                                      map, noArray());
     EXPECT_EQ(0, cvtest::norm(map, Mat(8, 8, CV_32FC2, Scalar::all(-1)), NORM_INF));
-    EXPECT_TRUE(contains(thrown([&] { initRefractiveUndistortRectifyMap(camera1(), noArray(), noArray(), noArray(),
-                                                                        Size(8, 8), CV_8UC3, map, noArray()); }), "m1type"));
+    EXPECT_REFUSED(initRefractiveUndistortRectifyMap(camera1(), noArray(), noArray(), noArray(), Size(8, 8), CV_8UC3,
+                                                     map, noArray()),
+                   "m1type");
 }
 
 TEST(Refract_PointsOnPlane, finds_the_points)
@@ -102,7 +105,7 @@ TEST(Refract_PointsOnPlane, parallel_to_the_ray)
                             Vec4d(1, 0, 0, 5), status);
     EXPECT_EQ(REFRACT_PARALLEL_RAYS, status[0]);
     EXPECT_TRUE(cvIsNaN(points[0].x));
-    EXPECT_TRUE(contains(thrown([&] { refractivePointsOnPlane(raw, points, camera1(), Vec4d(0, 0, 0, 1)); }), "plane is"));
+    EXPECT_REFUSED(refractivePointsOnPlane(raw, points, camera1(), Vec4d(0, 0, 0, 1)), "plane is");
 }
 
 }} // namespace

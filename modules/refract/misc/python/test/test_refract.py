@@ -163,7 +163,7 @@ class refract_test(NewOpenCVTests):
     def test_undistort(self):
         depth = self.points[:, 2]
         expected = self.points[:, :2]/depth[:, None]
-        normalized, status = cv.refract.refractiveUndistortPoints(self.pixels1, self.camera1, depth)
+        normalized, status = cv.refract.refractiveUndistortPoints(self.pixels1, self.camera1, depth=depth)
         self.assertClose(expected, normalized, 1e-12)
         pixels, status = cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window(), depth=depth, P=K)
         self.assertClose(expected*2438 + (644, 500), pixels, 1e-9)
@@ -172,7 +172,8 @@ class refract_test(NewOpenCVTests):
     def test_map(self):
         new = np.array([[120., 0, 32], [0, 120, 24], [0, 0, 1]])
         for args in ((self.camera1,), (K, D, make_window())):
-            x, y = cv.refract.initRefractiveUndistortRectifyMap(*args, np.array([600.]), None, new, (64, 48), cv.CV_32FC1)
+            x, y = cv.refract.initRefractiveUndistortRectifyMap(*args, np.array([600.]), None, new, (64, 48),
+                                                                cv.CV_32FC1)
             self.assertEqual(((48, 64), (48, 64)), (x.shape, y.shape))
             point = np.array([[(40 - 32)*5., (8 - 24)*5, 600]])
             expected = cv.refract.refractiveProjectPoints(point, self.zero, self.zero, self.camera1)[0]
@@ -194,8 +195,8 @@ class refract_test(NewOpenCVTests):
             a, b = line[:-1, 0], line[1:, 0]
             t = np.clip(np.sum((pixel - a)*(b - a), axis=1)/np.sum((b - a)**2, axis=1), 0, 1)
             self.assertLess(np.linalg.norm(pixel - a - t[:, None]*(b - a), axis=1).min(), 0.0105)
-        same, _ = cv.refract.computeRefractiveEpilines(self.pixels1, 1, K, D, make_window(), K, D, make_window(0.18), R, T,
-                                                       (300, math.inf))
+        same, _ = cv.refract.computeRefractiveEpilines(self.pixels1, 1, K, D, make_window(), K, D, make_window(0.18),
+                                                       R, T, (300, math.inf))
         self.assertClose(lines[7], same[7], 0)
 
     def test_triangulate(self):
