@@ -18,12 +18,13 @@ struct Seen
     std::vector<double> depths;
 };
 
-Seen somePoints(const Ptr<RefractiveCamera>& camera, const LensKind& lens, double near, double far, Random& random)
+Seen somePoints(const Ptr<RefractiveCamera>& camera, const LensKind& lens, double degrees, Random& random)
 {
+    const double near = 400, far = 2000;
     std::vector<Vec3d> points;
     for (int i = 0; i < 500; ++i)
     {
-        const Vec3d d = randomNormal(random, std::min(60., 0.9*lens.halfField));
+        const Vec3d d = randomNormal(random, std::min(degrees, 0.9*lens.halfField));
         points.push_back(random.uniform(near, far)/d[2]*d);
     }
     std::vector<Vec2d> pixels;
@@ -53,7 +54,8 @@ TEST_CASE("Undistorted points are the pinhole images of the scene points", "[und
     {
         CAPTURE(lens.name);
         const Ptr<RefractiveCamera> camera = makeCamera(lens, makeWindow(kind, random, 15));
-        const Seen seen = somePoints(camera, lens, 400, 2000, random);
+        // Not up to the critical angle of an air gap in water, where the origin of a ray runs away to infinity.
+        const Seen seen = somePoints(camera, lens, kind == DOUBLE_GLAZING_IN_WATER ? 30 : 60, random);
         const Vec3d rvec = random.vector(0.1);
         const Matx33d P(800, 0, 500, 0, 810, 400, 0, 0, 1);
         Matx33d R;
