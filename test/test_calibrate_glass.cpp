@@ -301,6 +301,12 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
                                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1, 1e-12)); }),
                    Catch::Contains("did not converge in 1 iterations"));
         CHECK(start->window().normal == Vec3d(0, 0, 1));
+        for (const TermCriteria& bad : { TermCriteria(0, 10, 1e-9), TermCriteria(TermCriteria::COUNT, 0, 0),
+                                         TermCriteria(TermCriteria::EPS, 0, -1) })
+            CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.refracted, scene.direct, start, noArray(), noArray(),
+                                                   0, bad); }), Catch::Contains("criteria."));
+        calibrateGlass(scene.object, scene.refracted, scene.direct, startCamera(camera, paperWindow()), noArray(),
+                       noArray(), 0, TermCriteria(TermCriteria::EPS, 0, 1e-9));
         calibrateGlass(scene.object, scene.refracted, scene.direct, start, noArray(), noArray(), 0,
                        TermCriteria(TermCriteria::COUNT, 1, 0));
     }

@@ -18,9 +18,24 @@ static Mat rmsPerView(const RigProblem& rig, int cameras)
     return errors;
 }
 
-RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& views, int flags,
-              const TermCriteria& criteria, bool wantsJacobian)
+//! Both limits in force: what the caller left open is generous.
+static TermCriteria checkedCriteria(TermCriteria criteria)
 {
+    if (!(criteria.type & (TermCriteria::COUNT | TermCriteria::EPS)))
+        CV_Error_(Error::StsBadArg, ("criteria.type is %d; it must have COUNT, EPS or both", criteria.type));
+    if (!(criteria.type & TermCriteria::COUNT))
+        criteria.maxCount = 1000;
+    if (criteria.maxCount < 1)
+        CV_Error_(Error::StsOutOfRange, ("criteria.maxCount is %d; it must be at least 1", criteria.maxCount));
+    if ((criteria.type & TermCriteria::EPS) && !(criteria.epsilon >= 0))
+        CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must not be negative", criteria.epsilon));
+    return criteria;
+}
+
+RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& views, int flags,
+              const TermCriteria& criteria_, bool wantsJacobian)
+{
+    const TermCriteria criteria = checkedCriteria(criteria_);
     const std::vector<Pose> poses = startPoses(cameras, extrinsics, views);
     RigProblem rig(cameras, extrinsics, views, poses, flags);
     const int observations = 2*rig.pointCount(), unknowns = rig.freeCount() + 6*rig.viewCount();

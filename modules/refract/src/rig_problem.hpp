@@ -55,8 +55,8 @@ public:
     //! Empty, or which point has no image at the start.
     String startFault() const;
 
-    /** False if the iterations that the criteria allow did not reach the change that they ask for. Throws StsBadArg that
-    names a point without image at the start, or StsNoConv. */
+    /** False if criteria.maxCount iterations did not reach the change that the criteria ask for (EPS). Throws StsBadArg that
+    names a point without image at the start. */
     bool solve(const TermCriteria& criteria);
 
     int viewCount() const { return (int)poses_.size(); }
@@ -97,7 +97,8 @@ private:
     ceres::CostFunction* makeCost(const RigImage& image) const;
     int publicRow(const RigBlock& block) const;
     void addSharedWindow(Eigen::MatrixXd& basis) const;
-    bool solveInside(double change, int& iterations, double& radius);   //!< in: how many, out: how many were made
+    //! A ceres::TerminationType. iterations: in the limit, out how many were made.
+    int solveInside(double change, int& iterations, double& radius);
     bool holdAtBounds();            //!< true if that changes what is held
 
     std::vector<Camera> cameras_;       //!< lens models and numbers of layers

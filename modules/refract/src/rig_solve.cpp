@@ -69,14 +69,16 @@ bool RigProblem::solve(const TermCriteria& criteria)
         CV_Error(Error::StsBadArg, fault);
     const int ITERATIONS_BETWEEN = 20;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
-    int left = (criteria.type & TermCriteria::COUNT) ? criteria.maxCount : 1000;
+    int left = criteria.maxCount;
     double radius = ceres::Solver::Options().initial_trust_region_radius;
     while (left > 0)
     {
         int iterations = std::min(left, ITERATIONS_BETWEEN);
-        const bool converged = solveInside(stopsByChange ? criteria.epsilon : 0., iterations, radius);
+        const int outcome = solveInside(stopsByChange ? criteria.epsilon : 0., iterations, radius);
+        if (outcome == ceres::FAILURE)
+            return false;
         left -= iterations;
-        if (!holdAtBounds() && converged)
+        if (!holdAtBounds() && outcome == ceres::CONVERGENCE)
             return true;
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
@@ -106,7 +108,7 @@ bool RigProblem::holdAtBounds()
     return changed;
 }
 
-bool RigProblem::solveInside(double change, int& iterations, double& radius)
+int RigProblem::solveInside(double change, int& iterations, double& radius)
 {
     ceres::Problem problem;
     const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -131,15 +133,16 @@ bool RigProblem::solveInside(double change, int& iterations, double& radius)
     options.initial_trust_region_radius = radius;
     options.function_tolerance = change;
     options.gradient_tolerance = options.parameter_tolerance = 1e-14;
+    options.max_num_consecutive_invalid_steps = 20;     // a step that takes a point's image away is shortened
     options.num_threads = 1;        // sums in one order: the same result every time
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable())
-        CV_Error_(Error::StsNoConv, ("the calibration failed: %s", summary.message.c_str()));
+        return ceres::FAILURE;
     iterations = std::max(1, (int)summary.iterations.size() - 1);
     radius = summary.iterations.back().trust_region_radius;
-    return summary.termination_type == ceres::CONVERGENCE;
+    return summary.termination_type;
 }
 
 }} // namespace
