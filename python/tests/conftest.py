@@ -1,4 +1,4 @@
-"""A stereo rig behind two tilted panes, and points that both cameras see."""
+"""A stereo rig behind two tilted windows, and points that both cameras see."""
 import numpy as np
 import pytest
 

@@ -18,7 +18,7 @@ camera1 = refract.RefractiveCamera.read(CALIB, "camera1")
 camera2 = refract.RefractiveCamera.read(CALIB, "camera2")
 file = cv2.FileStorage(CALIB, cv2.FILE_STORAGE_READ)
 R = file.getNode("R").mat()
-T = np.array([file.getNode("T").at(i).real() for i in range(3)])
+T = file.getNode("T").mat()
 
 # A point at z = 600 and its true image in both cameras.
 point = np.array([[30., -40., 600.]])

@@ -14,7 +14,7 @@ import numpy as np
 DATA = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(__file__), "..", "data", "stereo")
 SIZE, SQUARE = (6, 5), 39.
 BOARD = np.float32([(SQUARE*x, SQUARE*y, 0) for y in range(SIZE[1]) for x in range(SIZE[0])])
-PANE = (0, 0, 1), 20., 1.5437       # where it roughly faces, thickness in mm, index
+WINDOW = (0, 0, 1), 20., 1.5437       # where it roughly faces, thickness in mm, index
 
 
 def corners(folder, stem="*"):

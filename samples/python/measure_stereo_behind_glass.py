@@ -15,7 +15,7 @@ import opencv_refract as refract
 DATA = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(__file__), "..", "data", "stereo")
 SIZE, SQUARE = (6, 5), 39.
 BOARD = np.float32([(SQUARE*x, SQUARE*y, 0) for y in range(SIZE[1]) for x in range(SIZE[0])])
-PANE = (0, 0, 1), 20., 1.5437       # where it roughly faces, thickness in mm, index
+WINDOW = (0, 0, 1), 20., 1.5437       # where it roughly faces, thickness in mm, index
 
 
 def corners(folder, stem="*"):
@@ -51,8 +51,8 @@ single = [[view.astype(np.float32) for view in views] for views in (direct1, dir
 K1, D1 = cv2.calibrateCamera(boards, single[0], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 K2, D2 = cv2.calibrateCamera(boards, single[1], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 R, T, E, F = cv2.stereoCalibrate(boards, *single, K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)[5:9]
-w1 = refract.calibrateGlass([BOARD]*6, corners("glass1"), direct1[-6:], K1, D1, refract.GlassWindow(*PANE))[1]
-w2 = refract.calibrateGlass([BOARD]*6, corners("glass2"), direct2[-6:], K2, D2, refract.GlassWindow(*PANE))[1]
+w1 = refract.calibrateGlass([BOARD]*6, corners("glass1"), direct1[-6:], K1, D1, refract.GlassWindow(*WINDOW))[1]
+w2 = refract.calibrateGlass([BOARD]*6, corners("glass2"), direct2[-6:], K2, D2, refract.GlassWindow(*WINDOW))[1]
 P1, P2 = K1 @ np.eye(3, 4), K2 @ np.hstack((R, T))
 
 lengths, beside, fit = [], [], []

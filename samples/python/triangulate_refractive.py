@@ -29,7 +29,7 @@ camera1 = refract.RefractiveCamera.read(calib, "camera1")
 camera2 = refract.RefractiveCamera.read(calib, "camera2")
 file = cv2.FileStorage(calib, cv2.FILE_STORAGE_READ)
 R = file.getNode("R").mat()
-T = np.array([file.getNode("T").at(i).real() for i in range(3)])
+T = file.getNode("T").mat()
 
 left, right = find_corners("measure1/z600_1.jpg"), find_corners("measure2/z600_1.jpg")
 points, status = refract.triangulateRefractive(camera1, camera2, R, T, left, right)
