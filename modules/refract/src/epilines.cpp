@@ -86,8 +86,9 @@ void appendSegment(const EpipolarCurve& curve, double tA, const Vec2d& a, double
     curve.evaluate(3, t, p, status);
     // Three points see the largest distance to within a few percent.
     bool close = true;      // a NaN inside (grazing the edge of visibility) compares false and is split as well
+    const double enough = 0.95*tolerance + 1e-13*cv::norm(b);   // far beyond any sensor, pixels are rounding
     for (int i = 0; i < 3; ++i)
-        close = close && distanceToSegment(p[i], a, b) <= 0.95*tolerance;
+        close = close && distanceToSegment(p[i], a, b) <= enough;
     if (close || depth == 0 || std::isnan(p[1][0]))
     {
         line.push_back(b);
