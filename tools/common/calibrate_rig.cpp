@@ -1,10 +1,7 @@
 #include "calibrate_rig.hpp"
-#include "table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
 using namespace cv;
 using namespace cv::refract;
@@ -13,295 +10,24 @@ namespace tools {
 
 namespace {
 
-const int MIN_POINTS = 4;       // of a view that is to have a pose
 const int MIN_PAIRS = 3;        // to refine a lens together with the window
 const double SPOILT = 1.2;      // RMS of the direct images after / before the refinement, where it has failed
 const int MAX_ITERATIONS = 1000;
 
-using Views = std::vector<std::vector<Point2d>>;
-
-//! Keeps what was seen; calib3d knows no NaN and wants float.
-void seenPoints(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels,
-                std::vector<Point3f>& seenObject, std::vector<Point2f>& seenPixels)
+double directRms(const RigData& data, const Fit& fit, int camera)
 {
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
+    double sum = 0.;
+    int count = 0;
+    for (const Residual& r : residualsOf(data, fit))
+        if (r.camera == camera && !r.glass)
         {
-            seenObject.push_back(object[i]);
-            seenPixels.push_back(pixels[i]);
+            sum += r.error.dot(r.error);
+            count++;
         }
-}
-
-int calibrateCameraFlags(int coefficients)
-{
-    switch (coefficients)
-    {
-    case 0: return CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_ZERO_TANGENT_DIST;
-    case 4: return CALIB_FIX_K3;
-    case 5: return 0;
-    case 8: return CALIB_RATIONAL_MODEL;
-    case 12: return CALIB_RATIONAL_MODEL | CALIB_THIN_PRISM_MODEL;
-    default: return CALIB_RATIONAL_MODEL | CALIB_THIN_PRISM_MODEL | CALIB_TILTED_MODEL;
-    }
-}
-
-Views directViews(const RigData& data, int camera)
-{
-    Views views;
-    for (const Moment& m : data.moments)
-        views.push_back(m.direct[camera]);
-    return views;
-}
-
-Views glassViews(const RigData& data, int camera)
-{
-    Views views;
-    for (const Moment& m : data.moments)
-        views.push_back(m.glass[camera]);
-    return views;
-}
-
-int countTaken(const Views& views)
-{
-    return (int)std::count_if(views.begin(), views.end(), [](const std::vector<Point2d>& v) { return !v.empty(); });
-}
-
-Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, int camera, LensSource& source)
-{
-    if (options.known[camera])
-        return options.known[camera];
-    const std::string suffix = camera ? "2" : "";
-    Views views = directViews(data, camera);
-    source.kind = LensSource::FROM_DIRECT;
-    if (countTaken(views) == 0)
-    {
-        if (!(options.flags & GLASS_FREE_INTRINSICS))
-            throw Failure("there is nothing to take the lens from: give --direct" + suffix + " images or --camera" + suffix
-                          + ", or --free=intrinsics to find the lens through the window");
-        views = glassViews(data, camera);   // a pinhole through the glass is a good start
-        source.kind = LensSource::FROM_GLASS;
-    }
-    source.views = countTaken(views);
-    if (source.views < 3)
-        throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
-                             "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
-    return calibratePinhole(data.objectPoints, views, data.imageSize[camera], options.lensCoefficients, source.rms);
-}
-
-//! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.
-void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camera, const LensSource& source)
-{
-    int outside = 0;
-    for (const Views& views : {directViews(data, camera), glassViews(data, camera)})
-        for (const std::vector<Point2d>& view : views)
-        {
-            Mat origins, directions;
-            std::vector<uchar> status;
-            refractiveUnprojectPoints(view, origins, directions, lens, status);
-            outside += (int)std::count(status.begin(), status.end(), (uchar)REFRACT_OUTSIDE_LENS_MODEL);
-        }
-    if (outside)
-        throw Failure(format("camera %d: %d corners lie where the lens model is not one-to-one: ", camera + 1, outside)
-                      + (source.kind == LensSource::FROM_FILE ? "--camera does not belong to these images"
-                         : "these images do not determine that many coefficients; choose a smaller --lens (opencv5, opencv4) "
-                           "or show the target in the image's corners too"));
-}
-
-//! Board -> camera of one view, and the sum of squared errors; false if there is none.
-bool solveView(const RigData& data, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels,
-               Matx33d& R, Vec3d& t)
-{
-    if (pixels.empty())
-        return false;
-    Vec3d rvec;
-    if (std::isnan(refractiveSolvePnP(data.objectPoints, pixels, camera, rvec, t)))
-        return false;
-    Rodrigues(rvec, R);
-    return true;
-}
-
-struct BoardInBoth { Matx33d R1, R2; Vec3d t1, t2; };
-
-double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const std::vector<Point3d>& object,
-                          const Matx33d& R, const Vec3d& T)
-{
-    // The median over the boards, as single-view poses of a flat board may be mirrored.
-    std::vector<double> misfits;
-    for (const BoardInBoth& b : boards)
-    {
-        double sum = 0.;
-        for (const Point3d& X : object)
-        {
-            const Vec3d p(X);
-            const Vec3d there = R * (b.R1 * p + b.t1) + T, here = b.R2 * p + b.t2;
-            sum += norm(there - here, NORM_L2SQR) / here.dot(here);
-        }
-        misfits.push_back(sum);
-    }
-    std::nth_element(misfits.begin(), misfits.begin() + misfits.size() / 2, misfits.end());
-    return misfits[misfits.size() / 2];
-}
-
-//! R, T from single boards seen by both cameras (direct images first, any lens): the one that fits the others best.
-void startExtrinsics(const RigData& data, Rig& rig)
-{
-    const Rig bare{{withWindow(rig.cameras[0], GlassWindow()), withWindow(rig.cameras[1], GlassWindow())}, rig.R, rig.T};
-    std::vector<BoardInBoth> boards;
-    for (int through = 0; through < 2 && boards.empty(); through++)
-        for (const Moment& m : data.moments)
-        {
-            const Rig& r = through ? rig : bare;
-            BoardInBoth b;
-            if (solveView(data, r.cameras[0], through ? m.glass[0] : m.direct[0], b.R1, b.t1) &&
-                solveView(data, r.cameras[1], through ? m.glass[1] : m.direct[1], b.R2, b.t2))
-                boards.push_back(b);
-        }
-    if (boards.empty())
-        throw Failure("no moment is seen by both cameras, so their places to each other cannot be found: images of one "
-                      "moment must have equal names in the folders of camera 1 and camera 2");
-    double best = std::numeric_limits<double>::infinity();
-    for (const BoardInBoth& b : boards)
-    {
-        const Matx33d R = b.R2 * b.R1.t();
-        const Vec3d T = b.t2 - R * b.t1;
-        const double misfit = relativePoseMisfit(boards, data.objectPoints, R, T);
-        if (misfit < best)
-        {
-            best = misfit;
-            rig.R = R;
-            rig.T = T;
-        }
-    }
+    return std::sqrt(sum / count);
 }
 
 } // namespace
-
-// ---- which images belong together
-
-int RigData::countGlass(int camera) const
-{
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.hasGlass(camera); });
-}
-
-int RigData::countDirect(int camera) const
-{
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.hasDirect(camera); });
-}
-
-int RigData::countPairs(int camera) const
-{
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.isPair(camera); });
-}
-
-RigData pairViews(const Target& target, const ViewSet* const direct[2], const ViewSet* const glass[2], bool unpaired)
-{
-    RigData data;
-    data.cameraCount = glass[1] ? 2 : 1;
-    data.objectPoints = target.objectPoints();
-    std::map<std::pair<std::string, bool>, Moment> moments;
-    for (int c = 0; c < data.cameraCount; c++)
-        for (bool through : {false, true})
-        {
-            const ViewSet* set = through ? glass[c] : direct[c];
-            if (!set)
-                continue;
-            if (!data.imageSize[c].empty() && set->imageSize != data.imageSize[c])
-                throw Failure(format("camera %d: direct images are %dx%d, glass images %dx%d: they must come from the same "
-                                     "camera at the same resolution", c + 1, data.imageSize[c].width,
-                                     data.imageSize[c].height, set->imageSize.width, set->imageSize.height));
-            data.imageSize[c] = set->imageSize;
-            for (const View& view : set->views)
-            {
-                if (view.seenCount() < MIN_POINTS)
-                    continue;
-                Moment& m = moments[{view.stem, unpaired && through}];
-                m.stem = view.stem;
-                (through ? m.glass : m.direct)[c] = view.points;
-            }
-        }
-    for (auto& entry : moments)
-    {
-        Moment& m = entry.second;
-        std::vector<Point2d>* first = nullptr;
-        for (std::vector<Point2d>* points : {&m.direct[0], &m.glass[0], &m.direct[1], &m.glass[1]})
-            if (!points->empty())
-            {
-                if (first)
-                    *points = target.alignWith(*first, *points);
-                else
-                    first = points;
-            }
-        data.moments.push_back(m);
-    }
-    return data;
-}
-
-// ---- lenses and start
-
-Rig Rig::clone() const
-{
-    Rig copy = *this;
-    for (Ptr<RefractiveCamera>& camera : copy.cameras)
-        camera = withWindow(camera, camera->window());
-    return copy;
-}
-
-Ptr<RefractiveCamera> withWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)
-{
-    const String model = camera->lensModel();
-    Ptr<RefractiveCamera> copy =
-        model == "opencv" ? RefractiveCamera::create(camera->cameraMatrix(), camera->distCoeffs(), window) :
-        model == "fisheye" ? RefractiveCamera::createFisheye(camera->cameraMatrix(), camera->distCoeffs(), window) :
-        RefractiveCamera::createMrcal(model, camera->lensParameters(), window);
-    copy->setImageSize(camera->imageSize());
-    return copy;
-}
-
-Ptr<RefractiveCamera> calibratePinhole(const std::vector<Point3d>& objectPoints, const Views& views, Size imageSize,
-                                       int coefficients, double& rms)
-{
-    std::vector<std::vector<Point3f>> object;
-    std::vector<std::vector<Point2f>> image;
-    for (const std::vector<Point2d>& view : views)
-    {
-        std::vector<Point3f> o;
-        std::vector<Point2f> i;
-        seenPoints(objectPoints, view, o, i);
-        if ((int)o.size() < MIN_POINTS)
-            continue;
-        object.push_back(o);
-        image.push_back(i);
-    }
-    Mat cameraMatrix, distCoeffs, rvecs, tvecs;
-    rms = calibrateCamera(object, image, imageSize, cameraMatrix, distCoeffs, rvecs, tvecs,
-                          calibrateCameraFlags(coefficients));
-    distCoeffs = distCoeffs.reshape(1, 1).colRange(0, coefficients).clone();
-    Ptr<RefractiveCamera> camera = RefractiveCamera::create(cameraMatrix, distCoeffs);
-    camera->setImageSize(imageSize);
-    return camera;
-}
-
-Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources)
-{
-    Rig rig;
-    lensSources.assign(data.cameraCount, LensSource());
-    for (int c = 0; c < data.cameraCount; c++)
-    {
-        Ptr<RefractiveCamera> lens = startLens(data, options, c, lensSources[c]);
-        const Size known = lens->imageSize();
-        if (!known.empty() && known != data.imageSize[c])
-            throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", c ? "2" : "",
-                                 known.width, known.height, data.imageSize[c].width, data.imageSize[c].height));
-        checkLens(data, withWindow(lens, GlassWindow()), c, lensSources[c]);
-        rig.cameras.push_back(withWindow(lens, options.window));
-        rig.cameras.back()->setImageSize(data.imageSize[c]);
-    }
-    if (data.cameraCount == 2)
-        startExtrinsics(data, rig);
-    return rig;
-}
-
-// ---- the joint fit
 
 std::vector<int> usefulMoments(const RigData& data, int flags)
 {
@@ -323,7 +49,7 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
     fit.rig = start.clone();
     fit.moments = moments;
     const std::vector<std::vector<Point3d>> object(moments.size(), data.objectPoints);
-    Views direct[2], glass[2];
+    std::vector<std::vector<Point2d>> direct[2], glass[2];
     for (int i : moments)
         for (int c = 0; c < 2; c++)
         {
@@ -340,19 +66,6 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
                                        fit.rig.R, fit.rig.T, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance,
                                        fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS, criteria);
     return fit;
-}
-
-static double directRms(const RigData& data, const Fit& fit, int camera)
-{
-    double sum = 0.;
-    int count = 0;
-    for (const Residual& r : residualsOf(data, fit))
-        if (r.camera == camera && !r.glass)
-        {
-            sum += r.error.dot(r.error);
-            count++;
-        }
-    return std::sqrt(sum / count);
 }
 
 Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags)
@@ -415,8 +128,6 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
     }
     return residuals;
 }
-
-// ---- what the estimate is worth
 
 ParameterColumns columnsOf(const Rig& rig, int camera)
 {

@@ -2,40 +2,11 @@
 #define REFRACT_TOOLS_CALIBRATE_RIG_HPP
 
 #include "calib_file.hpp"
-#include "views.hpp"
+#include "rig_data.hpp"
 
-/* From views of a target to a calibrated rig of one or two cameras: which images belong together, the lens from the
-direct images, the start of R and T, and the joint fit of windows, rig and board poses. Geometry is the library's. */
+/* From views of a target to a calibrated rig of one or two cameras: the lens from the direct images and the start of R and
+T (rig_start.cpp), and the joint fit of windows, rig and board poses (calibrate_rig.cpp). Geometry is the library's. */
 namespace tools {
-
-//! One pose of the board, and what each camera saw of it. An empty array: no image, or the board was not found.
-struct Moment
-{
-    std::string stem;
-    std::vector<cv::Point2d> direct[2], glass[2];
-
-    bool hasDirect(int camera) const { return !direct[camera].empty(); }
-    bool hasGlass(int camera) const { return !glass[camera].empty(); }
-    bool hasGlass() const { return hasGlass(0) || hasGlass(1); }
-    bool isPair(int camera) const { return hasDirect(camera) && hasGlass(camera); }
-};
-
-struct RigData
-{
-    int cameraCount = 1;
-    std::vector<cv::Point3d> objectPoints;      //!< of the target, the same at every moment
-    std::vector<Moment> moments;
-    cv::Size imageSize[2];
-
-    int countGlass(int camera) const;
-    int countDirect(int camera) const;
-    int countPairs(int camera) const;
-};
-
-/** Sorts views into moments. Equal stems are one moment; with `unpaired` a direct and a glass image never are, while
-the two cameras of a rig still are. Points are renumbered where the target's symmetry makes two images of a moment
-disagree. glass[c] must not be null; direct[c] may be. */
-RigData pairViews(const Target& target, const ViewSet* const direct[2], const ViewSet* const glass[2], bool unpaired);
 
 struct RigOptions
 {

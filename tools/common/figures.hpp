@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_FIGURES_HPP
 #define REFRACT_TOOLS_FIGURES_HPP
 
-#include "findings.hpp"
+#include "rig_calibration.hpp"
 
 /* The report's pictures, one function each, as SVG text. A picture whose scale needs words returns them beside it. */
 namespace tools {
