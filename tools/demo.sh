@@ -1,0 +1,34 @@
+#!/bin/sh
+# The main job on the bundled images: calibrates a stereo pair behind two tilted windows, measures fresh boards with it, and
+# compares with what one would do instead. Installs what is missing, builds, runs; ends with a table and a report to look at.
+set -eu
+cd "$(dirname "$0")/.."
+tools/install_dependencies.sh build
+
+launcher=""
+command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+mkdir -p build out
+cmake -S . -B build/demo -G Ninja -DREFRACT_BUILD_TESTS=OFF -DREFRACT_BUILD_SAMPLES=OFF -DREFRACT_BUILD_BENCH=OFF \
+      $launcher >build/demo.log || { cat build/demo.log; exit 1; }
+cmake --build build/demo
+
+bin=build/demo/bin
+data=samples/data/stereo
+target="--pattern=chessboard --size=6x5 --square=39"
+
+# shellcheck disable=SC2086  # the target is three options
+$bin/refract_calib $target --thickness=20 --index=1.5437 \
+  --direct="$data/direct1/*" --glass="$data/glass1/*" --direct2="$data/direct2/*" --glass2="$data/glass2/*" \
+  --out=out/calib.yml --report=out/report.html --pinhole-out=out/pinhole_through_glass.yml
+
+for range in z540 z600 z800 z1200; do
+  echo
+  echo "Fresh boards at about ${range#z} mm:"
+  # shellcheck disable=SC2086
+  $bin/refract_measure out/calib.yml "$data/measure1/${range}_*" "$data/measure2/${range}_*" $target \
+    --compare --compare-with=out/pinhole_through_glass.yml --out="out/points_$range.csv"
+done
+$bin/refract_epilines out/calib.yml "$data/measure1/z600_1.jpg" "$data/measure2/z600_1.jpg" $target --out=out/epilines.png
+
+echo
+echo "Look at out/report.html (the calibration) and out/epilines.png (where partners lie)."
