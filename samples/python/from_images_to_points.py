@@ -38,8 +38,8 @@ def finish(figure, name):
 
 # %% [markdown]
 # ## Corners
-# In `direct1`, `direct2` the windows are taken away; in `glass1`, `glass2` they are there. A board that was not moved in
-# between has the same name in both.
+# In `direct1`, `direct2` the windows are taken away; in `glass1`, `glass2` they are there. A board that was not moved
+# in between has the same name in both.
 
 # %%
 def find_corners(folder):
@@ -157,7 +157,8 @@ figure, axes = plt.subplots(figsize=(8, 4))
 places = np.arange(len(names))
 axes.bar(places - 0.2, before, 0.4, color="tab:orange", label="window ignored")
 axes.bar(places + 0.2, after, 0.4, color="tab:cyan", label="with the window")
-axes.set(yscale="log", ylim=(None, 4.), ylabel="RMS error of lengths, mm", title="The name says the distance: z600 = about 600 mm")
+axes.set(yscale="log", ylim=(None, 4.), ylabel="RMS error of lengths, mm",
+         title="The name says the distance: z600 = about 600 mm")
 axes.set_xticks(places, names, rotation=60)
 axes.legend()
 finish(figure, "errors.png")

@@ -1,8 +1,9 @@
-"""Measures a chessboard with two cameras: an ordinary OpenCV script that knows nothing of the glass before the cameras.
+"""Measures a chessboard with two cameras that look through glass.
 
-    measure_stereo.py [DIRECTORY]       images as in samples/data/stereo, which is the default
+    measure_stereo.py | measure_stereo_behind_glass.py [DIRECTORY]      # images as in samples/data/stereo, the default
 
-measure_stereo_behind_glass.py is the same script made right: compare the two.
+measure_stereo.py is an ordinary OpenCV script that knows nothing of the glass; measure_stereo_behind_glass.py is the
+same script made right. doc/drop_in.md shows what changed.
 """
 import glob
 import os
@@ -14,12 +15,11 @@ import numpy as np
 DATA = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(__file__), "..", "data", "stereo")
 SIZE, SQUARE = (6, 5), 39.
 BOARD = np.float32([(SQUARE*x, SQUARE*y, 0) for y in range(SIZE[1]) for x in range(SIZE[0])])
-WINDOW = (0, 0, 1), 20., 1.5437       # where it roughly faces, thickness in mm, index
 
 
-def corners(folder, stem="*"):
+def corners(folder):
     found = []
-    for name in sorted(glob.glob(os.path.join(DATA, folder, stem + ".*"))):
+    for name in sorted(glob.glob(os.path.join(DATA, folder, "*.*"))):
         image = cv2.imread(name, cv2.IMREAD_GRAYSCALE)
         ok, points = cv2.findChessboardCornersSB(image, SIZE, flags=cv2.CALIB_CB_ACCURACY)
         if not ok:
@@ -44,9 +44,9 @@ def rms(errors):
 
 
 # Each camera, then the rig, from images that were taken without the glass.
-direct1, direct2 = corners("direct1"), corners("direct2")
-boards = [BOARD]*len(direct1)
-single = [[view.astype(np.float32) for view in views] for views in (direct1, direct2)]
+air1, air2 = corners("direct1"), corners("direct2")
+boards = [BOARD]*len(air1)
+single = [[view.astype(np.float32) for view in views] for views in (air1, air2)]
 K1, D1 = cv2.calibrateCamera(boards, single[0], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 K2, D2 = cv2.calibrateCamera(boards, single[1], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 R, T, E, F = cv2.stereoCalibrate(boards, *single, K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)[5:9]
