@@ -1,0 +1,208 @@
+// refract_measure as a user runs it: on the bundled images, whose truth is known, and on wrong input.
+#include "run_tool.hpp"
+#include "truth_file.hpp"
+#include <catch2/catch.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace {
+
+const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string TARGET = " --size=6x5 --square=39";
+
+std::string image(const std::string& name) { return STEREO + "/" + name + ".jpg"; }
+
+double rmsAgainst(const TrueView& truth, const std::vector<CsvRow>& rows)
+{
+    const std::vector<cv::Point3d> object = chessboard(6, 5, 39);
+    double squares = 0;
+    for (const CsvRow& row : rows)
+        squares += std::pow(cv::norm(row.point - truth.inCamera1(object[row.id])), 2);
+    return std::sqrt(squares / rows.size());
+}
+
+//! Errors in units of the sigma that the tool states; about 1 if it is honest.
+double rmsInSigma(const TrueView& truth, const std::vector<CsvRow>& rows)
+{
+    const std::vector<cv::Point3d> object = chessboard(6, 5, 39);
+    double squares = 0;
+    for (const CsvRow& row : rows)
+        for (int k = 0; k < 3; ++k)
+            squares += std::pow((row.point[k] - truth.inCamera1(object[row.id])[k]) / row.sigma[k], 2);
+    return std::sqrt(squares / (3 * rows.size()));
+}
+
+} // namespace
+
+TEST_CASE("refract_measure triangulates fresh views to within their stated uncertainty", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const auto truth = readTruth(STEREO);
+    for (const std::string stem : {"z540_1", "z600_3", "z800_2", "z1200_1"})
+    {
+        CAPTURE(stem);
+        const ToolResult result = runTool("refract_measure " + STEREO + "/truth.yml " + image("measure1/" + stem) + " "
+            + image("measure2/" + stem) + TARGET + " --pixel-sigma=0.014 --out=" + (folder / "points.csv"));
+        CAPTURE(result.err);
+        REQUIRE(result.code == 0);
+        CHECK(result.err.empty());
+        CHECK(result.out.find("30 of 30") != std::string::npos);
+        const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
+        REQUIRE(rows.size() == 30);
+        const TrueView& view = truth.at("measure1/" + stem + ".jpg");
+        CHECK(rmsAgainst(view, rows) < 0.02 * std::pow(view.tvec[2] / 600, 2));
+        CHECK(rmsInSigma(view, rows) < 1.6);
+        CHECK(rmsInSigma(view, rows) > 0.4);
+        for (size_t i = 0; i < rows.size(); ++i)
+        {
+            CHECK(rows[i].id == (int)i);
+            CHECK(rows[i].status == 0);
+            CHECK(cv::norm(rows[i].pixel1 - view.pixels[i]) < 0.1);
+            CHECK(cv::norm(rows[i].pixel2 - truth.at("measure2/" + stem + ".jpg").pixels[i]) < 0.1);
+        }
+        CHECK(folder.count() == 1);
+    }
+}
+
+TEST_CASE("refract_measure pairs the images of two globs by their stems and compares baselines", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const ToolResult result = runTool("refract_measure " + STEREO + "/truth.yml '" + image("measure1/z600_*") + "' '"
+        + image("measure2/z600_[1-5]") + "'" + TARGET + " --compare --out=" + (folder / "points.csv"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    CHECK(result.out.find("5 views") != std::string::npos);
+    CHECK(result.out.find("glass ignored") != std::string::npos);
+    const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
+    REQUIRE(rows.size() == 150);
+    CHECK(rows.back().id == 149);
+    // The truth file has no rms and no --pixel-sigma was given: the uncertainty is unknown, and says so.
+    CHECK(std::isnan(rows[0].sigma[0]));
+    CHECK(result.out.find("unknown") != std::string::npos);
+}
+
+TEST_CASE("refract_measure meets a known plane, and finds a target's pose, with one camera", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const TrueView view = readTruth(STEREO).at("measure1/z600_2.jpg");
+    cv::Matx33d R;
+    cv::Rodrigues(view.rvec, R);
+    const cv::Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
+    const std::string call = "refract_measure " + STEREO + "/truth.yml " + image("measure1/z600_2") + TARGET
+                             + " --pixel-sigma=0.014 --out=" + (folder / "points.csv");
+
+    const ToolResult onPlane = runTool(call + cv::format(" --plane=%.17g,%.17g,%.17g,%.17g", normal[0], normal[1],
+                                                         normal[2], normal.dot(view.tvec)));
+    CAPTURE(onPlane.err);
+    REQUIRE(onPlane.code == 0);
+    std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
+    REQUIRE(rows.size() == 30);
+    CHECK(std::isnan(rows[0].pixel2.x));
+    CHECK(rmsAgainst(view, rows) < 0.01);
+    CHECK(rmsInSigma(view, rows) < 1.6);
+
+    const ToolResult pose = runTool(call);
+    CAPTURE(pose.err);
+    REQUIRE(pose.code == 0);
+    CHECK(pose.out.find("length") == std::string::npos);    // they are given, not measured
+    rows = readPointsCsv(readFile(folder / "points.csv"));
+    CHECK(rmsAgainst(view, rows) < 0.05);
+    CHECK(rmsInSigma(view, rows) < 2.5);        // one pose: three errors, common to all points
+}
+
+TEST_CASE("the bundled rig, from images to lengths", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const std::string calib = folder / "calib.yml";
+    const ToolResult calibrated = runTool("refract_calib" + TARGET + " --direct='" + image("direct1/*") + "' --glass='"
+        + image("glass1/*") + "' --direct2='" + image("direct2/*") + "' --glass2='" + image("glass2/*")
+        + "' --thickness=20 --index=1.5437 --quiet --out=" + calib);
+    CAPTURE(calibrated.err);
+    REQUIRE(calibrated.code == 0);
+
+    const cv::FileStorage found(calib, cv::FileStorage::READ), truth(STEREO + "/truth.yml", cv::FileStorage::READ);
+    for (const std::string camera : {"camera1", "camera2"})
+    {
+        std::vector<double> n, expected;
+        found[camera]["glass_window"]["normal"] >> n;
+        truth[camera]["glass_window"]["normal"] >> expected;
+        const double angle = std::asin(cv::norm(cv::Vec3d(n.data()).cross(cv::Vec3d(expected.data())))) * 180 / CV_PI;
+        std::cout << "[numbers] bundled rig, " << camera << ": normal off by " << angle << " degrees (limit 0.03)\n";
+        CHECK(angle < 0.03);
+    }
+
+    const ToolResult measured = runTool("refract_measure " + calib + " '" + image("measure1/z600_*") + "' '"
+        + image("measure2/z600_*") + "'" + TARGET + " --out=" + (folder / "points.csv"));
+    CAPTURE(measured.err);
+    REQUIRE(measured.code == 0);
+    const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
+    REQUIRE(rows.size() == 180);
+    double squares = 0;
+    int count = 0;
+    for (size_t i = 1; i < rows.size(); ++i)
+        if (i % 6)      // a neighbour in the same row of the board
+        {
+            squares += std::pow(cv::norm(rows[i].point - rows[i - 1].point) - 39, 2);
+            ++count;
+        }
+    const double rms = std::sqrt(squares / count);
+    std::cout << "[numbers] bundled rig, lengths at 600 mm: RMS error " << rms << " mm (limit 0.05)\n";
+    CHECK(rms < 0.05);
+}
+
+TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const std::string calib = STEREO + "/truth.yml", whole = readFile(image("measure1/z600_1"));
+    const auto write = [&](const std::string& name, const std::string& bytes) {
+        std::ofstream(folder / name, std::ios::binary) << bytes;
+        return folder / name;
+    };
+    std::string noise(4000, 0);
+    for (size_t i = 0; i < noise.size(); ++i)
+        noise[i] = (char)(i * i * 2654435761u >> 13);
+    const std::string first = image("measure1/z600_1"), second = image("measure2/z600_1");
+    const std::string both = first + " " + second + TARGET, out = " --out=" + (folder / "points.csv");
+
+    struct Case { std::string arguments, expected; };
+    const std::vector<Case> cases = {
+        {"", "required"},
+        {"--no-such-option", "--help"},
+        {folder / "none.yml" + " " + both, "none.yml"},
+        {write("empty.yml", "") + " " + both, "empty.yml"},
+        {write("cut.yml", readFile(calib).substr(0, 1500)) + " " + both, "cut.yml"},
+        {write("noise.yml", noise) + " " + both, "noise.yml"},
+        {write("list.yml", "%YAML:1.0\n---\n[1, 2]\n") + " " + both, "list.yml"},
+        {calib + " " + (folder / "none.jpg") + " " + second + TARGET, "none.jpg"},
+        {calib + " " + write("cut.jpg", whole.substr(0, whole.size() / 2)) + " " + second + TARGET, "cut short"},
+        {calib + " " + write("noise.jpg", noise) + " " + second + TARGET, "noise.jpg"},
+        {calib + " " + write("empty.jpg", "") + " " + second + TARGET, "empty"},
+        {calib + " " + STEREO + " " + second + TARGET, "folder"},
+        {calib + " " + first + " " + second + " --size=6 --square=39", "--size"},
+        {calib + " " + first + " " + second + " --size=9x14 --square=39", "not found"},
+        {calib + " " + first + " " + second + " --size=6x5 --square=-1", "--square"},
+        {calib + " " + first + " " + second + " --size=6x5 --square=nan", "--square"},
+        {calib + " " + first + " " + second + " --size=6x5 --square=39 --pattern=stripes", "--pattern"},
+        {calib + " " + first + " " + second + " --size=6x5 --square=39 --pattern=charuco --dictionary=X", "--dictionary"},
+        {calib + " " + first + TARGET + " --plane=1,2,3", "--plane"},
+        {calib + " " + first + TARGET + " --plane=0,0,x,600", "--plane"},
+        {calib + " " + first + TARGET + " --plane=0,0,0,600", "--plane"},
+        {calib + " " + first + TARGET + " --plane=0,0,1,-600", "no point"},
+        {calib + " " + both + " --plane=0,0,1,600", "--plane"},
+    };
+    const size_t files = folder.count();
+    for (const Case& c : cases)
+    {
+        const ToolResult result = runTool("refract_measure " + c.arguments + out);
+        CAPTURE(c.arguments, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(result.err.find("refract_measure: ") != std::string::npos);
+        CHECK(result.err.find(c.expected) != std::string::npos);
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        CHECK(folder.count() == files);
+    }
+    const ToolResult noFolder = runTool("refract_measure " + calib + " " + both + " --out=" + (folder / "no/points.csv"));
+    CHECK(noFolder.code == 1);
+    CHECK(noFolder.err.find("does not exist") != std::string::npos);
+}

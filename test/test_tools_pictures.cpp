@@ -1,0 +1,158 @@
+// refract_undistort and refract_epilines as a user runs them, on the bundled images.
+#include "run_tool.hpp"
+#include "truth_file.hpp"
+#include <catch2/catch.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string TARGET = " --size=6x5 --square=39";
+
+std::string image(const std::string& name) { return STEREO + "/" + name + ".jpg"; }
+
+//! RMS and largest of the last line of the table that refract_epilines prints.
+std::pair<double, double> lastNumbers(const std::string& table)
+{
+    std::istringstream in(table.substr(table.rfind('\n', table.size() - 2) + 1));
+    std::vector<std::string> words;
+    for (std::string word; in >> word; )
+        words.push_back(word);
+    REQUIRE(words.size() >= 2);
+    return {std::stod(words[words.size() - 2]), std::stod(words.back())};
+}
+
+} // namespace
+
+TEST_CASE("refract_undistort turns a plane's image into the pinhole's", "[tools][undistort]")
+{
+    const TemporaryFolder folder;
+    const TrueView view = readTruth(STEREO).at("measure1/z600_2.jpg");
+    cv::Matx33d R;
+    cv::Rodrigues(view.rvec, R);
+    const cv::Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
+    const ToolResult result = runTool("refract_undistort " + STEREO + "/truth.yml " + image("measure1/z600_2")
+        + cv::format(" --plane=%.17g,%.17g,%.17g,%.17g", normal[0], normal[1], normal[2], normal.dot(view.tvec))
+        + " --out-dir=" + (folder / "new/deep"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    const cv::Mat corrected = cv::imread(folder / "new/deep/z600_2.jpg", cv::IMREAD_GRAYSCALE);
+    REQUIRE(corrected.size() == cv::Size(1280, 1024));
+
+    std::vector<cv::Point2f> corners;
+    REQUIRE(cv::findChessboardCornersSB(corrected, cv::Size(6, 5), corners, cv::CALIB_CB_EXHAUSTIVE));
+    cv::cornerSubPix(corrected, corners, cv::Size(9, 9), cv::Size(-1, -1), cv::TermCriteria(3, 50, 1e-4));
+    cv::Mat K;
+    cv::FileStorage(STEREO + "/truth.yml", cv::FileStorage::READ)["camera1"]["camera_matrix"] >> K;
+    std::vector<cv::Point2d> pinhole;
+    cv::projectPoints(chessboard(6, 5, 39), view.rvec, view.tvec, K, cv::noArray(), pinhole);
+    if (cv::norm(cv::Point2d(corners[0]) - pinhole[0]) > 100)       // OpenCV may count from the other end
+        std::reverse(corners.begin(), corners.end());
+    double squares = 0;
+    for (size_t i = 0; i < corners.size(); ++i)
+        squares += std::pow(cv::norm(cv::Point2d(corners[i]) - pinhole[i]), 2);
+    CHECK(std::sqrt(squares / corners.size()) < 0.05);
+}
+
+TEST_CASE("refract_undistort takes globs, a depth, the second camera", "[tools][undistort]")
+{
+    const TemporaryFolder folder;
+    for (const std::string depth : {"600", "inf"})
+    {
+        const ToolResult result = runTool("refract_undistort " + STEREO + "/truth.yml '" + image("measure2/z600_[12]")
+            + "' --camera=2 --depth=" + depth + " --quiet --out-dir=" + (folder / depth));
+        CAPTURE(result.err);
+        REQUIRE(result.code == 0);
+        CHECK(result.out.empty());
+        for (const std::string name : {"z600_1.jpg", "z600_2.jpg"})
+            CHECK(cv::imread(folder / (depth + "/" + name)).size() == cv::Size(1280, 1024));
+    }
+    CHECK(readFile(folder / "600/z600_1.jpg") != readFile(folder / "inf/z600_1.jpg"));
+}
+
+TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tools][epilines]")
+{
+    const TemporaryFolder folder;
+    const std::string call = "refract_epilines " + STEREO + "/truth.yml " + image("measure1/z600_1") + " "
+                             + image("measure2/z600_1") + " --out=" + (folder / "picture.png");
+    const ToolResult result = runTool(call + TARGET);
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.code == 0);
+    CHECK(lastNumbers(result.out).first < 0.03);
+    CHECK(lastNumbers(result.out).second < 0.08);
+    CHECK(result.out.find("windows ignored") != std::string::npos);
+    CHECK(cv::imread(folder / "picture.png").size() == cv::Size(2 * 1280 + 8, 1024));
+
+    std::ofstream(folder / "points.txt") << "# u v\n640 500\n300.5, 420.25\n";
+    std::ofstream(folder / "points.csv") << "id,u1,v1,u2\n0,640,500,1\n1,nan,nan,2\n";
+    for (const std::string name : {"points.txt", "points.csv"})
+    {
+        const ToolResult points = runTool(call + " --depth=400,2000 --points=" + (folder / name));
+        CAPTURE(points.err);
+        CHECK(points.code == 0);
+    }
+}
+
+TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and write nothing", "[tools]")
+{
+    const TemporaryFolder folder;
+    const std::string calib = STEREO + "/truth.yml", first = image("measure1/z600_1"), second = image("measure2/z600_1");
+    const std::string whole = readFile(first);
+    std::ofstream(folder / "cut.jpg", std::ios::binary) << whole.substr(0, whole.size() / 2);
+    std::ofstream(folder / "bad.txt") << "1 2\nx y\n";
+    std::ofstream(folder / "none.txt") << "# nothing\n";
+    cv::imwrite(folder / "small.png", cv::Mat(100, 100, CV_8U, cv::Scalar(90)));
+    cv::imwrite(folder / "blank.png", cv::Mat(1024, 1280, CV_8U, cv::Scalar(90)));
+    const std::string undistort = "refract_undistort ", epilines = "refract_epilines ";
+    const std::string folderOut = " --out-dir=" + (folder / "out"), picture = " --out=" + (folder / "picture.png");
+
+    struct Case { std::string command, expected; };
+    const std::vector<Case> cases = {
+        {undistort + calib + " " + first + folderOut, "--depth"},
+        {undistort + calib + " " + first + " --depth=600 --plane=0,0,1,600" + folderOut, "--depth"},
+        {undistort + calib + " " + first + " --depth=-1" + folderOut, "--depth"},
+        {undistort + calib + " " + first + " --plane=0,0,0,600" + folderOut, "--plane"},
+        {undistort + calib + " " + first + " --depth=600 --out-dir=" + STEREO + "/measure1", "overwritten"},
+        {undistort + calib + " " + first + " " + second + " --depth=600" + folderOut, "same name"},
+        {undistort + calib + " " + (folder / "cut.jpg") + " --depth=600" + folderOut, "cut short"},
+        {undistort + calib + " " + (folder / "small.png") + " --depth=600" + folderOut, "1280x1024"},
+        {undistort + calib + " " + first + " --depth=600 --camera=3" + folderOut, "--camera"},
+        {epilines + calib + " " + first + " " + second + picture, "--points"},
+        {epilines + calib + " " + first + " " + second + TARGET + " --points=" + (folder / "bad.txt") + picture, "either"},
+        {epilines + calib + " " + first + " " + second + " --points=" + (folder / "bad.txt") + picture, "line 2"},
+        {epilines + calib + " " + first + " " + second + " --points=" + (folder / "none.txt") + picture, "no points"},
+        {epilines + calib + " " + first + " " + second + TARGET + " --depth=5,1" + picture, "--depth"},
+        {epilines + calib + " " + first + " " + (folder / "small.png") + TARGET + picture, "1280x1024"},
+        {epilines + calib + " " + first + " " + (folder / "blank.png") + TARGET + picture, "not found"},
+        {epilines + calib + " " + first + " " + second + TARGET + " --out=" + (folder / "picture.xyz"), "extension"},
+    };
+    const size_t files = folder.count();
+    for (const Case& c : cases)
+    {
+        const ToolResult result = runTool(c.command);
+        CAPTURE(c.command, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(result.err.find(c.expected) != std::string::npos);
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        const size_t emptyFolder = std::filesystem::exists(folder / "out") ? 1 : 0;
+        CHECK(folder.count() == files + emptyFolder);
+        if (emptyFolder)
+            CHECK(std::filesystem::is_empty(folder / "out"));
+    }
+}
+
+TEST_CASE("every tool explains itself", "[tools]")
+{
+    for (const std::string tool : {"refract_simulate", "refract_measure", "refract_undistort", "refract_epilines"})
+    {
+        const ToolResult help = runTool(tool + " --help"), version = runTool(tool + " --version");
+        CHECK(help.code == 0);
+        CHECK(help.out.find(tool + " ") != std::string::npos);
+        CHECK(help.out.find("--quiet") != std::string::npos);
+        CHECK(version.code == 0);
+        CHECK(version.out.find(tool) == 0);
+    }
+}
