@@ -77,8 +77,7 @@ Measurement measure(const Options& options, const Calibration& calibration, cons
     const auto& camera = calibration.cameras[0].camera;
     if (options.plane.empty())
         return measureTarget(camera, target, sight.pixels1, sigma);
-    const std::vector<double> plane = parseNumbers(options.plane, "--plane");
-    return measureOnPlane(camera, sight.pixels1, cv::Vec4d(plane.data()), sigma);
+    return measureOnPlane(camera, sight.pixels1, parsePlane(options.plane), sigma);
 }
 
 std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const Target& target,
@@ -189,8 +188,8 @@ void checkCombination(const Options& options, const Calibration& calibration)
                       "(refract_calib --direct2 --glass2), or give one image");
     if (!options.plane.empty() && !options.image2.empty())
         throw Failure("--plane is for one camera: leave it out, or give one image");
-    if (!options.plane.empty() && parseNumbers(options.plane, "--plane").size() != 4)
-        throw Failure("--plane=" + options.plane + ": four numbers a,b,c,d are needed");
+    if (!options.plane.empty())
+        parsePlane(options.plane);
 }
 
 } // namespace

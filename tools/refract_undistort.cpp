@@ -38,11 +38,13 @@ std::vector<double> depthOf(const Options& options)
         throw Failure("give either --depth=Z or --plane=a,b,c,d: the correction depends on where the scene is");
     if (options.depth == "inf")
         return {};
-    const std::vector<double> numbers = options.depth.empty() ? parseNumbers(options.plane, "--plane")
-                                                              : parseNumbers(options.depth, "--depth");
-    if (!options.plane.empty() && numbers.size() != 4)
-        throw Failure("--plane=" + options.plane + ": four numbers a,b,c,d are needed");
-    if (options.plane.empty() && (numbers.size() != 1 || numbers[0] <= 0))
+    if (!options.plane.empty())
+    {
+        const cv::Vec4d plane = parsePlane(options.plane);
+        return std::vector<double>(plane.val, plane.val + 4);
+    }
+    const std::vector<double> numbers = parseNumbers(options.depth, "--depth");
+    if (numbers.size() != 1 || numbers[0] <= 0)
         throw Failure("--depth=" + options.depth + ": one distance, more than 0, is needed (or inf)");
     return numbers;
 }

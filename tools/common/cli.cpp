@@ -113,4 +113,12 @@ std::vector<double> parseNumbers(const std::string& text, const std::string& opt
     return numbers;
 }
 
+cv::Vec4d parsePlane(const std::string& text)
+{
+    const std::vector<double> numbers = parseNumbers(text, "--plane");
+    if (numbers.size() != 4 || (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0))
+        throw Failure("--plane=" + text + ": four numbers a,b,c,d are needed, a, b and c not all 0");
+    return cv::Vec4d(numbers.data());
+}
+
 } // namespace tools

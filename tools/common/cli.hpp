@@ -75,6 +75,9 @@ inline CLI::Validator moreThanZero()
 //! "a,b,c" -> numbers; all finite.
 std::vector<double> parseNumbers(const std::string& text, const std::string& option);
 
+//! --plane=a,b,c,d: a x + b y + c z = d.
+cv::Vec4d parsePlane(const std::string& text);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_CLI_HPP
