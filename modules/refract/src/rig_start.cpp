@@ -11,7 +11,7 @@ namespace cv { namespace refract {
 
 namespace {
 
-// The search needs the rough shape of the cost only.
+// The first search needs the rough shape of the cost only.
 const int SEARCH_VIEWS = 8, SEARCH_FITS = 4;
 
 //! The given normal first, then tilts from the optical axis.
@@ -42,8 +42,8 @@ int countSeen(const std::vector<Point2d>& pixels)
     return (int)std::count_if(pixels.begin(), pixels.end(), isSeen);
 }
 
-//! What the camera saw through the window: every view, or SEARCH_VIEWS of them evenly.
-RigViews searchViews(const PixelViews& refracted, const std::vector<std::vector<Point3d> >& object)
+//! What the camera saw through the window: every view, or so many of them evenly.
+RigViews searchViews(const PixelViews& refracted, const std::vector<std::vector<Point3d> >& object, int atMost)
 {
     std::vector<int> good;
     for (int i = 0; i < (int)refracted.size(); i++)
@@ -51,7 +51,7 @@ RigViews searchViews(const PixelViews& refracted, const std::vector<std::vector<
             good.push_back(i);
     RigViews views;
     views.cameras.resize(1);
-    const int count = std::min(SEARCH_VIEWS, (int)good.size());
+    const int count = std::min(atMost, (int)good.size());
     for (int i = 0; i < count; i++)
     {
         const int view = good[i*good.size()/count];
@@ -105,6 +105,16 @@ std::vector<Candidate> tryNormals(const Camera& camera, const RigViews& views)
     return candidates;
 }
 
+//! Fits the window to the views; returns the cost.
+double fitWindow(const Camera& camera, const RigViews& views, const std::vector<Pose>& poses, int flags,
+                 GlassWindow& window)
+{
+    RigProblem rig(std::vector<Camera>(1, camera), Pose(), views, poses, flags & GLASS_FREE_DISTANCE);
+    rig.solve(TermCriteria(TermCriteria::COUNT | TermCriteria::EPS, 100, 1e-6));
+    window = rig.camera(0).window();
+    return rig.squaredError();
+}
+
 struct PoseSource
 {
     bool direct;
@@ -150,21 +160,33 @@ GlassWindow startWindow(const Camera& camera, const CameraViews& seen, const std
     if (fromPairs.undetermined.empty() || (flags & GLASS_FREE_INTRINSICS))
         return window;
 
-    const RigViews views = searchViews(seen.refracted, object);
-    if (views.count() == 0)
+    const RigViews some = searchViews(seen.refracted, object, SEARCH_VIEWS);
+    if (some.count() == 0)
         return window;
-    const std::vector<Candidate> candidates = tryNormals(camera, views);
-    double least = std::numeric_limits<double>::infinity();
+    const std::vector<Candidate> candidates = tryNormals(camera, some);
+    std::vector<GlassWindow> starts(1, window);
     for (size_t i = 0; i < std::min(candidates.size(), (size_t)SEARCH_FITS); i++)
     {
-        const std::vector<Camera> cameras(1, withNormal(camera, candidates[i].normal));
-        RigProblem rig(cameras, Pose(), views, candidates[i].poses, flags & GLASS_FREE_DISTANCE);
-        rig.solve(TermCriteria(TermCriteria::COUNT | TermCriteria::EPS, 100, 1e-6));
-        const double cost = rig.squaredError();
+        starts.push_back(window);
+        fitWindow(withNormal(camera, candidates[i].normal), some, candidates[i].poses, flags, starts.back());
+    }
+
+    // Some views may have their least cost in another minimum than all have.
+    const RigViews all = searchViews(seen.refracted, object, (int)seen.refracted.size());
+    double least = std::numeric_limits<double>::infinity();
+    for (const GlassWindow& start : starts)
+    {
+        Camera camera1(camera);
+        camera1.setWindow(start);
+        const Candidate placed = tryNormal(camera1, start.normal, all, std::vector<Pose>(all.count()));
+        if (!std::isfinite(placed.cost))
+            continue;
+        GlassWindow fitted;
+        const double cost = fitWindow(camera1, all, placed.poses, flags, fitted);
         if (!(cost < least))
             continue;
         least = cost;
-        window = rig.camera(0).window();
+        window = fitted;
     }
     return window;
 }

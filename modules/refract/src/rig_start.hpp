@@ -13,7 +13,8 @@ namespace cv { namespace refract {
 /** Start of one camera's window: its normal and, if free, its distance; the rest as given.
 
 From pairs if there are any. Else, with the lens known, some views are fitted from the best few of a ring of tilts, as the
-cost through the window alone has more than one minimum. Else the given window. */
+cost through the window alone has more than one minimum, and all views from each of these and from the given window; the
+least cost wins. Else the given window. */
 GlassWindow startWindow(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
                         int flags);
 
