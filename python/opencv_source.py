@@ -3,7 +3,7 @@
     opencv_source.py DIRECTORY [ARCHIVE]
 
 Unpacks modules/python/src2 into DIRECTORY: from ARCHIVE if given, else from the package that pip downloads. The
-version is pinned, the hash is checked, and the two megabytes that are used are kept in the user's cache.
+version is pinned, the hash is checked, and the half megabyte that is used is kept in the user's cache.
 """
 import hashlib
 import os
