@@ -85,7 +85,7 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
 
 void judgeCorrelations(const RigCalibration& c, Findings& f)
 {
-    const std::vector<FreeParameter> free = freeWindowParameters(c.fit);
+    const std::vector<FreeParameter> free = freeWindowParameters(c.fit, c.options.flags);
     for (size_t i = 0; i < free.size(); i++)
         for (size_t j = i + 1; j < free.size(); j++)
         {

@@ -93,9 +93,9 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
 }
 
 //! Parameters with their standard deviations, and their correlations as coloured cells.
-void setParameters(data& page, const Fit& fit)
+void setParameters(data& page, const Fit& fit, int flags)
 {
-    const std::vector<FreeParameter> window = freeWindowParameters(fit);
+    const std::vector<FreeParameter> window = freeWindowParameters(fit, flags);
     std::vector<FreeParameter> all = window;
     const std::vector<FreeParameter> rig = freeRigParameters(fit);
     all.insert(all.end(), rig.begin(), rig.end());
@@ -162,7 +162,7 @@ std::string makeReport(const RigCalibration& c, const Findings& findings, const 
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
     setNearFar(page, c.nearFar);
-    setParameters(page, c.fit);
+    setParameters(page, c.fit, c.options.flags);
 
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount, quiet);
     data cameras{data::type::list}, heads{data::type::list};

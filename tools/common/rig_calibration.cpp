@@ -51,10 +51,11 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
     return both;
 }
 
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit)
+std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags)
 {
     std::vector<FreeParameter> list;
-    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
+    const bool shared = flags & GLASS_SHARED_WINDOW;
+    for (int c = 0; c < (shared ? 1 : (int)fit.rig.cameras.size()); c++)
     {
         const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
         const GlassWindow window = fit.rig.cameras[c]->window();

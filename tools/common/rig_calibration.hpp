@@ -43,8 +43,8 @@ struct FreeParameter
     bool isNormal;
 };
 
-//! Window parameters that were free, camera after camera; of the normal x and y (z follows).
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit);
+//! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
+std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags);
 
 //! Lens parameters and R (rotation vector), T that were free.
 std::vector<FreeParameter> freeRigParameters(const Fit& fit);
