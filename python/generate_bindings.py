@@ -6,8 +6,19 @@ Writes the C++ that native.cpp includes, and the typed stubs of the package. Of 
 criteria types are wanted, so what the generator does for other modules is switched off here: overloads for UMat and
 GpuMat, and the type aliases of classes that refract.hpp does not know.
 """
+import re
 import sys
 from pathlib import Path
+
+# What these arguments may be besides arrays, which their C++ types do not say: function, arguments, type.
+LOOSER_TYPES = [
+    (r"\w+", "distCoeffs[12]?", "None"),
+    ("refractiveUndistortPoints|initRefractiveUndistortRectifyMap", "depth", "float"),
+    ("initRefractiveUndistortRectifyMap", "depth|R|newCameraMatrix", "None"),
+    ("refractiveSolvePnP", "rvec|tvec", "None"),
+    ("triangulateRefractiveExtended", "calibrationCovariance", "None"),
+    (r"\w*[cC]alibrateGlass(?:Extended)?", "imagePointsDirect[12]?", "None"),
+]
 
 
 def load_generator(directory):
@@ -37,9 +48,18 @@ def load_generator(directory):
     return gen2.PythonWrapperGenerator()
 
 
+def loosen(stub):
+    for function, arguments, also in LOOSER_TYPES:
+        if re.search(rf"def (?:{function})\(", stub):
+            stub = re.sub(rf"\b({arguments}): ((?:_typing\.Sequence\[)?cv2\.typing\.MatLike\]?)", rf"\1: \2 | {also}",
+                          stub)
+    return stub
+
+
 def write_stubs(output):
     """The stubs speak of cv2.refract and cv2.typing; cv2 need not be there, nor be new enough to have types."""
     stubs = (output / "cv2" / "refract" / "__init__.pyi").read_text()
+    stubs = "\n".join(map(loosen, stubs.split("\n")))
     (output / "__init__.pyi").write_text(stubs.replace("cv2.typing", "opencv_refract.typing")
                                          + "\nerror: type[Exception]\n__version__: str\n")
     types = (output / "cv2" / "typing" / "__init__.py").read_text()

@@ -84,6 +84,8 @@ def test_stubs_name_every_call():
     for name in CALLS + ["class GlassWindow", "class RefractiveCamera", "GLASS_FREE_THICKNESS"]:
         assert name in stubs
     compile(stubs, "__init__.pyi", "exec")
+    for argument in ("distCoeffs: opencv_refract.typing.MatLike | None", "depth: opencv_refract.typing.MatLike | float"):
+        assert argument in stubs
     import opencv_refract.typing as types
     assert types.MatLike and types.Vec3d
 
