@@ -47,12 +47,14 @@ void write(const std::string& path, const std::string& text)
 
 TEST_CASE("rendered targets are found where the truth says, numbered alike however they are turned", "[tools][simulate]")
 {
-    struct Kind { std::string target, options; int count; bool turned; };
-    for (const Kind& kind : {Kind{CHESSBOARD, "--size=6x5 --square=39", 30, true},
+    struct Kind { std::string target, options; int count; bool turned; double limit; };
+    for (const Kind& kind : {Kind{CHESSBOARD, "--size=6x5 --square=39", 30, true, 0.05},
                              Kind{"{ pattern: acircles, size: \"4x7\", square: 25. }",
-                                  "--pattern=acircles --size=4x7 --square=25", 28, false},
+                                  "--pattern=acircles --size=4x7 --square=25", 28, false, 0.3},
+                             Kind{"{ pattern: charuco, size: \"6x5\", square: 39., marker: 30. }",
+                                  "--pattern=charuco --size=6x5 --square=39 --marker=30", 30, true, 0.1},
                              Kind{"{ pattern: circles, size: \"6x5\", square: 39. }",
-                                  "--pattern=circles --size=6x5 --square=39", 30, false}})
+                                  "--pattern=circles --size=6x5 --square=39", 30, false, 0.3}})
     {
         const TemporaryFolder folder;
         write(folder / "rig.yml", scene(kind.target, "   glass: { window: 1, poses: [ fixed ] }\n"));
@@ -76,7 +78,7 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
             for (const CsvRow& row : rows)
                 squares += std::pow(cv::norm(row.pixel1 - truth.at(name).pixels[row.id]), 2);
             // The middle of a tilted dot's image is not the image of its middle: up to radius^2 * tilt / f = 0.3 px here.
-            CHECK(std::sqrt(squares / rows.size()) < (kind.turned ? 0.05 : 0.3));
+            CHECK(std::sqrt(squares / rows.size()) < kind.limit);
         }
     }
 }
@@ -114,7 +116,10 @@ TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence",
     for (const Case& c : {Case{"", "rig.yml"}, Case{"%YAML:1.0\n---\na: 1\n", "camera_matrix"},
                           Case{good.substr(0, 300), "rig.yml"},
                           Case{scene(CHESSBOARD, "   glass: { window: 1, poses: [ none ] }\n"), "none"},
-                          Case{scene("{ pattern: charuco, size: \"6x5\", square: 39. }", sets), "charuco"},
+                          Case{scene("{ pattern: charuco, size: \"6x5\", square: 39., dictionary: X }", sets),
+                               "dictionary"},
+                          Case{scene("{ pattern: charuco, size: \"19x19\", square: 5., dictionary: DICT_4X4_50 }", sets),
+                               "200"},
                           Case{scene("{ pattern: chessboard, size: \"6x5\", square: -1. }", sets), "square"},
                           Case{replaced("noise: 1.", "noise: -1."), "noise"},
                           Case{replaced("image_width: 640\n", ""), "image_width"},

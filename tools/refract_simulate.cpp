@@ -17,7 +17,8 @@ The same RIG.yml gives the same images.
 
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
 
-  target: { pattern: chessboard, size: 6x5, square: 39. }     # or circles, acircles
+  target: { pattern: chessboard, size: 6x5, square: 39. }     # or circles, acircles, charuco (with
+                         # marker: side, dictionary: DICT_4X4_250)
   camera1: { image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window }
   camera2: { ... }       # as in calib.yml; one camera: its keys at top level instead
   R, T                   # camera 1 -> camera 2
@@ -79,7 +80,10 @@ void writeTruth(const std::string& path, const Scene& scene, const Target& targe
     OutputFile file(path);
     FileStorage fs(file.temporary(), FileStorage::WRITE);
     fs << "command" << command << "target" << "{" << "pattern" << scene.target.pattern << "size" << scene.target.size
-       << "square" << scene.target.square << "}";
+       << "square" << scene.target.square;
+    if (target.pattern() == Target::CHARUCO)
+        fs << "marker" << scene.target.marker << "dictionary" << scene.target.dictionary;
+    fs << "}";
     if (scene.cameras.stereo())
     {
         for (int i = 0; i < 2; ++i)

@@ -1,5 +1,6 @@
 #include "charuco.hpp"
 #include "cli.hpp"
+#include "refine_corners.hpp"
 
 #include <opencv2/core/version.hpp>
 #include <limits>
@@ -32,20 +33,63 @@ int charucoDictionary(const std::string& name)
     return found->second;
 }
 
+namespace {
+
+cv::Size squaresOf(cv::Size innerCorners)
+{
+    return cv::Size(innerCorners.width + 1, innerCorners.height + 1);
+}
+
+#if !REFRACT_OPENCV_AT_LEAST_4_7
+cv::Ptr<cv::aruco::CharucoBoard> boardOf(cv::Size innerCorners, double square, double marker, int dictionary)
+{
+    const cv::Size squares = squaresOf(innerCorners);
+    return cv::aruco::CharucoBoard::create(squares.width, squares.height, (float)square, (float)marker,
+                                           cv::aruco::getPredefinedDictionary(dictionary));
+}
+#endif
+
+} // namespace
+
+void requireMarkers(cv::Size innerCorners, int dictionary)
+{
+#if REFRACT_OPENCV_AT_LEAST_4_7
+    const int markers = cv::aruco::getPredefinedDictionary(dictionary).bytesList.rows;
+#else
+    const int markers = cv::aruco::getPredefinedDictionary(dictionary)->bytesList.rows;
+#endif
+    const int needed = squaresOf(innerCorners).area() / 2;
+    if (needed > markers)
+        throw Failure(cv::format("--dictionary has %d markers, a board of this --size needs %d: take the dictionary that the "
+                                 "board was printed with", markers, needed));
+}
+
+cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dictionary, int pixelsPerSquare)
+{
+    cv::Mat image;
+    const cv::Size size = squaresOf(innerCorners) * pixelsPerSquare;
+#if REFRACT_OPENCV_AT_LEAST_4_7
+    const cv::aruco::CharucoBoard board(squaresOf(innerCorners), (float)square, (float)marker,
+                                        cv::aruco::getPredefinedDictionary(dictionary));
+    board.generateImage(size, image);
+#else
+    boardOf(innerCorners, square, marker, dictionary)->draw(size, image);
+#endif
+    return image;
+}
+
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
                                        int dictionary)
 {
-    const cv::Size squares(innerCorners.width + 1, innerCorners.height + 1);
     std::vector<cv::Point2f> corners;
     std::vector<int> ids;
 #if REFRACT_OPENCV_AT_LEAST_4_7
-    const cv::aruco::CharucoBoard board(squares, (float)square, (float)marker,
+    const cv::aruco::CharucoBoard board(squaresOf(innerCorners), (float)square, (float)marker,
                                         cv::aruco::getPredefinedDictionary(dictionary));
     cv::aruco::CharucoDetector(board).detectBoard(grey, corners, ids);
 #else
     const auto markers = cv::aruco::getPredefinedDictionary(dictionary);
-    const auto board = cv::aruco::CharucoBoard::create(squares.width, squares.height, (float)square, (float)marker,
-                                                       markers);
+    const auto board = boardOf(innerCorners, square, marker, dictionary);
     std::vector<std::vector<cv::Point2f>> markerCorners;
     std::vector<int> markerIds;
     cv::aruco::detectMarkers(grey, markers, markerCorners, markerIds);
@@ -54,6 +98,8 @@ std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorner
 #endif
     if (ids.size() < 4)
         return {};
+    // OpenCV's own refinement ends up to half a pixel off. The nearest other edge is the marker's.
+    refineCorners(grey, corners, 0.5 * (1 - marker / square));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<cv::Point2d> points(innerCorners.area(), cv::Point2d(nan, nan));
     for (size_t i = 0; i < ids.size(); ++i)

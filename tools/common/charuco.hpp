@@ -11,6 +11,12 @@ namespace tools {
 //! Number of a dictionary by OpenCV's name ("DICT_4X4_250"); throws Failure if there is none.
 int charucoDictionary(const std::string& name);
 
+//! Throws Failure if the dictionary has not enough markers for the board.
+void requireMarkers(cv::Size innerCorners, int dictionary);
+
+//! The board seen from the front, without margin; dark is 0.
+cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dictionary, int pixelsPerSquare);
+
 //! Pixels of all inner corners, NaN where not seen; empty if fewer than four were.
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
                                        int dictionary);

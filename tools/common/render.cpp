@@ -17,6 +17,7 @@ namespace {
 
 const int FINE = 2;         // samples per pixel, each way
 const int PARTS = 8;        // points per sample at an edge, each way
+const int DRAWING = 240;    // pixels per square of a ChArUco board's drawing
 const int PAD = 8;          // pixels rendered around the image, so that the blur has no border
 
 //! Grey level of the target's plane at (s, t) in units of --square, (0, 0) the first point.
@@ -25,8 +26,7 @@ class Paint
 public:
     Paint(const Target& target, const Exposure& exposure) : pattern_(target.pattern()), exposure_(exposure)
     {
-        if (pattern_ == Target::CHARUCO)
-            throw Failure("a charuco target cannot be rendered: use chessboard, circles or acircles");
+        drawing_ = target.drawing(DRAWING);
         columns_ = target.size().width * (pattern_ == Target::ACIRCLES ? 2 : 1);
         rows_ = target.size().height;
     }
@@ -41,9 +41,11 @@ public:
 private:
     bool isDark(double s, double t) const
     {
+        const bool inside = s >= -1 && t >= -1 && s < columns_ && t < rows_;
         if (pattern_ == Target::CHESSBOARD)
-            return s > -1 && t > -1 && s < columns_ && t < rows_
-                   && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
+            return inside && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
+        if (pattern_ == Target::CHARUCO)
+            return inside && drawing_.at<uchar>((int)((t + 1) * DRAWING), (int)((s + 1) * DRAWING)) < 128;
         const double radius = 0.3 * (pattern_ == Target::ACIRCLES ? 2 : 1);
         for (int row = cvFloor(t); row <= cvFloor(t) + 1; ++row)
         {
@@ -60,6 +62,7 @@ private:
     Target::Pattern pattern_;
     Exposure exposure_;
     int columns_, rows_;
+    Mat drawing_;           // of a ChArUco board
 };
 
 //! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.

@@ -202,6 +202,8 @@ Scene readScene(const std::string& filename)
     scene.target.pattern = target.text("pattern", "chessboard");
     scene.target.size = target.text("size", "");
     scene.target.square = target.number("square", 1e-9, 1e9);
+    scene.target.marker = target.number("marker", 0, 1e9, 0);
+    scene.target.dictionary = target.text("dictionary", scene.target.dictionary);
     scene.exposure = readExposure(fs["exposure"]);
     scene.seed = (uint64_t)top.number("seed", 0, 2147483647, 1);
 

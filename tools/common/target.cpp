@@ -1,6 +1,7 @@
 #include "target.hpp"
 #include "charuco.hpp"
 #include "partial_chessboard.hpp"
+#include "refine_corners.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
@@ -28,22 +29,6 @@ std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
     return std::vector<Point2d>(points.begin(), points.end());
 }
 
-/* To sub-pixels by the gradients' orthogonality. The window must not reach the next corner. Smoothing first, as the
-gradients of a sharp, noisy image are wrong between pixels: on rendered boards (blur 0.7 px, noise 1.5 of 170 grey levels)
-the error is 0.013 px per axis, without smoothing 0.020, and 0.022 (with outliers of 0.14) by the accurate mode of
-findChessboardCornersSB. */
-void refine(const Mat& grey, std::vector<Point2f>& corners)
-{
-    double smallest = std::numeric_limits<double>::max();
-    for (size_t i = 1; i < corners.size(); ++i)
-        smallest = std::min(smallest, cv::norm(corners[i] - corners[i - 1]));
-    const int half = std::max(2, std::min(11, cvFloor(0.35 * smallest)));
-    Mat smooth;
-    cv::GaussianBlur(grey, smooth, Size(), std::min(1., 0.02 * smallest));
-    cv::cornerSubPix(smooth, corners, Size(half, half), Size(-1, -1),
-                     cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-4));
-}
-
 /* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
 finds some boards among clutter. */
 std::vector<Point2d> detectChessboard(const Mat& grey, Size size)
@@ -53,7 +38,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size)
         && !cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE
                                                            | cv::CALIB_CB_FAST_CHECK))
         return {};
-    refine(grey, corners);
+    refineCorners(grey, corners, 0.35);
     return toDouble(corners);
 }
 
@@ -143,10 +128,16 @@ Target::Target(const TargetOptions& options)
         if (marker_ >= square_)
             throw Failure("--marker: a marker must be smaller than its square (--square)");
         dictionary_ = charucoDictionary(options.dictionary);
+        requireMarkers(size_, dictionary_);
     }
     for (int row = 0; row < size_.height; ++row)
         for (int column = 0; column < size_.width; ++column)
             objectPoints_.emplace_back(square_ * (pattern_ == ACIRCLES ? 2 * column + row % 2 : column), square_ * row, 0);
+}
+
+cv::Mat Target::drawing(int pixelsPerSquare) const
+{
+    return pattern_ == CHARUCO ? drawCharuco(size_, square_, marker_, dictionary_, pixelsPerSquare) : Mat();
 }
 
 std::vector<std::pair<int, int>> Target::neighbours() const

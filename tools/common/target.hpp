@@ -39,6 +39,9 @@ public:
     int count() const { return size_.area(); }
     const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
 
+    //! ChArUco: the board seen from the front, its outer squares' corner at pixel (-0.5, -0.5); else empty.
+    cv::Mat drawing(int pixelsPerSquare) const;
+
     //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 
