@@ -115,12 +115,12 @@ Calibration readCalibration(const std::string& filename)
     {
         fs.open(filename, FileStorage::READ);
     }
-    catch (const cv::Exception& e)
+    catch (const cv::Exception&)
     {
-        throw Failure("'" + filename + "' is not a calibration file (" + e.err + ")");
+        fs.release();       // OpenCV's text is the name of a parser's function; said below
     }
     if (!fs.isOpened() || !fs.root().isMap())
-        throw Failure("'" + filename + "' is not a calibration file, or is cut short: run refract_calib again");
+        throw Failure("'" + filename + "' is not YAML, XML or JSON with a camera in it, or is cut short: write it again");
     if (fs["camera1"].empty())
     {
         calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1.});
