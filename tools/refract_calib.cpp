@@ -15,6 +15,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 
 #include "cli.hpp"
 #include "file_output.hpp"
+#include "pinhole_rig.hpp"
 #include "plot.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -33,7 +34,7 @@ struct Options
 {
     TargetOptions target;
     std::string direct[2], glass[2], camera[2];
-    std::string thickness, index, imageSize, out, report, lens = "opencv5";
+    std::string thickness, index, imageSize, out, report, pinholeOut, lens = "opencv5";
     double innerIndex = 1., outerIndex = 1., distance = 0.;
     std::vector<std::string> free;
     bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false;
@@ -84,6 +85,8 @@ Options parseOptions(Command& command)
     app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
     app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--report", o.report, "HTML page to judge the calibration by (needs gnuplot)");
+    app.add_option("--pinhole-out", o.pinholeOut, "Also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
+        "the images through the window, to compare with (refract_measure --compare-with)");
     app.add_option("--max-rms", o.maxRms, "Limit: RMS over all corners, px")->check(moreThanZero());
     app.add_option("--max-normal-std", o.maxNormalStd, "Limit: uncertainty of the normal (larger principal one), degrees")
         ->check(moreThanZero());
@@ -200,6 +203,12 @@ int main(int argc, char** argv)
         checkOutputs(options);
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Findings findings = judge(calibration);
+        if (!options.pinholeOut.empty())
+        {
+            Calibration pinhole = calibratePinholeRig(calibration.data, calibration.options.lensCoefficients);
+            pinhole.command = command.line();
+            writeCalibration(options.pinholeOut, pinhole);
+        }
         if (!options.report.empty())
             writeText(options.report, makeReport(calibration, findings, command.line(), command.quiet()));
         writeCalibration(options.out, toFile(calibration, command.line()));
