@@ -14,5 +14,5 @@ libdir=$(dirname "$(find "$work/prefix" -name libopencv_refract.so)")
 PKG_CONFIG_PATH=$libdir/pkgconfig
 export PKG_CONFIG_PATH
 # shellcheck disable=SC2046  # flags are words
-c++ -std=c++11 "$here/consumer.cpp" -o "$work/consumer" $(pkg-config --define-variable=prefix="$work/prefix" --cflags --libs opencv_refract)
+c++ -std=c++11 "$here/consumer.cpp" -o "$work/consumer" $(pkg-config --cflags --libs opencv_refract)
 LD_LIBRARY_PATH=$libdir "$work/consumer"
