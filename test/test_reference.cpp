@@ -119,8 +119,8 @@ TEST_CASE("Rays equal the 60-digit references", "[reference]")
             worstTau = std::max(worstTau, tauError);
         }
     }
-    printNumber("ray direction against references, worst * cos(angle)", worstDirection, "");
-    printNumber("ray origin against references, relative, worst * cos(angle)^2", worstTau, "");
+    printNumber("ray direction against references, worst * cos(grazing angle)", worstDirection, "");
+    printNumber("ray origin against references, relative, worst * cos(grazing angle)^2", worstTau, "");
 }
 
 TEST_CASE("What no light connects has the status of total reflection", "[reference]")

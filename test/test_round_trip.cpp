@@ -7,7 +7,14 @@ using namespace scenes;
 
 namespace {
 
-const double MOST = 89.9*CV_PI/180;     // angle from the normal, in the medium of smallest index on the way
+/* Largest angle from the normal, in the medium of smallest index on the way. Where that is a gap between the panes, the
+ray's origin runs away like 1/cos, and a rounding of the pixel moves it by 1/cos^2. */
+double largestAngle(const GlassWindow& w)
+{
+    const bool gap = !w.index.empty()
+                     && *std::min_element(w.index.begin(), w.index.end()) < std::min(w.innerIndex, w.outerIndex);
+    return (gap ? 89.5 : 89.9)*CV_PI/180;
+}
 
 double smallestIndex(const GlassWindow& w)
 {
@@ -38,15 +45,15 @@ Pixels somePixels(const LensKind& lens, const GlassWindow& window, int count, Ra
 {
     const Ptr<RefractiveCamera> plain = makeCamera(lens, GlassWindow());
     const Vec3d n = window.normal, across = normalize(n.cross(Vec3d(0.36, 0.48, -0.8))), third = n.cross(across);
-    const double ratio = window.innerIndex/smallestIndex(window);
+    const double ratio = window.innerIndex/smallestIndex(window), most = largestAngle(window);
     std::vector<Vec3d> directions;
     Pixels result;
     for (int i = 0; i < 20*count && (int)directions.size() < count; ++i)
     {
-        const double angle = random.uniform(0, MOST), azimuth = random.uniform(0, 2*CV_PI);
+        const double angle = random.uniform(0, most), azimuth = random.uniform(0, 2*CV_PI);
         const Vec3d w = std::cos(angle)*n + std::sin(angle)*(std::cos(azimuth)*across + std::sin(azimuth)*third);
         const double sine = ratio*std::sin(angle);
-        if (w[2] < std::cos(lens.halfField*CV_PI/180) || (sine > std::sin(MOST) && sine < 1.0001))
+        if (w[2] < std::cos(lens.halfField*CV_PI/180) || (sine > std::sin(most) && sine < 1.0001))
             continue;
         directions.push_back(w);
         result.sine.push_back(sine);
