@@ -4,6 +4,7 @@
 #include "views.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -157,7 +158,7 @@ void printTable(const Options& options, const Calibration& calibration, const Ta
         const Calibration other = readCalibration(file);
         if (other.cameras.size() != calibration.cameras.size())
             throw Failure("'" + file + "' has another number of cameras than '" + options.calibration + "'");
-        table.add(rowOf(file, target, measureAll(options, other, target, sights), lengthsMeasured));
+        table.add(rowOf(std::filesystem::path(file).stem().string(), target, measureAll(options, other, target, sights), lengthsMeasured));
     }
     const bool alone = !options.compare && options.compareWith.empty();
     table.add(rowOf(alone ? "measured" : "with the window", target, results, lengthsMeasured));
