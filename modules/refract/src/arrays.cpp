@@ -243,24 +243,18 @@ Matx33d readProjection(InputArray a, const char* name)
     return P;
 }
 
-std::vector<Point2d> readPoints2(InputArray a, const char* name)
+template<typename Float, typename Double>
+static std::vector<Double> readPoints(InputArray a, int channels, const char* name)
 {
     int n;
-    const Mat m = pointsOf(a, 2, name, n);
-    std::vector<Point2d> points(n);
+    const Mat m = pointsOf(a, channels, name, n);
+    std::vector<Double> points(n);
     for (int i = 0; i < n; ++i)
-        points[i] = m.depth() == CV_32F ? Point2d(m.ptr<Point2f>()[i]) : m.ptr<Point2d>()[i];
+        points[i] = m.depth() == CV_32F ? Double(m.ptr<Float>()[i]) : m.ptr<Double>()[i];
     return points;
 }
 
-std::vector<Point3d> readPoints3(InputArray a, const char* name)
-{
-    int n;
-    const Mat m = pointsOf(a, 3, name, n);
-    std::vector<Point3d> points(n);
-    for (int i = 0; i < n; ++i)
-        points[i] = m.depth() == CV_32F ? Point3d(m.ptr<Point3f>()[i]) : m.ptr<Point3d>()[i];
-    return points;
-}
+std::vector<Point2d> readPoints2(InputArray a, const char* name) { return readPoints<Point2f, Point2d>(a, 2, name); }
+std::vector<Point3d> readPoints3(InputArray a, const char* name) { return readPoints<Point3f, Point3d>(a, 3, name); }
 
 }} // namespace

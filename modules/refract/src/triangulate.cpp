@@ -147,26 +147,25 @@ public:
         Eigen::Matrix3d C = sigma_*sigma_*inverse;
         if (calibration_.size())
         {
-            const Eigen::MatrixXd G = inverse*J.transpose()*parameterJacobian(X, p1, p2);
+            const Eigen::MatrixXd G = inverse*J.transpose()*parameterJacobian(X, J, p1, p2);
             C += G*calibration_*G.transpose();
         }
         std::copy(C.data(), C.data() + 9, covariance);
     }
 
 private:
-    Eigen::MatrixXd parameterJacobian(const Vec3d& X, const std::vector<double>& p1, const std::vector<double>& p2) const
+    //! byPoint: reproject's derivative by X; its lower rows are those by the point in camera 2, times R.
+    Eigen::MatrixXd parameterJacobian(const Vec3d& X, const Jacobian& byPoint, const std::vector<double>& p1,
+                                      const std::vector<double>& p2) const
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, count1_ + count2_ + 6);
-        Vec2d pixel;
-        double dPoint[6];
-        pair_.camera2.projectJacobian(pair_.R*X + pair_.T, pixel, dPoint, NULL);
         for (int r = 0; r < 2; ++r)
         {
             for (int c = 0; c < count1_; ++c)
                 J(r, c) = p1[r*count1_ + c];
             for (int c = 0; c < count2_; ++c)
                 J(2 + r, count1_ + c) = p2[r*count2_ + c];
-            const Vec3d D(dPoint + 3*r);
+            const Vec3d D = pair_.R*Vec3d(byPoint(2 + r, 0), byPoint(2 + r, 1), byPoint(2 + r, 2));
             for (int c = 0; c < 3; ++c)
             {
                 J(2 + r, count1_ + count2_ + c) = D.dot(dR_[c]*X);
@@ -183,10 +182,17 @@ private:
     Matx33d dR_[3];
 };
 
+//! pointCovariance may be null, else its results go into covariance, one row a point.
 void triangulate(const Pair& pair, InputArray points1, InputArray points2, OutputArray points3D, OutputArray status,
-                 int flags, const PointCovariance* pointCovariance, Mat covariance)
+                 int flags, const PointCovariance* pointCovariance, Mat& covariance)
 {
     const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
+    if (in1.size() != in2.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("points1 has %d points, points2 %d; they must agree", in1.size(), in2.size()));
+    if (flags != TRIANGULATE_OPTIMAL && flags != TRIANGULATE_MIDPOINT)
+        CV_Error_(Error::StsBadFlag, ("flags is %d; it must be TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT", flags));
+    if (pointCovariance)
+        covariance = Mat(in1.size(), 9, CV_64F, Scalar::all(std::numeric_limits<double>::quiet_NaN()));
     PointWriter out(points3D, in1.size(), 3, std::max(in1.depth(), in2.depth()));
     StatusWriter outStatus(status, in1.size());
     const Matx33d Rt = pair.R.t();
@@ -220,15 +226,6 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
     });
 }
 
-void checkCall(InputArray points1, InputArray points2, int flags)
-{
-    const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
-    if (in1.size() != in2.size())
-        CV_Error_(Error::StsUnmatchedSizes, ("points1 has %d points, points2 %d; they must agree", in1.size(), in2.size()));
-    if (flags != TRIANGULATE_OPTIMAL && flags != TRIANGULATE_MIDPOINT)
-        CV_Error_(Error::StsBadFlag, ("flags is %d; it must be TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT", flags));
-}
-
 } // namespace
 
 void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
@@ -237,9 +234,9 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    checkCall(points1, points2, flags);
     const Pair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
-    triangulate(pair, points1, points2, points3D, status, flags, NULL, Mat());
+    Mat none;
+    triangulate(pair, points1, points2, points3D, status, flags, NULL, none);
 }
 
 void triangulateRefractive(InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -259,11 +256,9 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    checkCall(points1, points2, flags);
     const Pair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
     const PointCovariance pointCovariance(pair, pixelSigma, calibrationCovariance);
-    const Scalar nan = Scalar::all(std::numeric_limits<double>::quiet_NaN());
-    Mat C(PointReader(points1, 2, "points1").size(), 9, CV_64F, nan);
+    Mat C;
     triangulate(pair, points1, points2, points3D, status, flags, &pointCovariance, C);
     if (covariance.needed())
         C.copyTo(covariance);
