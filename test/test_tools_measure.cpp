@@ -86,14 +86,10 @@ TEST_CASE("refract_measure meets a known plane, and finds a target's pose, with 
 {
     const TemporaryFolder folder;
     const TrueView view = readTruth(STEREO).at("measure1/z600_2.jpg");
-    cv::Matx33d R;
-    cv::Rodrigues(view.rvec, R);
-    const cv::Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
     const std::string call = "refract_measure " + STEREO + "/truth.yml " + image("measure1/z600_2") + TARGET
                              + " --pixel-sigma=0.014 --out=" + (folder / "points.csv");
 
-    const ToolResult onPlane = runTool(call + cv::format(" --plane=%.17g,%.17g,%.17g,%.17g", normal[0], normal[1],
-                                                         normal[2], normal.dot(view.tvec)));
+    const ToolResult onPlane = runTool(call + view.planeOption());
     CAPTURE(onPlane.err);
     REQUIRE(onPlane.code == 0);
     std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));

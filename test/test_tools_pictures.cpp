@@ -31,11 +31,8 @@ TEST_CASE("refract_undistort turns a plane's image into the pinhole's", "[tools]
 {
     const TemporaryFolder folder;
     const TrueView view = readTruth(STEREO).at("measure1/z600_2.jpg");
-    cv::Matx33d R;
-    cv::Rodrigues(view.rvec, R);
-    const cv::Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
     const ToolResult result = runTool("refract_undistort " + STEREO + "/truth.yml " + image("measure1/z600_2")
-        + cv::format(" --plane=%.17g,%.17g,%.17g,%.17g", normal[0], normal[1], normal[2], normal.dot(view.tvec))
+        + view.planeOption()
         + " --out-dir=" + (folder / "new/deep"));
     CAPTURE(result.err);
     REQUIRE(result.code == 0);

@@ -21,6 +21,15 @@ struct TrueView
         cv::Rodrigues(rvec, R);
         return R * cv::Vec3d(objectPoint) + tvec;
     }
+
+    //! The target's plane as the tools take it: --plane=a,b,c,d
+    std::string planeOption() const
+    {
+        cv::Matx33d R;
+        cv::Rodrigues(rvec, R);
+        const cv::Vec3d n(R(0, 2), R(1, 2), R(2, 2));
+        return cv::format(" --plane=%.17g,%.17g,%.17g,%.17g", n[0], n[1], n[2], n.dot(tvec));
+    }
 };
 
 //! By file name in the folder ("measure1/z600_1.jpg").
