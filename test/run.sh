@@ -48,6 +48,7 @@ build build/release
 suite build/release/bin/refract_tests
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
+run "Debian package: unpacked, its tools run" test/package.sh build/release
 run "Python package, its tests and samples" test/python.sh "$@"
 run "the same hundred values from every build" test/agreement/run.sh build/release
 for sample in build/release/bin/sample_*; do

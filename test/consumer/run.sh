@@ -16,3 +16,8 @@ export PKG_CONFIG_PATH
 # shellcheck disable=SC2046  # flags are words
 c++ -std=c++11 "$here/consumer.cpp" -o "$work/consumer" $(pkg-config --cflags --libs opencv_refract)
 LD_LIBRARY_PATH=$libdir "$work/consumer"
+
+# Nothing but the API is exported.
+others=$(nm -DC --defined-only "$libdir/libopencv_refract.so" | sed 's/^[0-9a-f]* . //' |
+  grep -v -e '^cv::refract::' -e '^\(vtable\|typeinfo\|typeinfo name\) for cv::refract::RefractiveCamera$' || true)
+[ -z "$others" ] || { echo "FAILED: these symbols are exported, too:"; echo "$others"; exit 1; } >&2

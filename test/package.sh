@@ -1,0 +1,54 @@
+#!/bin/sh
+# Makes the Debian package and runs the tools that it holds on the bundled images.
+#
+# Usage: test/package.sh [BUILD_DIRECTORY] [--bare]     build/release by default
+#   --bare  installs the package with apt in a bare Debian 12 (debootstrap, root) and runs the tools there, which takes some
+#           minutes; without, the package is only unpacked and its tools run on the libraries of this machine
+set -eu
+cd "$(dirname "$0")/.."
+bare=no; build=build/release
+for argument in "$@"; do
+  case $argument in
+    --bare) bare=yes ;;
+    *) build=$argument ;;
+  esac
+done
+work=$(mktemp -d)
+root=$work/root
+trap 'umount "$root/proc" 2>/dev/null || true; rm -rf "$work"' EXIT
+
+(cd "$build" && cpack -G DEB -B "$work/packages") >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
+package=$(ls "$work"/packages/*.deb)
+dpkg-deb -f "$package" Package Version Depends
+
+main_job() {    # main_job RUN...: calibrates and measures, by the tools as RUN reaches them
+  "$@" refract_calib --pattern=chessboard --size=6x5 --square=39 --thickness=20 --index=1.5437 --quiet \
+    --direct='data/direct1/*' --glass='data/glass1/*' --direct2='data/direct2/*' --glass2='data/glass2/*' \
+    --out=calib.yml --report=report.html
+  "$@" refract_measure calib.yml 'data/measure1/z600_*' 'data/measure2/z600_*' --pattern=chessboard --size=6x5 \
+    --square=39 --compare --out=points.csv
+  "$@" refract_undistort --version
+}
+
+if [ $bare = no ]; then
+  dpkg-deb -x "$package" "$root"
+  cp -r samples/data/stereo "$root/data"
+  cd "$root"
+  LD_LIBRARY_PATH=$root/usr/lib PATH=$root/usr/bin:$PATH
+  export LD_LIBRARY_PATH PATH
+  main_job env
+else
+  debootstrap --variant=minbase bookworm "$root" "$(apt-get indextargets --format '$(SITE)' | head -1)" >"$work/root.log" ||
+    { tail -5 "$work/root.log"; exit 1; }
+  mount -t proc proc "$root/proc"
+  cp /etc/resolv.conf "$root/etc/"
+  cp -r /etc/apt/sources.list* /etc/apt/apt.conf.d "$root/etc/apt/"
+  cp "$package" "$root/root/package.deb"
+  cp -r samples/data/stereo "$root/root/data"
+  chroot "$root" sh -ec 'export DEBIAN_FRONTEND=noninteractive
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends /root/package.deb' >"$work/install.log" 2>&1 ||
+    { tail -20 "$work/install.log"; exit 1; }
+  main_job chroot "$root" env -C /root
+  root=$root/root
+fi
+ls -l "$root/calib.yml" "$root/points.csv" "$root/report.html"
