@@ -68,11 +68,16 @@ done
 
 configure "$build"
 if [ $short = yes ]; then
-  objects=$(ninja -C "$build" -t targets all | sed -n 's/^\([^:]*refract[^:]*\.cpp\.o\):.*/\1/p')
-  # shellcheck disable=SC2086  # a list of files
-  ninja -C "$build" $objects gen_opencv_python_source
+  # Ninja would build what these targets stand on first, so the compiler is called directly.
+  commands=$work/commands.txt
+  ninja -C "$build" -t compdb | "$python" -c 'import json, sys
+for unit in json.load(sys.stdin):
+    if "/modules/refract/" in unit["file"] and unit["output"].endswith(".o"): print(unit["command"])' >"$commands"
+  [ -s "$commands" ] || { echo "FAILED: no file of the module is to be compiled" >&2; exit 1; }
+  (cd "$build" && tr '\n' '\0' <"$commands" | xargs -0 -n 1 -P "$(nproc)" sh -ec)
+  ninja -C "$build" gen_opencv_python_source
   grep -q triangulateRefractive "$build/modules/python_bindings_generator/pyopencv_generated_funcs.h"
-  echo "passed: OpenCV $version compiles $(echo "$objects" | wc -l) files of the module and generates its Python bindings"
+  echo "passed: OpenCV $version compiles $(wc -l <"$commands") files of the module and generates its Python bindings"
   exit 0
 fi
 ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example_refract_measure_behind_glass

@@ -14,8 +14,8 @@ for argument in "$@"; do
   esac
 done
 work=$(mktemp -d)
-root=$work/root
-trap 'umount "$root/proc" 2>/dev/null || true; rm -rf "$work"' EXIT
+root=$work/root; home=$root
+trap 'rm -rf "$work"' EXIT
 
 (cd "$build" && cpack -G DEB -B "$work/packages") >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
 package=$(ls "$work"/packages/*.deb)
@@ -40,15 +40,14 @@ if [ $bare = no ]; then
 else
   debootstrap --variant=minbase bookworm "$root" "$(apt-get indextargets --format '$(SITE)' | head -1)" >"$work/root.log" ||
     { tail -5 "$work/root.log"; exit 1; }
-  mount -t proc proc "$root/proc"
   cp /etc/resolv.conf "$root/etc/"
   cp -r /etc/apt/sources.list* /etc/apt/apt.conf.d "$root/etc/apt/"
-  cp "$package" "$root/root/package.deb"
-  cp -r samples/data/stereo "$root/root/data"
+  home=$root/root
+  cp "$package" "$home/package.deb"
+  cp -r samples/data/stereo "$home/data"
   chroot "$root" sh -ec 'export DEBIAN_FRONTEND=noninteractive
     apt-get update -qq && apt-get install -y -qq --no-install-recommends /root/package.deb' >"$work/install.log" 2>&1 ||
     { tail -20 "$work/install.log"; exit 1; }
   main_job chroot "$root" env -C /root
-  root=$root/root
 fi
-ls -l "$root/calib.yml" "$root/points.csv" "$root/report.html"
+ls -l "$home/calib.yml" "$home/points.csv" "$home/report.html"

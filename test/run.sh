@@ -51,6 +51,11 @@ run "installed package: find_package and pkg-config" test/consumer/run.sh build/
 run "Debian package: unpacked, its tools run" test/package.sh build/release
 run "Python package, its tests and samples" test/python.sh "$@"
 run "the same hundred values from every build" test/agreement/run.sh build/release
+# OpenCV itself is not compiled here: that takes the whole script, without --short.
+for version in 4.14.0.94 5.0.0.93; do
+  run "in OpenCV $version's tree: configures, compiles the module, generates bindings" \
+    test/opencv_in_tree.sh $version --short
+done
 for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"
 done

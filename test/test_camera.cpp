@@ -1,6 +1,8 @@
 // RefractiveCamera: making, changing, reading and writing.
 #include "scenes.hpp"
 
+#include <opencv2/core/utils/filesystem.hpp>
+
 #include <cstdio>
 #include <fstream>
 
@@ -185,6 +187,32 @@ TEST_CASE("A camera of mrcal's models is read back as such", "[camera]")
     CHECK(back->lensModel() == "LENSMODEL_OPENCV8");
     CHECK(largestDifference(back->lensParameters(), intrinsics) == 0);
     CHECK(back->window().thickness == someWindow().thickness);
+}
+
+TEST_CASE("A saved camera is read back to the last bit, in every format", "[camera]")
+{
+    const std::string suffix = GENERATE(".yml", ".xml", ".json", "");
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(suffix, kind.name);
+    const TemporaryFile file(suffix, "what was there before");
+    const Ptr<RefractiveCamera> camera = makeCamera(kind, someWindow());
+    camera->save(file.path);
+    const Ptr<RefractiveCamera> back = RefractiveCamera::read(file.path);
+    CHECK(largestDifference(someProjections(back), someProjections(camera)) == 0);
+    CHECK(back->lensModel() == camera->lensModel());
+}
+
+TEST_CASE("A camera that cannot be saved leaves nothing", "[camera]")
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d::eye(), noArray(), someWindow());
+    CHECK_THAT(thrown([&] { camera->save("no/such/folder/camera.yml"); }), Contains("no/such/folder/camera.yml"));
+    const std::string folder = cv::tempfile(".folder");
+    REQUIRE(cv::utils::fs::createDirectory(folder));
+    CHECK_THAT(thrown([&] { camera->save(folder); }), Contains(folder));
+    std::vector<String> left;
+    cv::utils::fs::glob(folder.substr(0, folder.rfind('/')), "*.part.folder", left);
+    CHECK(left.empty());
+    cv::utils::fs::remove_all(folder);
 }
 
 TEST_CASE("Two cameras in one file are read by name, camera1 by default", "[camera]")

@@ -112,3 +112,15 @@ glass_window: { normal: [ 0., 0.6, 0.8 ], distance: 5., thickness: [ 20. ], inde
         assert camera.window().outerIndex == 1.33 and camera.window().distance == 5.
     with pytest.raises(refract.error, match="missing.yml"):
         refract.RefractiveCamera.read(str(tmp_path / "missing.yml"))
+
+
+def test_a_saved_camera_is_read_back(tmp_path):
+    window = refract.GlassWindow((0.1, 0.05, 1), 20, 1.5437, 50)
+    camera = refract.RefractiveCamera.create(K, np.array([-0.1, 0.01, 0, 0]), window)
+    name = str(tmp_path / "camera.yml")
+    camera.save(name)
+    back = refract.RefractiveCamera.read(name)
+    np.testing.assert_array_equal(back.lensParameters(), camera.lensParameters())
+    assert back.window().normal == window.normal
+    with pytest.raises(refract.error, match="no/camera.yml cannot be written"):
+        camera.save(str(tmp_path / "no" / "camera.yml"))

@@ -90,6 +90,12 @@ void Camera::setWindow(const GlassWindow& window)
     window_ = window;
 }
 
+Mat Camera::lensParameters() const
+{
+    std::vector<double> all = lens_->parameters();
+    return Mat((int)all.size(), 1, CV_64F, all.data()).clone();     // OpenCV 5 makes a row of a std::vector
+}
+
 void Camera::setLensParameters(InputArray parameters)
 {
     const std::vector<double> p = readNumbers(parameters, "parameters");

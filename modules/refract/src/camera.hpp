@@ -52,7 +52,7 @@ public:
     String lensModel() const CV_OVERRIDE { return lens_->model(); }
     GlassWindow window() const CV_OVERRIDE { return window_; }
     void setWindow(const GlassWindow& window) CV_OVERRIDE;
-    Mat lensParameters() const CV_OVERRIDE { return Mat(lens_->parameters(), true); }
+    Mat lensParameters() const CV_OVERRIDE;
     void setLensParameters(InputArray parameters) CV_OVERRIDE;
     Size imageSize() const CV_OVERRIDE { return size_; }
     void setImageSize(Size size) CV_OVERRIDE { size_ = size; }

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "camera.hpp"
 #include "cameramodel.hpp"
+#include <cstdio>
 #include <fstream>
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
@@ -97,6 +98,32 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
         CV_Error_(Error::StsParseError, ("%s holds no camera%s%s: camera_matrix and distortion_coefficients are missing",
                                          filename.c_str(), name.empty() ? "" : " ", name.c_str()));
     return readNode(node, filename);
+}
+
+//! path/name.yml -> path/name.part.yml: the extension chooses FileStorage's format.
+static String partName(const String& filename)
+{
+    const size_t slash = filename.find_last_of("/\\"), dot = filename.rfind('.');
+    const bool hasExtension = dot != String::npos && (slash == String::npos || dot > slash);
+    return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
+}
+
+void RefractiveCamera::save(const String& filename) const
+{
+    CV_INSTRUMENT_REGION();
+
+    const String part = partName(filename);
+    // FileStorage would log a line of its own.
+    if (!std::ofstream(part.c_str()))
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    FileStorage fs(part, FileStorage::WRITE);
+    write(fs);
+    fs.release();
+    if (std::rename(part.c_str(), filename.c_str()) != 0)
+    {
+        std::remove(part.c_str());
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    }
 }
 
 }} // namespace

@@ -155,6 +155,11 @@ public:
     //! Writes the camera's keys into the map that is open in fs.
     virtual void write(FileStorage& fs) const = 0;
 
+    /** @brief Writes a file that read() reads: the whole of it or, if that fails (which throws), nothing.
+    @param filename path; its extension chooses the format: .xml, .json, else YAML.
+    */
+    CV_WRAP void save(const String& filename) const;
+
     CV_WRAP virtual Mat cameraMatrix() const = 0;        //!< 3x3 CV_64F
     CV_WRAP virtual Mat distCoeffs() const = 0;          //!< Nx1 CV_64F, as given
     CV_WRAP virtual String lensModel() const = 0;        //!< `opencv`, `fisheye` or mrcal's name
@@ -269,7 +274,7 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
-@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
 @param map1 first map; pixels with no answer map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
