@@ -1,0 +1,16 @@
+"""Markdown tables, as doc/paper_experiments.md shows them."""
+
+
+def show(title, header, rows):
+    print(f"\n### {title}\n")
+    for row in (header, ["---"]*len(header), *rows):
+        print("| " + " | ".join(str(cell) for cell in row) + " |")
+    print(flush=True)
+
+
+def mm(value):
+    return f"{value:.3f}"
+
+
+def px(value):
+    return f"{value:.2f}"
