@@ -2,7 +2,7 @@
 # Builds the Python package as a wheel and tests it beside Debian's OpenCV and NumPy, and beside pip's OpenCV 4 and 5
 # with their NumPy 2. Everything is kept in build/python: a second run takes a minute or two.
 #
-# Usage: test/python.sh [--fast]      --fast leaves out pip's OpenCV 5 and the samples
+# Usage: test/python.sh [--fast]      --fast leaves out pip's OpenCV 5, the samples and the paper's experiments
 # Ends with 77 if pip reaches no package registry. REFRACT_OPENCV_SOURCE: see doc/howto_python.md.
 set -eu
 cd "$(dirname "$0")/.."
@@ -50,16 +50,18 @@ print('Python', sys.version.split()[0], 'NumPy', numpy.__version__, 'cv2', cv2._
   "$work/$name/bin/python" -m pytest -q -p no:cacheprovider "$@" python/tests
 }
 
+samples="--ignore=python/tests/test_samples.py --ignore=python/tests/test_paper_experiments.py"
 environment debian --system-site-packages
 "$work/debian/bin/pip" install -q pytest
-check debian --ignore=python/tests/test_samples.py
+# shellcheck disable=SC2086  # two options
+check debian $samples
 environment opencv4
 "$work/opencv4/bin/pip" install -q 'opencv-python-headless<5' matplotlib pytest
 if [ $fast = yes ]; then
-  check opencv4 --ignore=python/tests/test_samples.py
+  check opencv4 $samples
 else
   check opencv4
   environment opencv5
   "$work/opencv5/bin/pip" install -q 'opencv-python-headless>=5,<6' pytest
-  check opencv5 --ignore=python/tests/test_samples.py
+  check opencv5 $samples
 fi
