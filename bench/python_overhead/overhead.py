@@ -28,10 +28,10 @@ def seconds(call):
 
 
 def layouts(points):
-    """The same points in one piece, and as columns of a wider table."""
+    """The same points in one piece; as columns of a wider table; and backwards, which only a copy makes a cv::Mat."""
     table = np.zeros((len(points), points.shape[1] + 3))
     table[:, 1:1 + points.shape[1]] = points
-    return ('contiguous', points), ('strided', table[:, 1:1 + points.shape[1]])
+    return ('contiguous', points), ('columns', table[:, 1:1 + points.shape[1]]), ('backwards', points[::-1])
 
 
 def compare(name, layout, from_python, from_cpp, count):
@@ -55,8 +55,9 @@ def main(library, count=1000000):
     pixels2 = refract.refractiveProjectPoints(scene, R, T, camera2)[0].reshape(-1, 2)
 
     def run(name, arrays, from_python, from_cpp):
-        """arrays: one or two in the same layout."""
-        data = [ctypes.c_void_p(a.ctypes.data) for a in arrays] + [count, ctypes.c_size_t(arrays[0].strides[0])]
+        """arrays: one or two in the same layout; where that is backwards, C++ has them forwards, without a copy."""
+        forward = [a if a.strides[0] > 0 else a[::-1] for a in arrays]
+        data = [ctypes.c_void_p(a.ctypes.data) for a in forward] + [count, ctypes.c_size_t(forward[0].strides[0])]
         compare(name, layout, lambda: from_python(*arrays), lambda: from_cpp(*data), count)
 
     print('%-28s %-11s %10s %10s %11s' % ('%d points, ns a point' % count, '', 'Python', 'C++', 'overhead'))
