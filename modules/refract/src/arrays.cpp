@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "arrays.hpp"
+#include "kernels.hpp"
 #include "rotation.hpp"
 
 namespace cv { namespace refract {
@@ -37,27 +38,15 @@ PointReader::PointReader(InputArray points, int channels, const char* name)
     depth_ = points_.empty() ? (points.depth() == CV_32F ? CV_32F : CV_64F) : points_.depth();
 }
 
-template<typename T>
-static void loadBlock(const T* p, int n, double* x, double* y, double* z, uchar* status)
-{
-    for (int i = 0; i < n; ++i)
-    {
-        x[i] = *p++;
-        y[i] = *p++;
-        double sum = x[i] + y[i];
-        if (z)
-            sum += z[i] = *p++;
-        status[i] = std::isfinite(sum) ? REFRACT_OK : REFRACT_NOT_FINITE;
-    }
-}
-
 void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar* status) const
 {
-    const int channels = z ? 3 : 2;
-    if (depth_ == CV_32F)
-        loadBlock(points_.ptr<float>() + (size_t)begin*channels, n, x, y, z, status);
-    else
-        loadBlock(points_.ptr<double>() + (size_t)begin*channels, n, x, y, z, status);
+    std::fill(status, status + n, (uchar)REFRACT_OK);
+    const uchar* points = points_.data + (size_t)(z ? 3 : 2)*begin*points_.elemSize1();
+    if (kernels().load(points, depth_ == CV_32F, n, x, y, z))
+        return;
+    for (int i = 0; i < n; ++i)
+        if (!std::isfinite(x[i] + y[i] + (z ? z[i] : 0)))
+            status[i] = REFRACT_NOT_FINITE;
 }
 
 PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
@@ -76,28 +65,30 @@ PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
 }
 
 template<typename T>
-static void storeBlock(T* p, int n, const double* x, const double* y, const double* z, const uchar* status)
+static void setNaN(T* points, int channels, int n, const uchar* status)
 {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < n; ++i)
-    {
-        const bool ok = status[i] == REFRACT_OK;
-        *p++ = (T)(ok ? x[i] : nan);
-        *p++ = (T)(ok ? y[i] : nan);
-        if (z)
-            *p++ = (T)(ok ? z[i] : nan);
-    }
+        if (status[i] != REFRACT_OK)
+            std::fill(points + channels*i, points + channels*(i + 1), std::numeric_limits<T>::quiet_NaN());
 }
 
 void PointWriter::store(int begin, int n, const double* x, const double* y, const double* z, const uchar* status)
 {
     if (points_.empty())
         return;
+    const bool isFloat = points_.depth() == CV_32F;
     const int channels = z ? 3 : 2;
-    if (points_.depth() == CV_32F)
-        storeBlock(points_.ptr<float>() + (size_t)begin*channels, n, x, y, z, status);
+    uchar* points = points_.data + (size_t)channels*begin*points_.elemSize1();
+    kernels().store(points, isFloat, n, x, y, z);
+    uchar reasons = 0;
+    for (int i = 0; i < n; ++i)
+        reasons |= status[i];
+    if (reasons == REFRACT_OK)
+        return;
+    if (isFloat)
+        setNaN((float*)points, channels, n, status);
     else
-        storeBlock(points_.ptr<double>() + (size_t)begin*channels, n, x, y, z, status);
+        setNaN((double*)points, channels, n, status);
 }
 
 StatusWriter::StatusWriter(OutputArray status, int size)
@@ -112,20 +103,6 @@ void StatusWriter::store(int begin, int n, const uchar* status)
 {
     if (!status_.empty())
         std::copy(status, status + n, status_.ptr<uchar>() + begin);
-}
-
-void forEachBlock(int size, const std::function<void(int begin, int n)>& body)
-{
-    const int blocks = (size + BLOCK - 1)/BLOCK;
-    const auto run = [&](const Range& range)
-    {
-        for (int b = range.start; b < range.end; ++b)
-            body(b*BLOCK, std::min(BLOCK, size - b*BLOCK));
-    };
-    if (blocks <= 1)
-        run(Range(0, blocks));
-    else
-        parallel_for_(Range(0, blocks), run, size/16384.);
 }
 
 //! A small numeric argument as doubles, row by row.

@@ -6,7 +6,6 @@
 #define OPENCV_REFRACT_ARRAYS_HPP
 
 #include "precomp.hpp"
-#include <functional>
 
 /* InputArray <-> blocks of structure-of-arrays. The only file that knows both. */
 
@@ -50,8 +49,24 @@ private:
     Mat status_;
 };
 
+//! How many points are worth another thread: some 50 us of the cheapest kernels.
+const int GRAIN = 8192;
+
 //! Calls body(begin, n) over [0, size) in blocks of at most BLOCK, in parallel.
-void forEachBlock(int size, const std::function<void(int begin, int n)>& body);
+template<typename Body>
+void forEachBlock(int size, const Body& body)
+{
+    const auto run = [&](const Range& range)
+    {
+        for (int b = range.start; b < range.end; ++b)
+            body(b*BLOCK, std::min(BLOCK, size - b*BLOCK));
+    };
+    const Range blocks(0, (size + BLOCK - 1)/BLOCK);
+    if (size < 2*GRAIN)     // a few points are done before a second thread has woken up
+        run(blocks);
+    else
+        parallel_for_(blocks, run, (double)size/GRAIN);
+}
 
 // Small arguments. Each throws with the argument's name and value.
 Matx33d readCameraMatrix(InputArray m, const char* name);

@@ -3,8 +3,28 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "layers.hpp"
+#include <map>
 
 namespace cv { namespace refract {
+
+//! Gap, layers and scene with media of equal index taken together.
+static std::vector<Medium> mediaOf(const std::vector<double>& height, const std::vector<double>& index, double outer,
+                                   double rarest)
+{
+    std::map<double, Medium> media;
+    const auto medium = [&](double n) -> Medium&
+    {
+        const Medium empty = { 0, 0, n*n, rarest/n, rarest/std::sqrt((n - rarest)*(n + rarest)) };
+        return media.insert(std::make_pair(n, empty)).first->second;
+    };
+    for (size_t k = 0; k < height.size(); ++k)
+        medium(index[k]).height += height[k];
+    medium(outer).scene = 1;
+    std::vector<Medium> list;
+    for (const auto& m : media)
+        list.push_back(m.second);
+    return list;
+}
 
 Layers::Layers(const GlassWindow& window)
 {
@@ -22,41 +42,52 @@ Layers::Layers(const GlassWindow& window)
         total_ += height_[i];
         rarest_ = std::min(rarest_, index_[i]);
     }
+    media_ = mediaOf(height_, index_, outer_, rarest_);
+}
+
+Stack Layers::stack() const
+{
+    Stack s = { { normal_[0], normal_[1], normal_[2] }, refracts_, total_, index_[0], outer_, rarest_,
+                media_.data(), (int)media_.size() };
+    return s;
 }
 
 void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz,
                       double* tau, double* dx, double* dy, double* dz, uchar* status) const
 {
-    const double nx = normal_[0], ny = normal_[1], nz = normal_[2];
-    const double inner = index_[0], inner2 = inner*inner, outer2 = outer_*outer_;
+    if (!refracts_)
+    {
+        std::fill(tau, tau + n, 0.);
+        std::copy(wx, wx + n, dx); std::copy(wy, wy + n, dy); std::copy(wz, wz + n, dz);
+        return;
+    }
+    if (kernels().traceOut(stack(), n, wx, wy, wz, tau, dx, dy, dz))
+        return;
     for (int i = 0; i < n; ++i)
     {
-        if (!refracts_)
-        {
-            tau[i] = 0; dx[i] = wx[i]; dy[i] = wy[i]; dz[i] = wz[i];
+        if (status[i] != REFRACT_OK || !std::isnan(tau[i]))
             continue;
-        }
-        const double c = nx*wx[i] + ny*wy[i] + nz*wz[i];
-        // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
-        const double qOut2 = (outer2 - inner2) + inner2*c*c, qOut = std::sqrt(qOut2);
-        bool reflected = !(qOut2 > 0);
-        double sum = 0;
-        for (size_t k = 0; k < height_.size(); ++k)
-        {
-            const double n2 = index_[k]*index_[k], q2 = (n2 - inner2) + inner2*c*c, q = std::sqrt(q2);
-            reflected = reflected || !(q2 > 0);
-            sum += height_[k]*(n2 - outer2)/(q*(q + qOut));
-        }
-        if (status[i] == REFRACT_OK && !(c > 0))
-            status[i] = REFRACT_BEHIND_WINDOW;
-        if (status[i] == REFRACT_OK && reflected)
-            status[i] = REFRACT_TOTAL_REFLECTION;
-        const double along = (qOut - inner*c)/outer_, scale = inner/outer_;
-        tau[i] = sum;
-        dx[i] = scale*wx[i] + along*nx;
-        dy[i] = scale*wy[i] + along*ny;
-        dz[i] = scale*wz[i] + along*nz;
+        Vec3d d;
+        status[i] = traceOne(Vec3d(wx[i], wy[i], wz[i]), tau[i], d);
+        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
     }
+}
+
+uchar Layers::traceOne(const Vec3d& w, double& tau, Vec3d& d) const
+{
+    const double c = normal_.dot(w), inner = index_[0], inner2 = inner*inner, outer2 = outer_*outer_;
+    // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
+    const double qOut2 = (outer2 - inner2) + inner2*c*c, qOut = std::sqrt(qOut2);
+    bool reflected = !(qOut2 > 0);
+    tau = 0;
+    for (size_t k = 0; k < height_.size(); ++k)
+    {
+        const double n2 = index_[k]*index_[k], q2 = (n2 - inner2) + inner2*c*c, q = std::sqrt(q2);
+        reflected = reflected || !(q2 > 0);
+        tau += height_[k]*(n2 - outer2)/(q*(q + qOut));
+    }
+    d = inner/outer_*w + (qOut - inner*c)/outer_*normal_;
+    return !(c > 0) ? REFRACT_BEHIND_WINDOW : reflected ? REFRACT_TOTAL_REFLECTION : REFRACT_OK;
 }
 
 /* In t = tan(theta) of the rarest medium, n_r sin(theta) = p:
@@ -109,28 +140,35 @@ uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
                      double* dx, double* dy, double* dz, uchar* status) const
 {
-    const double nx = normal_[0], ny = normal_[1], nz = normal_[2];
-    const double r2 = rarest_*rarest_, inner2 = index_[0]*index_[0];
+    if (!refracts_)
+    {
+        std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
+        return;
+    }
+    if (kernels().solveIn(stack(), n, x, y, z, w, dx, dy, dz))
+        return;
     for (int i = 0; i < n; ++i)
     {
-        dx[i] = x[i]; dy[i] = y[i]; dz[i] = z[i];
-        if (!refracts_ || status[i] != REFRACT_OK)
+        if (status[i] != REFRACT_OK || !std::isnan(dx[i]))
             continue;
-        const double weight = w ? w[i] : 1., U = nx*x[i] + ny*y[i] + nz*z[i];
-        if (!(U > weight*total_))
-        {
-            status[i] = REFRACT_BEHIND_WINDOW;
-            continue;
-        }
-        const double rx = x[i] - U*nx, ry = y[i] - U*ny, rz = z[i] - U*nz;
-        const double V = std::sqrt(rx*rx + ry*ry + rz*rz);
-        double ratio = 0;
-        status[i] = solveTangent(U, V, weight, ratio);
-        const double t = V*ratio, kappa = rarest_*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
-        dx[i] = nx + kappa*rx;
-        dy[i] = ny + kappa*ry;
-        dz[i] = nz + kappa*rz;
+        Vec3d d;
+        status[i] = solveOne(Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d);
+        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
     }
+}
+
+uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d) const
+{
+    const double U = normal_.dot(X), r2 = rarest_*rarest_, inner2 = index_[0]*index_[0];
+    if (!(U > w*total_))
+        return REFRACT_BEHIND_WINDOW;
+    const Vec3d radial = X - U*normal_;
+    const double V = cv::norm(radial);
+    double ratio = 0;
+    const uchar status = solveTangent(U, V, w, ratio);
+    const double t = V*ratio, kappa = rarest_*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
+    d = normal_ + kappa*radial;
+    return status;
 }
 
 /* Implicit differentiation of sum h_i T_i(p) + h_out T_out(p) = V, T_i = p/q_i, dT_i/dp = n_i^2/q_i^3,

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_LAYERS_HPP
 
 #include "precomp.hpp"
+#include "kernels.hpp"
 
 namespace cv { namespace refract {
 
@@ -56,7 +57,13 @@ public:
 
     const Vec3d& normal() const { return normal_; }
 
+    //! The layers as the kernels see them; it points into this object.
+    Stack stack() const;
+
 private:
+    //! One lane of traceOut and solveIn that the kernel left without an answer: the answer, or why there is none.
+    uchar traceOne(const Vec3d& w, double& tau, Vec3d& d) const;
+    uchar solveOne(const Vec3d& X, double w, Vec3d& d) const;
     //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
     uchar solveTangent(double U, double V, double w, double& ratio) const;
 
@@ -66,7 +73,8 @@ private:
     std::vector<double> index_;     //!< of the same
     double outer_ = 1.;             //!< index of the scene's medium
     double total_ = 0.;             //!< sum of the heights
-    double rarest_ = 1.;            //!< smallest index of inner medium, layers of positive height, outer medium
+    double rarest_ = 1.;            //!< smallest index of inner medium, layers, outer medium
+    std::vector<Medium> media_;     //!< the same by index, the rarest first
 };
 
 }} // namespace

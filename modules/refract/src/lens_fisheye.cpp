@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "fisheye_bend.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
 
@@ -30,70 +31,69 @@ public:
 
     String model() const CV_OVERRIDE { return "fisheye"; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(K_, true); }
-    Mat distCoeffs() const CV_OVERRIDE { return Mat(4, 1, CV_64F, (void*)k_).clone(); }
+    Mat distCoeffs() const CV_OVERRIDE { return Mat(4, 1, CV_64F, (void*)m_.k).clone(); }
     std::vector<double> parameters() const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& parameters) const CV_OVERRIDE;
 
 private:
     double bend(double theta, double& slope) const;     //!< theta -> theta_d
+    //! One lane that the kernel left without an answer: the answer, or why there is none.
+    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
 
     Matx33d K_;
-    double fx_, fy_, cx_, cy_, alpha_;
-    double k_[4];
-    double thetaMax_;
+    FisheyeModel m_;
 };
 
-FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs)
-    : K_(K), fx_(K(0, 0)), fy_(K(1, 1)), cx_(K(0, 2)), cy_(K(1, 2)), alpha_(K(0, 1)/K(0, 0))
+FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs) : K_(K)
 {
     if (!distCoeffs.empty() && distCoeffs.size() != 4)
         CV_Error_(Error::StsBadArg, ("distCoeffs has %d values; the fisheye model has 4", (int)distCoeffs.size()));
-    std::fill(k_, k_ + 4, 0.);
-    std::copy(distCoeffs.begin(), distCoeffs.end(), k_);
-    const double slope[] = { 1, 3*k_[0], 5*k_[1], 7*k_[2], 9*k_[3] };
-    thetaMax_ = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slope, slope + 5))));
+    m_.fx = K(0, 0); m_.fy = K(1, 1); m_.cx = K(0, 2); m_.cy = K(1, 2);
+    m_.alpha = K(0, 1)/K(0, 0);
+    double* k = m_.k;
+    std::fill(k, k + 4, 0.);
+    std::copy(distCoeffs.begin(), distCoeffs.end(), k);
+    const double slope[] = { 1, 3*k[0], 5*k[1], 7*k[2], 9*k[3] };
+    m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slope, slope + 5))));
+    invertSeries(k, m_.inverse);
 }
 
 double FisheyeLens::bend(double theta, double& slope) const
 {
-    const double s = theta*theta;
-    slope = 1 + s*(3*k_[0] + s*(5*k_[1] + s*(7*k_[2] + s*9*k_[3])));
-    return theta*(1 + s*(k_[0] + s*(k_[1] + s*(k_[2] + s*k_[3]))));
+    double factor;
+    bendFactor(m_, theta*theta, factor, slope);
+    return theta*factor;
 }
 
-void FisheyeLens::project(int n, const double* X, const double* Y, const double* Z,
+void FisheyeLens::project(int n, const double* x, const double* y, const double* z,
                           double* u, double* v, uchar* status) const
 {
+    if (kernels().projectFisheye(m_, n, x, y, z, u, v))
+        return;
     for (int i = 0; i < n; ++i)
-    {
-        const double r = std::sqrt(X[i]*X[i] + Y[i]*Y[i]), theta = std::atan2(r, Z[i]);
-        double slope;
-        const double scale = bend(theta, slope)/std::max(r, DBL_MIN);
-        const double x = X[i]*scale, y = Y[i]*scale;
-        u[i] = fx_*(x + alpha_*y) + cx_;
-        v[i] = fy_*y + cy_;
-        if (status[i] == REFRACT_OK && !(theta < thetaMax_))
+        if (status[i] == REFRACT_OK && std::isnan(u[i]))
             status[i] = REFRACT_OUTSIDE_LENS_MODEL;
-    }
 }
 
 void FisheyeLens::unproject(int n, const double* u, const double* v,
                             double* x, double* y, double* z, uchar* status) const
 {
+    if (kernels().unprojectFisheye(m_, n, u, v, x, y, z))
+        return;
     for (int i = 0; i < n; ++i)
-    {
-        if (status[i] != REFRACT_OK)
-            continue;
-        const double yd = (v[i] - cy_)/fy_, xd = (u[i] - cx_)/fx_ - alpha_*yd, target = std::sqrt(xd*xd + yd*yd);
-        const double theta = invertMonotone([this](double t, double& slope) { return bend(t, slope); },
-                                            target, thetaMax_);
-        if (!std::isfinite(theta))
-            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
-        const double scale = target > 0 ? std::sin(theta)/target : 1;
-        x[i] = xd*scale;
-        y[i] = yd*scale;
-        z[i] = std::cos(theta);
-    }
+        if (status[i] == REFRACT_OK && std::isnan(x[i]))
+            status[i] = unprojectOne(u[i], v[i], x[i], y[i], z[i]);
+}
+
+uchar FisheyeLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
+{
+    const double yd = (v - m_.cy)/m_.fy, xd = (u - m_.cx)/m_.fx - m_.alpha*yd, target = std::sqrt(xd*xd + yd*yd);
+    const double theta = invertMonotone([this](double t, double& slope) { return bend(t, slope); }, target, m_.thetaMax);
+    const double scale = target > 0 ? std::sin(theta)/target : 1;
+    x = xd*scale;
+    y = yd*scale;
+    z = std::cos(theta);
+    return std::isfinite(theta) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
 
 uchar FisheyeLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirection, double* dParameters) const
@@ -118,36 +118,36 @@ uchar FisheyeLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirect
     }
     for (int c = 0; c < 3; ++c)
     {
-        dDirection[c] = fx_*(J[0][c] + alpha_*J[1][c]);
-        dDirection[3 + c] = fy_*J[1][c];
+        dDirection[c] = m_.fx*(J[0][c] + m_.alpha*J[1][c]);
+        dDirection[3 + c] = m_.fy*J[1][c];
     }
     if (!dParameters)
         return status;
 
     std::fill(dParameters, dParameters + 16, 0.);
-    const double x = thetaD*e[0] + alpha_*thetaD*e[1], y = thetaD*e[1];
+    const double x = thetaD*e[0] + m_.alpha*thetaD*e[1], y = thetaD*e[1];
     dParameters[0] = x; dParameters[2] = 1;
     dParameters[9] = y; dParameters[11] = 1;
     double power = theta;
     for (int c = 0; c < 4; ++c)
     {
         power *= theta*theta;
-        dParameters[4 + c] = fx_*power*(e[0] + alpha_*e[1]);
-        dParameters[12 + c] = fy_*power*e[1];
+        dParameters[4 + c] = m_.fx*power*(e[0] + m_.alpha*e[1]);
+        dParameters[12 + c] = m_.fy*power*e[1];
     }
     return status;
 }
 
 std::vector<double> FisheyeLens::parameters() const
 {
-    std::vector<double> p = { fx_, fy_, cx_, cy_ };
-    p.insert(p.end(), k_, k_ + 4);
+    std::vector<double> p = { m_.fx, m_.fy, m_.cx, m_.cy };
+    p.insert(p.end(), m_.k, m_.k + 4);
     return p;
 }
 
 Ptr<Lens> FisheyeLens::withParameters(const std::vector<double>& p) const
 {
-    return makeFisheyeLens(Matx33d(p[0], alpha_*p[0], p[2], 0, p[1], p[3], 0, 0, 1),
+    return makeFisheyeLens(Matx33d(p[0], m_.alpha*p[0], p[2], 0, p[1], p[3], 0, 0, 1),
                            std::vector<double>(p.begin() + 4, p.end()));
 }
 

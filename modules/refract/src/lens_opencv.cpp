@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "distortion.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
 
@@ -20,9 +21,6 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! Positions in OpenCV's order of coefficients.
-enum { K1, K2, P1, P2, K3, K4, K5, K6, S1, S2, S3, S4, TAUX, TAUY, COUNT };
-
 class OpenCVLens : public Lens
 {
 public:
@@ -35,25 +33,22 @@ public:
     uchar projectJacobian(const Vec3d& direction, Vec2d& pixel, double* dDirection, double* dParameters) const CV_OVERRIDE;
 
     String model() const CV_OVERRIDE { return model_; }
-    Mat cameraMatrix() const CV_OVERRIDE { return Mat(Matx33d(fx_, 0, cx_, 0, fy_, cy_, 0, 0, 1), true); }
-    Mat distCoeffs() const CV_OVERRIDE { return given_ ? Mat(given_, 1, CV_64F, (void*)k_).clone() : Mat(); }
+    Mat cameraMatrix() const CV_OVERRIDE { return Mat(Matx33d(m_.fx, 0, m_.cx, 0, m_.fy, m_.cy, 0, 0, 1), true); }
+    Mat distCoeffs() const CV_OVERRIDE { return given_ ? Mat(given_, 1, CV_64F, (void*)m_.k).clone() : Mat(); }
     std::vector<double> parameters() const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& parameters) const CV_OVERRIDE;
 
 private:
-    //! (x, y) -> distorted, before tilt, and its 2x2 Jacobian.
-    void distort(double x, double y, double& xd, double& yd, Matx22d& J) const;
+    //! One lane that the kernel left without an answer: the answer, or why there is none.
+    uchar projectOne(double x, double y, double z, double& u, double& v) const;
+    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
     double radial(double r, double& slope) const;
-    bool inside(double s, const Matx22d& J) const { return s < sMax_ && J(0, 0)*J(1, 1) - J(0, 1)*J(1, 0) > 0; }
+    bool inside(double x, double y, const Distorted<double>& d) const { return x*x + y*y < m_.sMax && d.determinant() > 0; }
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
-    double fx_, fy_, cx_, cy_;
-    double k_[COUNT];
+    OpenCVModel m_;
     int given_;
     String model_;
-    double sMax_;               //!< square of the radius where the radial part stops growing
-    bool radialOnly_, tilted_;
-    Matx33d tilt_, untilt_;
 };
 
 Matx33d tiltMatrix(double tauX, double tauY)
@@ -89,105 +84,87 @@ double monotoneRange(const double* k)
 }
 
 OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, const String& model)
-    : fx_(K(0, 0)), fy_(K(1, 1)), cx_(K(0, 2)), cy_(K(1, 2)), given_((int)distCoeffs.size()), model_(model)
+    : given_((int)distCoeffs.size()), model_(model)
 {
     if (K(0, 1) != 0)
         CV_Error_(Error::StsBadArg, ("cameraMatrix(0, 1) is %g; this lens model has no skew", K(0, 1)));
-    std::fill(k_, k_ + COUNT, 0.);
-    std::copy(distCoeffs.begin(), distCoeffs.end(), k_);
-    sMax_ = monotoneRange(k_);
-    tilted_ = k_[TAUX] != 0 || k_[TAUY] != 0;
-    radialOnly_ = k_[P1] == 0 && k_[P2] == 0 && k_[S1] == 0 && k_[S2] == 0 && k_[S3] == 0 && k_[S4] == 0;
-    tilt_ = tiltMatrix(k_[TAUX], k_[TAUY]);
-    untilt_ = tilt_.inv();
-}
-
-void OpenCVLens::distort(double x, double y, double& xd, double& yd, Matx22d& J) const
-{
-    const double* k = k_;
-    const double s = x*x + y*y;
-    const double N = 1 + s*(k[K1] + s*(k[K2] + s*k[K3])), D = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
-    const double dN = k[K1] + s*(2*k[K2] + s*3*k[K3]), dD = k[K4] + s*(2*k[K5] + s*3*k[K6]);
-    const double F = N*D, F2 = 2*(dN - F*dD)*D;     // F2 = 2 dF/ds
-    const double prismX = k[S1] + 2*k[S2]*s, prismY = k[S3] + 2*k[S4]*s;
-    xd = x*F + 2*k[P1]*x*y + k[P2]*(s + 2*x*x) + s*(k[S1] + s*k[S2]);
-    yd = y*F + k[P1]*(s + 2*y*y) + 2*k[P2]*x*y + s*(k[S3] + s*k[S4]);
-    J(0, 0) = F + F2*x*x + 2*k[P1]*y + 6*k[P2]*x + 2*x*prismX;
-    J(0, 1) = F2*x*y + 2*k[P1]*x + 2*k[P2]*y + 2*y*prismX;
-    J(1, 0) = F2*x*y + 2*k[P1]*x + 2*k[P2]*y + 2*x*prismY;
-    J(1, 1) = F + F2*y*y + 6*k[P1]*y + 2*k[P2]*x + 2*y*prismY;
+    m_.fx = K(0, 0); m_.fy = K(1, 1); m_.cx = K(0, 2); m_.cy = K(1, 2);
+    double* k = m_.k;
+    std::fill(k, k + DIST_COEFFS, 0.);
+    std::copy(distCoeffs.begin(), distCoeffs.end(), k);
+    m_.sMax = monotoneRange(k);
+    m_.rational = k[K4] != 0 || k[K5] != 0 || k[K6] != 0;
+    m_.tilted = k[TAUX] != 0 || k[TAUY] != 0;
+    m_.radialOnly = k[P1] == 0 && k[P2] == 0 && k[S1] == 0 && k[S2] == 0 && k[S3] == 0 && k[S4] == 0;
+    const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]), untilt = tilt.inv();
+    std::copy(tilt.val, tilt.val + 9, m_.tilt);
+    std::copy(untilt.val, untilt.val + 9, m_.untilt);
+    // N/D as a power series
+    const double a1 = k[K1] - k[K4], a2 = k[K2] - k[K5] - k[K4]*a1, a3 = k[K3] - k[K6] - k[K5]*a1 - k[K4]*a2;
+    const double series[] = { a1, a2, a3, -k[K6]*a1 - k[K5]*a2 - k[K4]*a3 };
+    invertSeries(series, m_.inverse);
 }
 
 double OpenCVLens::radial(double r, double& slope) const
 {
-    const double* k = k_;
-    const double s = r*r, D = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
-    const double F = (1 + s*(k[K1] + s*(k[K2] + s*k[K3])))*D;
-    slope = F + 2*s*D*(k[K1] + s*(2*k[K2] + s*3*k[K3]) - F*(k[K4] + s*(2*k[K5] + s*3*k[K6])));
+    double F, inverseD, F2;
+    radialFactor(m_, r*r, F, inverseD, F2);
+    slope = F + r*r*F2;
     return r*F;
 }
 
-void OpenCVLens::project(int n, const double* X, const double* Y, const double* Z,
+void OpenCVLens::project(int n, const double* x, const double* y, const double* z,
                          double* u, double* v, uchar* status) const
 {
+    if (kernels().projectOpenCV(m_, n, x, y, z, u, v))
+        return;
     for (int i = 0; i < n; ++i)
-    {
-        const double x = X[i]/Z[i], y = Y[i]/Z[i];
-        double xd, yd;
-        Matx22d J;
-        distort(x, y, xd, yd, J);
-        double w = 1;
-        if (tilted_)
-        {
-            const Vec3d t = tilt_*Vec3d(xd, yd, 1);
-            w = t[2];
-            xd = t[0]/w; yd = t[1]/w;
-        }
-        u[i] = fx_*xd + cx_;
-        v[i] = fy_*yd + cy_;
-        if (status[i] == REFRACT_OK && !(Z[i] > 0))
-            status[i] = REFRACT_BEHIND_CAMERA;
-        if (status[i] == REFRACT_OK && !(inside(x*x + y*y, J) && w > 0))
-            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
-    }
+        if (status[i] == REFRACT_OK && std::isnan(u[i]))
+            status[i] = projectOne(x[i], y[i], z[i], u[i], v[i]);
+}
+
+uchar OpenCVLens::projectOne(double X, double Y, double Z, double& u, double& v) const
+{
+    const double x = X/Z, y = Y/Z;
+    Distorted<double> d = distort(m_, x, y);
+    const bool isInside = inside(x, y, d);
+    const double w = m_.tilted ? homography(m_.tilt, d.x, d.y) : 1;
+    u = m_.fx*d.x + m_.cx;
+    v = m_.fy*d.y + m_.cy;
+    return !(Z > 0) ? REFRACT_BEHIND_CAMERA : isInside && w > 0 ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
 
 /* The radial part alone has exactly one solution, by a safeguarded one-dimensional Newton; from there Newton in the
 plane takes in what is not radial, with steps cut so that it stays inside the domain. */
 uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 {
-    const double target = std::sqrt(xd*xd + yd*yd);
-    double r = invertMonotone([this](double radius, double& slope) { return radial(radius, slope); }, target, std::sqrt(sMax_));
+    const double target = std::sqrt(xd*xd + yd*yd), rMax = std::sqrt(m_.sMax);
+    double r = invertMonotone([this](double radius, double& slope) { return radial(radius, slope); }, target, rMax);
     if (!std::isfinite(r))
     {
-        if (radialOnly_)
+        if (m_.radialOnly)
             return REFRACT_OUTSIDE_LENS_MODEL;
-        r = std::isfinite(sMax_) ? 0.999*std::sqrt(sMax_) : target;
+        r = std::isfinite(rMax) ? 0.999*rMax : target;
     }
     const double scale = target > 0 ? r/target : 1;
     x = xd*scale; y = yd*scale;
-    if (radialOnly_)
+    if (m_.radialOnly)
         return REFRACT_OK;
 
-    double fx, fy, best = DBL_MAX;
-    Matx22d J;
+    double best = DBL_MAX;
     const double floor = 4*DBL_EPSILON*(1 + target);
     for (int i = 0; i < 50; ++i)
     {
-        distort(x, y, fx, fy, J);
-        const double ex = fx - xd, ey = fy - yd, error = std::abs(ex) + std::abs(ey);
+        const Distorted<double> d = distort(m_, x, y);
+        const double ex = d.x - xd, ey = d.y - yd, error = std::abs(ex) + std::abs(ey);
         if (error <= floor || (error >= best && error <= 1e3*floor))     // rounding has taken over
-            return inside(x*x + y*y, J) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
+            return inside(x, y, d) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
         best = std::min(best, error);
-        const double det = J(0, 0)*J(1, 1) - J(0, 1)*J(1, 0);
-        double stepX = -(J(1, 1)*ex - J(0, 1)*ey)/det, stepY = -(J(0, 0)*ey - J(1, 0)*ex)/det;
-        for (int cut = 0; cut < 60; ++cut, stepX *= 0.5, stepY *= 0.5)
+        const double determinant = d.determinant();
+        double stepX = -(d.yy*ex - d.xy*ey)/determinant, stepY = -(d.xx*ey - d.yx*ex)/determinant;
+        for (int cut = 0; cut < 60 && !inside(x + stepX, y + stepY, distort(m_, x + stepX, y + stepY)); ++cut)
         {
-            double a, b;
-            const double xn = x + stepX, yn = y + stepY;
-            distort(xn, yn, a, b, J);
-            if (inside(xn*xn + yn*yn, J))
-                break;
+            stepX *= 0.5; stepY *= 0.5;
         }
         x += stepX; y += stepY;
     }
@@ -197,26 +174,23 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 void OpenCVLens::unproject(int n, const double* u, const double* v,
                            double* x, double* y, double* z, uchar* status) const
 {
+    if (kernels().unprojectOpenCV(m_, n, u, v, x, y, z))
+        return;
     for (int i = 0; i < n; ++i)
-    {
-        if (status[i] != REFRACT_OK)
-            continue;
-        double xd = (u[i] - cx_)/fx_, yd = (v[i] - cy_)/fy_;
-        if (tilted_)
-        {
-            const Vec3d t = untilt_*Vec3d(xd, yd, 1);
-            if (!(t[2] > 0))
-            {
-                status[i] = REFRACT_OUTSIDE_LENS_MODEL;
-                continue;
-            }
-            xd = t[0]/t[2]; yd = t[1]/t[2];
-        }
-        status[i] = undistort(xd, yd, x[i], y[i]);
-        z[i] = 1/std::sqrt(1 + x[i]*x[i] + y[i]*y[i]);
-        x[i] *= z[i];
-        y[i] *= z[i];
-    }
+        if (status[i] == REFRACT_OK && std::isnan(x[i]))
+            status[i] = unprojectOne(u[i], v[i], x[i], y[i], z[i]);
+}
+
+uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
+{
+    double xd = (u - m_.cx)/m_.fx, yd = (v - m_.cy)/m_.fy;
+    if (m_.tilted && !(homography(m_.untilt, xd, yd) > 0))
+        return REFRACT_OUTSIDE_LENS_MODEL;
+    const uchar status = undistort(xd, yd, x, y);
+    z = 1/std::sqrt(1 + x*x + y*y);
+    x *= z;
+    y *= z;
+    return status;
 }
 
 uchar OpenCVLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirection, double* dParameters) const
@@ -227,18 +201,20 @@ uchar OpenCVLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirecti
         return status;
 
     const double x = d[0]/d[2], y = d[1]/d[2], s = x*x + y*y;
-    double xd, yd;
-    Matx22d J, T = Matx22d::eye();      // T: the sensor's tilt
-    distort(x, y, xd, yd, J);
+    const Distorted<double> distorted = distort(m_, x, y);
+    const double xd = distorted.x, yd = distorted.y;
+    const Matx22d J(distorted.xx, distorted.xy, distorted.yx, distorted.yy);
+    const Matx33d tilt(m_.tilt);
+    Matx22d T = Matx22d::eye();      // the sensor's tilt
     Vec3d t(xd, yd, 1);
-    if (tilted_)
+    if (m_.tilted)
     {
-        t = tilt_*t;
+        t = tilt*t;
         for (int r = 0; r < 2; ++r)
             for (int c = 0; c < 2; ++c)
-                T(r, c) = (tilt_(r, c) - t[r]/t[2]*tilt_(2, c))/t[2];
+                T(r, c) = (tilt(r, c) - t[r]/t[2]*tilt(2, c))/t[2];
     }
-    const double f[2] = { fx_, fy_ };
+    const double f[2] = { m_.fx, m_.fy };
     const Matx22d TJ = T*J;
     for (int r = 0; r < 2; ++r)
     {
@@ -249,7 +225,7 @@ uchar OpenCVLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirecti
     if (!dParameters)
         return status;
 
-    const double* k = k_;
+    const double* k = m_.k;
     const double D = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
     const double F = (1 + s*(k[K1] + s*(k[K2] + s*k[K3])))*D, s2 = s*s, s3 = s2*s;
     const double dDistorted[2][TAUX] = {
@@ -278,8 +254,8 @@ uchar OpenCVLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirecti
 
 std::vector<double> OpenCVLens::parameters() const
 {
-    std::vector<double> p = { fx_, fy_, cx_, cy_ };
-    p.insert(p.end(), k_, k_ + given_);
+    std::vector<double> p = { m_.fx, m_.fy, m_.cx, m_.cy };
+    p.insert(p.end(), m_.k, m_.k + given_);
     return p;
 }
 

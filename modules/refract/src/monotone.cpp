@@ -28,4 +28,13 @@ double firstPositiveRoot(std::vector<double> c)
     return first;
 }
 
+void invertSeries(const double* a, double* b)
+{
+    const double a2 = a[0]*a[0];
+    b[0] = -a[0];
+    b[1] = 3*a2 - a[1];
+    b[2] = -12*a2*a[0] + 8*a[0]*a[1] - a[2];
+    b[3] = 55*a2*a2 - 55*a2*a[1] + 5*a[1]*a[1] + 10*a[0]*a[2] - a[3];
+}
+
 }} // namespace

@@ -14,6 +14,10 @@ namespace cv { namespace refract {
 //! Smallest positive real root of sum_k coefficients[k] s^k, infinity if there is none. coefficients[0] > 0.
 double firstPositiveRoot(std::vector<double> coefficients);
 
+/** Reversal of a series: y = x (1 + a[0] x^2 + a[1] x^4 + ...) -> x = y (1 + b[0] y^2 + b[1] y^4 + ...), four terms.
+Where a search for x begins that does not go far. */
+void invertSeries(const double* a, double* b);
+
 /** Solves f(x) = target for 0 <= x < upper, where f increases from f(0) = 0; upper may be infinite.
 @param f callable: f(x, derivative&) -> value
 @return x, or NaN if target lies beyond f(upper) */

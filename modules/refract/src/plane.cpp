@@ -26,18 +26,19 @@ void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* plan
                const double* dx, const double* dy, const double* dz,
                double* x, double* y, double* z, double* mu, uchar* status)
 {
+    if (kernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
+        return;
     const Vec3d& normal = layers.normal();
     const double axis = abc.dot(normal);
     for (int i = 0; i < n; ++i)
     {
-        const double along = abc[0]*dx[i] + abc[1]*dy[i] + abc[2]*dz[i], ahead = planeD[i] - tau[i]*axis;
-        mu[i] = along/ahead;
-        const double shift = mu[i]*tau[i];
-        x[i] = dx[i] + shift*normal[0];
-        y[i] = dy[i] + shift*normal[1];
-        z[i] = dz[i] + shift*normal[2];
-        if (status[i] != REFRACT_OK)
+        if (status[i] != REFRACT_OK || !std::isnan(x[i]))
             continue;
+        const Vec3d d(dx[i], dy[i], dz[i]);
+        const double along = abc.dot(d), ahead = planeD[i] - tau[i]*axis;
+        mu[i] = along/ahead;
+        const Vec3d X = d + mu[i]*tau[i]*normal;
+        x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
         if (std::isnan(planeD[i]))
             status[i] = REFRACT_NOT_FINITE;
         else if (along == 0)

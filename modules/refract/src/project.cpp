@@ -4,22 +4,12 @@
 
 #include "arrays.hpp"
 #include "camera.hpp"
+#include "kernels.hpp"
 #include "rotation.hpp"
 
 /* Object points -> pixels, and pixels -> rays: the two arrows of Camera over arrays. */
 
 namespace cv { namespace refract {
-
-static void transform(const Matx33d& R, const Vec3d& t, int n, double* x, double* y, double* z)
-{
-    for (int i = 0; i < n; ++i)
-    {
-        const double a = x[i], b = y[i], c = z[i];
-        x[i] = R(0, 0)*a + R(0, 1)*b + R(0, 2)*c + t[0];
-        y[i] = R(1, 0)*a + R(1, 1)*b + R(1, 2)*c + t[1];
-        z[i] = R(2, 0)*a + R(2, 1)*b + R(2, 2)*c + t[2];
-    }
-}
 
 void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
                              const Ptr<RefractiveCamera>& camera, OutputArray imagePoints, OutputArray status)
@@ -37,7 +27,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
         uchar st[BLOCK];
         in.load(begin, n, x, y, z, st);
-        transform(R, t, n, x, y, z);
+        kernels().transform(R.val, t.val, n, x, y, z);
         cam.project(n, x, y, z, NULL, u, v, st);
         out.store(begin, n, u, v, NULL, st);
         outStatus.store(begin, n, st);

@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "camera.hpp"
+#include "kernels.hpp"
 #include "plane.hpp"
 
 /* Raw pixels -> pixels of the pinhole camera without window (refractiveUndistortPoints), and back for whole images
@@ -16,15 +17,11 @@ static void pinhole(const Matx33d& R, const Matx33d& P, int n, const double* x, 
                     double* u, double* v, uchar* status)
 {
     const Matx33d M = P*R;
-    const Vec3d axis(R(2, 0), R(2, 1), R(2, 2));
+    if (kernels().pinhole(M.val, R.val + 6, n, x, y, z, u, v))
+        return;
     for (int i = 0; i < n; ++i)
-    {
-        const Vec3d X(x[i], y[i], z[i]), p = M*X;
-        u[i] = p[0]/p[2];
-        v[i] = p[1]/p[2];
-        if (status[i] == REFRACT_OK && !(axis.dot(X) > 0))
+        if (status[i] == REFRACT_OK && std::isnan(u[i]) && !(R.row(2).t().dot(Vec3d(x[i], y[i], z[i])) > 0))
             status[i] = REFRACT_BEHIND_CAMERA;
-    }
 }
 
 void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,

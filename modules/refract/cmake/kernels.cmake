@@ -1,0 +1,24 @@
+# How the kernels are compiled (src/kernels.hpp), for every build that compiles the module's sources.
+#
+# Each level gets the instructions that its name says; a compiler that does not know the flags compiles an empty level.
+# Products and sums may be contracted into one rounding: the formulas do not rely on the rounding of a product.
+include(CheckCXXCompilerFlag)
+function(refract_kernel_options source_dir)
+  if(MSVC)
+    return()
+  endif()
+  set(common -O3 -ffp-contract=fast)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+    check_cxx_compiler_flag("-mavx2 -mfma" REFRACT_HAS_AVX2)
+    check_cxx_compiler_flag("-mavx512f -mavx512cd -mavx512vl -mavx512bw -mavx512dq" REFRACT_HAS_AVX512)
+    if(REFRACT_HAS_AVX2)
+      set(avx2 -mavx2 -mfma)
+    endif()
+    if(REFRACT_HAS_AVX512)
+      set(avx512 -mavx512f -mavx512cd -mavx512vl -mavx512bw -mavx512dq -mfma -mprefer-vector-width=512)
+    endif()
+  endif()
+  foreach(level baseline avx2 avx512)
+    set_source_files_properties(${source_dir}/kernels_${level}.cpp PROPERTIES COMPILE_OPTIONS "${common};${${level}}")
+  endforeach()
+endfunction()

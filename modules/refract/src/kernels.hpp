@@ -1,0 +1,106 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_KERNELS_HPP
+#define OPENCV_REFRACT_KERNELS_HPP
+
+/* The inner loops, over blocks of structure-of-arrays: written once (kernels_*.hpp), compiled for every instruction set
+(kernels_baseline.cpp, kernels_avx2.cpp, kernels_avx512.cpp), chosen at run time (kernels.cpp).
+
+A kernel computes what is regular. It returns true if all lanes have an answer; a lane that has none, or none yet, is NaN
+in the kernel's first output, and the caller, who has all the time in the world, finds out why. NaN lanes pass through.
+
+No OpenCV in here: an inline function of another header, compiled for AVX-512 and kept by the linker, would run on
+machines that do not have it. */
+
+namespace cv { namespace refract {
+
+//! Gap and layers of one index, and whether the scene is of this index too.
+struct Medium
+{
+    double height;      //!< of gap and layers together
+    double scene;       //!< 1 if the scene's medium, else 0
+    double index2;      //!< index^2
+    double slope;       //!< rarest index / index: tan(theta) by the tangent in the rarest medium, at 0
+    double limit;       //!< tan(theta) at grazing in the rarest medium
+};
+
+//! Parallel layers as the kernels see them.
+struct Stack
+{
+    double normal[3];
+    bool refracts;              //!< false: no window, nothing below counts
+    double total;               //!< sum of the heights
+    double inner, outer;        //!< index of the camera's and the scene's medium
+    double rarest;              //!< the smallest index
+    const Medium* media;        //!< the rarest first
+    int count;
+};
+
+//! Positions in OpenCV's order of coefficients.
+enum { K1, K2, P1, P2, K3, K4, K5, K6, S1, S2, S3, S4, TAUX, TAUY, DIST_COEFFS };
+
+//! OpenCV's lens model as the kernels see it.
+struct OpenCVModel
+{
+    double fx, fy, cx, cy;
+    double k[DIST_COEFFS];
+    double sMax;                //!< square of the radius where the radial part stops growing
+    bool rational, radialOnly, tilted;
+    double tilt[9], untilt[9];
+    double inverse[4];          //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
+};
+
+//! cv::fisheye's model.
+struct FisheyeModel
+{
+    double fx, fy, cx, cy, alpha;
+    double k[4];
+    double thetaMax;
+    double inverse[4];          //!< of theta in theta_d, as above
+};
+
+struct Kernels
+{
+    const char* instructions;
+
+    //! n interleaved points of 2 (z null) or 3 coordinates -> arrays; true if all are finite.
+    bool (*load)(const void* points, bool isFloat, int n, double* x, double* y, double* z);
+    void (*store)(void* points, bool isFloat, int n, const double* x, const double* y, const double* z);
+
+    //! In place: X -> R X + t, R row-major.
+    void (*transform)(const double* R, const double* t, int n, double* x, double* y, double* z);
+    //! X -> (x, y) = H X, dehomogenised; no answer unless axis.X > 0.
+    bool (*pinhole)(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
+                    double* u, double* v);
+    //! See meetPlane; plane (a, b, c) and d of each lane.
+    bool (*meetPlane)(const Stack& stack, const double* abc, const double* planeD, int n, const double* tau,
+                      const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu);
+
+    // See Layers and Lens.
+    bool (*traceOut)(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,
+                     double* tau, double* dx, double* dy, double* dz);
+    bool (*solveIn)(const Stack& stack, int n, const double* x, const double* y, const double* z, const double* w,
+                    double* dx, double* dy, double* dz);
+    bool (*projectOpenCV)(const OpenCVModel& lens, int n, const double* x, const double* y, const double* z,
+                          double* u, double* v);
+    bool (*unprojectOpenCV)(const OpenCVModel& lens, int n, const double* u, const double* v,
+                            double* x, double* y, double* z);
+    bool (*projectFisheye)(const FisheyeModel& lens, int n, const double* x, const double* y, const double* z,
+                           double* u, double* v);
+    bool (*unprojectFisheye)(const FisheyeModel& lens, int n, const double* u, const double* v,
+                             double* x, double* y, double* z);
+};
+
+//! The fastest that this machine runs (OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 in the environment leaves levels out).
+const Kernels& kernels();
+
+// One for each level; null where the compiler was not told to compile for it.
+const Kernels* kernelsBaseline();
+const Kernels* kernelsAvx2();
+const Kernels* kernelsAvx512();
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_KERNELS_HPP

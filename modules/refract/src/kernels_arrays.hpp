@@ -1,0 +1,105 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_KERNELS_ARRAYS_HPP
+#define OPENCV_REFRACT_KERNELS_ARRAYS_HPP
+
+#include "kernels.hpp"
+#include "lanes.hpp"
+
+/* Interleaved points <-> arrays, and the linear maps between frames. */
+
+namespace cv { namespace refract { namespace {
+
+template<typename T>
+inline void deinterleave(const T* p, int n, double* x, double* y, double* z)
+{
+    if (z)
+        for (int i = 0; i < n; ++i)
+        {
+            x[i] = p[3*i];
+            y[i] = p[3*i + 1];
+            z[i] = p[3*i + 2];
+        }
+    else
+        for (int i = 0; i < n; ++i)
+        {
+            x[i] = p[2*i];
+            y[i] = p[2*i + 1];
+        }
+}
+
+bool loadPoints(const void* points, bool isFloat, int n, double* x, double* y, double* z)
+{
+    if (isFloat)
+        deinterleave((const float*)points, n, x, y, z);
+    else
+        deinterleave((const double*)points, n, x, y, z);
+    Mask bad = all(0) != 0;
+    for (int i = 0; i < n; i += LANES)
+    {
+        Lanes sum = load(x, i, n) + load(y, i, n);
+        if (z)
+            sum += load(z, i, n);
+        bad |= sum - sum != 0;
+    }
+    return !any(bad);
+}
+
+template<typename T>
+inline void interleave(T* p, int n, const double* x, const double* y, const double* z)
+{
+    if (z)
+        for (int i = 0; i < n; ++i)
+        {
+            p[3*i] = (T)x[i];
+            p[3*i + 1] = (T)y[i];
+            p[3*i + 2] = (T)z[i];
+        }
+    else
+        for (int i = 0; i < n; ++i)
+        {
+            p[2*i] = (T)x[i];
+            p[2*i + 1] = (T)y[i];
+        }
+}
+
+void storePoints(void* points, bool isFloat, int n, const double* x, const double* y, const double* z)
+{
+    if (isFloat)
+        interleave((float*)points, n, x, y, z);
+    else
+        interleave((double*)points, n, x, y, z);
+}
+
+void transform(const double* R, const double* t, int n, double* x, double* y, double* z)
+{
+    for (int i = 0; i < n; i += LANES)
+    {
+        const Lanes a = load(x, i, n), b = load(y, i, n), c = load(z, i, n);
+        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, i, n);
+        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, i, n);
+        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, i, n);
+    }
+}
+
+bool pinhole(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
+             double* u, double* v)
+{
+    Mask bad = all(0) != 0;
+    for (int i = 0; i < n; i += LANES)
+    {
+        const Lanes a = load(x, i, n), b = load(y, i, n), c = load(z, i, n);
+        const Lanes inverse = 1/(H[6]*a + H[7]*b + H[8]*c);
+        const Mask good = axis[0]*a + axis[1]*b + axis[2]*c > 0;
+        bad |= ~good;
+        store(select(good, (H[0]*a + H[1]*b + H[2]*c)*inverse, noAnswer()), u, i, n);
+        store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, i, n);
+    }
+    return !any(bad);
+}
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_KERNELS_ARRAYS_HPP

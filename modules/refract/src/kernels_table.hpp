@@ -1,0 +1,30 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_KERNELS_TABLE_HPP
+#define OPENCV_REFRACT_KERNELS_TABLE_HPP
+
+#include "kernels_arrays.hpp"
+#include "kernels_layers.hpp"
+#include "kernels_opencv.hpp"
+#include "kernels_fisheye.hpp"
+
+namespace cv { namespace refract { namespace {
+
+//! All kernels as compiled here. A constant: looking at it takes no instruction that a machine may not have.
+const Kernels table = {
+#if defined(__GNUC__) && defined(__AVX512DQ__)
+    "AVX-512",
+#elif defined(__GNUC__) && defined(__AVX2__)
+    "AVX2",
+#else
+    "baseline",
+#endif
+    loadPoints, storePoints, transform, pinhole, meetPlane, traceOut, solveIn,
+    projectOpenCV, unprojectOpenCV, projectFisheye, unprojectFisheye
+};
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_KERNELS_TABLE_HPP
