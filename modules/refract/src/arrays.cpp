@@ -105,25 +105,37 @@ void StatusWriter::store(int begin, int n, const uchar* status)
         std::copy(status, status + n, status_.ptr<uchar>() + begin);
 }
 
-//! A small numeric argument as doubles, row by row.
-static Mat doubles(InputArray a, const char* name)
+static void checkFloat(const Mat& m, const char* name)
 {
-    const Mat m = a.getMat();
     if (m.depth() != CV_32F && m.depth() != CV_64F && !m.empty())
         CV_Error_(Error::StsUnsupportedFormat, ("%s is %s; it must be float32 or float64", name, describe(m).c_str()));
-    Mat values;
-    m.convertTo(values, CV_64F);
-    return values;
 }
 
-//! The same; must be finite.
-static Mat smallMatrix(InputArray a, const char* name)
+//! Number i of an array of at most two dimensions, channels counted, row by row.
+static double numberAt(const Mat& m, int i)
 {
-    const Mat values = doubles(a, name);
-    for (size_t i = 0; i < values.total()*values.channels(); ++i)
-        if (!std::isfinite(values.ptr<double>()[i]))
-            CV_Error_(Error::StsBadArg, ("%s[%d] is %g; it must be finite", name, (int)i, values.ptr<double>()[i]));
-    return values;
+    const int columns = m.cols*m.channels();
+    return m.depth() == CV_32F ? m.ptr<float>(i/columns)[i % columns] : m.ptr<double>(i/columns)[i % columns];
+}
+
+/* The numbers of a small argument, which must be finite, into an array of `capacity`; nothing is allocated. Returns how
+many there are, 0 for an empty argument. */
+static int readSmall(InputArray a, int capacity, double* numbers, const char* name)
+{
+    const Mat m = a.getMat();
+    checkFloat(m, name);
+    if (m.dims > 2)
+        CV_Error_(Error::StsBadSize, ("%s is %s; it must have one or two dimensions", name, describe(m).c_str()));
+    const int count = (int)m.total()*m.channels();
+    for (int i = 0; i < count; ++i)
+    {
+        const double number = numberAt(m, i);
+        if (!std::isfinite(number))
+            CV_Error_(Error::StsBadArg, ("%s[%d] is %g; it must be finite", name, i, number));
+        if (i < capacity)
+            numbers[i] = number;
+    }
+    return count;
 }
 
 static void wrongShape(InputArray a, const char* name, const char* wanted)
@@ -132,12 +144,18 @@ static void wrongShape(InputArray a, const char* name, const char* wanted)
                                   a.empty() ? "empty" : describe(a.getMat()).c_str(), wanted));
 }
 
+//! True for rows x columns in one channel.
+static bool hasShape(InputArray a, int rows, int columns)
+{
+    return a.dims() == 2 && a.rows() == rows && a.cols() == columns && a.channels() == 1;
+}
+
 Matx33d readCameraMatrix(InputArray a, const char* name)
 {
-    const Mat m = smallMatrix(a, name);
-    if (m.dims != 2 || m.rows != 3 || m.cols != 3 || m.channels() != 1)
+    Matx33d K;
+    readSmall(a, 9, K.val, name);
+    if (!hasShape(a, 3, 3))
         wrongShape(a, name, "3x3");
-    const Matx33d K(m.ptr<double>());
     if (!(K(0, 0) > 0) || !(K(1, 1) > 0))
         CV_Error_(Error::StsBadArg, ("%s has focal lengths (%g, %g); they must be positive", name, K(0, 0), K(1, 1)));
     if (K(1, 0) != 0 || K(2, 0) != 0 || K(2, 1) != 0 || K(2, 2) != 1)
@@ -147,27 +165,43 @@ Matx33d readCameraMatrix(InputArray a, const char* name)
 
 std::vector<double> readNumbers(InputArray a, const char* name)
 {
-    if (a.empty())
-        return std::vector<double>();
-    const Mat m = smallMatrix(a, name);
-    return std::vector<double>(m.ptr<double>(), m.ptr<double>() + m.total()*m.channels());
+    std::vector<double> numbers(a.empty() ? 0 : a.total()*a.channels());
+    readSmall(a, (int)numbers.size(), numbers.data(), name);
+    return numbers;
 }
 
-std::vector<double> readDepths(InputArray a, int size, const char* name)
+DepthReader::DepthReader(InputArray depth, const char* name) : size_(1), one_(std::numeric_limits<double>::infinity())
 {
-    if (a.empty())
-        return std::vector<double>(1, std::numeric_limits<double>::infinity());
-    const Mat m = doubles(a, name);
-    int n = (int)(m.total()*m.channels());
-    const double* p = m.ptr<double>();
+    if (depth.empty())
+        return;
+    depths_ = depth.getMat();
+    checkFloat(depths_, name);
+    if (!depths_.isContinuous())
+        depths_ = depths_.clone();
+    size_ = (int)depths_.total()*depths_.channels();
     // One number comes from Python as cv::Scalar, (d, 0, 0, 0): 0 is no depth, and (d, 0, 0, 0) no plane one can see.
-    if (n == 4 && p[1] == 0 && p[2] == 0 && p[3] == 0)
-        n = 1;
-    if (size >= 0 && n != 1 && n != size)
-        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d values; it must have 1 or one per point (%d)", name, n, size));
-    if (n == 1 && !(p[0] > 0))
-        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, p[0]));
-    return std::vector<double>(p, p + n);
+    if (size_ == 4 && at(1) == 0 && at(2) == 0 && at(3) == 0)
+        size_ = 1;
+    one_ = at(0);
+    if (size_ == 1 && !(one_ > 0))
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, one_));
+}
+
+double DepthReader::at(int i) const
+{
+    if (depths_.empty())
+        return one_;
+    return depths_.depth() == CV_32F ? depths_.ptr<float>()[i] : depths_.ptr<double>()[i];
+}
+
+void DepthReader::load(int begin, int n, double* depth) const
+{
+    if (size_ == 1)
+        std::fill(depth, depth + n, one_);
+    else if (depths_.depth() == CV_32F)
+        std::copy(depths_.ptr<float>() + begin, depths_.ptr<float>() + begin + n, depth);
+    else
+        std::copy(depths_.ptr<double>() + begin, depths_.ptr<double>() + begin + n, depth);
 }
 
 std::vector<double> readDistCoeffs(InputArray a, const char* name)
@@ -179,45 +213,51 @@ std::vector<double> readDistCoeffs(InputArray a, const char* name)
     return d;
 }
 
+//! The rotation next to a matrix that is one but for a few digits: Newton's iteration for the polar decomposition.
+static Matx33d nearestRotation(Matx33d R)
+{
+    for (int i = 0; i < 4; ++i)
+        R = 0.5*(R + R.inv().t());
+    return R;
+}
+
 Matx33d readRotation(InputArray a, const char* name)
 {
-    const std::vector<double> r = readNumbers(a, name);
-    if (r.empty())
+    double r[9];
+    const int count = readSmall(a, 9, r, name);
+    if (count == 0)
         return Matx33d::eye();
-    Matx33d R;
-    if (r.size() == 9)
-        R = Matx33d(r.data());
-    else if (r.size() == 3)
-        R = rotationMatrix(Vec3d(r.data()));
-    else
+    if (count == 3)
+        return rotationMatrix(Vec3d(r));
+    if (count != 9)
         wrongShape(a, name, "3x3 or a rotation vector of 3");
+    const Matx33d R(r);
     if (cv::norm(R*R.t() - Matx33d::eye()) > 1e-3 || determinant(R) < 0)
         CV_Error_(Error::StsBadArg, ("%s is not a rotation: |R R^T - I| = %g", name,
                                      cv::norm(R*R.t() - Matx33d::eye())));
     // Printed matrices are rotations to a few digits only; inverses by the transpose need one to all digits.
-    const SVD svd(Mat(R), SVD::MODIFY_A);
-    return Matx33d(Mat(svd.u*svd.vt).ptr<double>());
+    return nearestRotation(R);
 }
 
 Vec3d readVec3(InputArray a, const char* name)
 {
-    const std::vector<double> v = readNumbers(a, name);
-    if (v.size() != 3)
+    Vec3d v;
+    if (readSmall(a, 3, v.val, name) != 3)
         wrongShape(a, name, "a vector of 3");
-    return Vec3d(v.data());
+    return v;
 }
 
 Matx33d readProjection(InputArray a, const char* name)
 {
     if (a.empty())
         return Matx33d::eye();
-    const Mat m = smallMatrix(a, name);
-    if (m.dims != 2 || m.rows != 3 || (m.cols != 3 && m.cols != 4) || m.channels() != 1)
+    Matx34d P;
+    const int count = readSmall(a, 12, P.val, name);
+    if (hasShape(a, 3, 3))
+        return Matx33d(P.val);
+    if (count != 12 || !hasShape(a, 3, 4))
         wrongShape(a, name, "3x3 or 3x4");
-    Matx33d P;
-    for (int i = 0; i < 9; ++i)
-        P(i/3, i%3) = m.at<double>(i/3, i%3);
-    return P;
+    return P.get_minor<3, 3>(0, 0);
 }
 
 template<typename Float, typename Double>

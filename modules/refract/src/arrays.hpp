@@ -49,6 +49,21 @@ private:
     Mat status_;
 };
 
+//! z of the scene points: none = infinity, one for all, or many. One number must be positive; among many a bad one is
+//! that point's own problem.
+class DepthReader
+{
+public:
+    DepthReader(InputArray depth, const char* name);
+    int size() const { return size_; }
+    double at(int i) const;
+    void load(int begin, int n, double* depth) const;
+private:
+    Mat depths_;
+    int size_;
+    double one_;
+};
+
 //! How many points are worth another thread: some 50 us of the cheapest kernels.
 const int GRAIN = 8192;
 
@@ -75,9 +90,6 @@ Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3
 Vec3d readVec3(InputArray v, const char* name);
 Matx33d readProjection(InputArray p, const char* name);                 //!< 3x3 or 3x4; empty = identity
 std::vector<double> readNumbers(InputArray a, const char* name);        //!< any shape, one channel or a Vec; empty = none
-/** z of the scene: none = infinity, one, or `size` numbers (size < 0: any count). One number must be positive; among many a
-bad one is that point's own problem. */
-std::vector<double> readDepths(InputArray depth, int size, const char* name);
 //! A vector of points (N x 3 or N x 2 coordinates) as plain structures; NaN allowed.
 std::vector<Point2d> readPoints2(InputArray a, const char* name);
 std::vector<Point3d> readPoints3(InputArray a, const char* name);

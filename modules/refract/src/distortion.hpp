@@ -19,39 +19,68 @@ struct Distorted
     T determinant() const { return xx*yy - xy*yx; }
 };
 
-//! F = N/D of s = r^2, 1/D, and 2 dF/ds.
+//! What the radius alone determines: s = r^2, F = N/D, 1/D.
 template<typename T>
-inline void radialFactor(const OpenCVModel& m, T s, T& F, T& inverseD, T& F2)
+struct Radial
+{
+    Radial(const OpenCVModel& m, T s_) : s(s_)
+    {
+        const double* k = m.k;
+        F = 1 + s*(k[K1] + s*(k[K2] + s*k[K3]));
+        inverseD = 1 + T();
+        if (m.rational)
+        {
+            inverseD = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
+            F *= inverseD;
+        }
+    }
+    //! 2 dF/ds
+    T slope(const OpenCVModel& m) const
+    {
+        const double* k = m.k;
+        const T dN = 2*k[K1] + s*(4*k[K2] + s*(6*k[K3]));
+        return m.rational ? (dN - F*(2*k[K4] + s*(4*k[K5] + s*(6*k[K6]))))*inverseD : dN;
+    }
+    T s, F, inverseD;
+};
+
+/** The distorted point. As x F + 2 p1 x y + p2 (s + 2 x^2) = x G + p2 s and the same for y, with
+G = F + 2 p1 y + 2 p2 x, one factor serves both coordinates, and both diagonal elements of the Jacobian.
+@return G */
+template<typename T>
+inline T displace(const OpenCVModel& m, const Radial<T>& radial, T x, T y, T& xd, T& yd)
 {
     const double* k = m.k;
-    const T N = 1 + s*(k[K1] + s*(k[K2] + s*k[K3])), dN = k[K1] + s*(2*k[K2] + s*(3*k[K3]));
-    F = N;
-    inverseD = 1 + 0*s;
-    F2 = 2*dN;
-    if (m.rational)
+    const T s = radial.s, G = radial.F + (2*k[P1])*y + (2*k[P2])*x;
+    xd = x*G + k[P2]*s;
+    yd = y*G + k[P1]*s;
+    if (m.prism)
     {
-        inverseD = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
-        F = N*inverseD;
-        F2 = 2*(dN - F*(k[K4] + s*(2*k[K5] + s*(3*k[K6]))))*inverseD;
+        xd += s*(k[S1] + s*k[S2]);
+        yd += s*(k[S3] + s*k[S4]);
     }
+    return G;
 }
 
 template<typename T>
 inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
 {
     const double* k = m.k;
-    const T s = x*x + y*y;
-    T F, inverseD, F2;
-    radialFactor(m, s, F, inverseD, F2);
-    const T prismX = 2*(k[S1] + (2*k[S2])*s), prismY = 2*(k[S3] + (2*k[S4])*s);
-    const T cross = F2*x*y + (2*k[P1])*x + (2*k[P2])*y;
+    const Radial<T> radial(m, x*x + y*y);
+    const T F2 = radial.slope(m), ax = F2*x, ay = F2*y;
     Distorted<T> d;
-    d.x = x*F + (2*k[P1])*x*y + k[P2]*(s + 2*x*x) + s*(k[S1] + s*k[S2]);
-    d.y = y*F + k[P1]*(s + 2*y*y) + (2*k[P2])*x*y + s*(k[S3] + s*k[S4]);
-    d.xx = F + F2*x*x + (2*k[P1])*y + (6*k[P2])*x + x*prismX;
-    d.xy = cross + y*prismX;
-    d.yx = cross + x*prismY;
-    d.yy = F + F2*y*y + (6*k[P1])*y + (2*k[P2])*x + y*prismY;
+    const T G = displace(m, radial, x, y, d.x, d.y);
+    d.xx = G + x*(ax + 4*k[P2]);
+    d.yy = G + y*(ay + 4*k[P1]);
+    d.xy = d.yx = ax*y + (2*k[P1])*x + (2*k[P2])*y;
+    if (m.prism)
+    {
+        const T prismX = 2*k[S1] + (4*k[S2])*radial.s, prismY = 2*k[S3] + (4*k[S4])*radial.s;
+        d.xx += x*prismX;
+        d.xy += y*prismX;
+        d.yx += x*prismY;
+        d.yy += y*prismY;
+    }
     return d;
 }
 

@@ -19,11 +19,12 @@ namespace cv { namespace refract {
 //! Gap and layers of one index, and whether the scene is of this index too.
 struct Medium
 {
-    double height;      //!< of gap and layers together
-    double scene;       //!< 1 if the scene's medium, else 0
+    double height;      //!< of gap and layers together, as `scale` has it
+    bool isScene;       //!< the scene's medium: its height, which varies from point to point, comes on top
+    double scale;       //!< the rarest index, for the rarest medium 1: its height is taken as it is
     double index2;      //!< index^2
-    double slope;       //!< rarest index / index: tan(theta) by the tangent in the rarest medium, at 0
-    double limit;       //!< tan(theta) at grazing in the rarest medium
+    double slope;       //!< of tan(theta) by the tangent in the rarest medium at 0, over `scale`
+    double limit;       //!< tan(theta) at grazing in the rarest medium, over `scale`
 };
 
 //! Parallel layers as the kernels see them.
@@ -41,15 +42,18 @@ struct Stack
 //! Positions in OpenCV's order of coefficients.
 enum { K1, K2, P1, P2, K3, K4, K5, K6, S1, S2, S3, S4, TAUX, TAUY, DIST_COEFFS };
 
+//! Terms of the polynomial that guesses a lens's inverse radial function.
+enum { TERMS = 7 };
+
 //! OpenCV's lens model as the kernels see it.
 struct OpenCVModel
 {
     double fx, fy, cx, cy;
     double k[DIST_COEFFS];
     double sMax;                //!< square of the radius where the radial part stops growing
-    bool rational, radialOnly, tilted;
+    bool rational, prism, tilted;       //!< whether D, s1 ... s4, the tilt do anything
     double tilt[9], untilt[9];
-    double inverse[4];          //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
+    double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
 };
 
 //! cv::fisheye's model.
@@ -58,7 +62,7 @@ struct FisheyeModel
     double fx, fy, cx, cy, alpha;
     double k[4];
     double thetaMax;
-    double inverse[4];          //!< of theta in theta_d, as above
+    double inverse[TERMS];      //!< of theta in theta_d, as above
 };
 
 struct Kernels

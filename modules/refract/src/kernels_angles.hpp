@@ -13,16 +13,6 @@ namespace cv { namespace refract { namespace {
 
 const double PI = 3.14159265358979311600, PI_REST = 1.22464679914735317723e-16;    // together 106 bits
 
-//! c[0] + x (c[1] + x (...))
-template<int N>
-inline Lanes polynomial(const double (&c)[N], Lanes x)
-{
-    Lanes sum = all(c[N - 1]);
-    for (int k = N - 2; k >= 0; --k)
-        sum = sum*x + c[k];
-    return sum;
-}
-
 /** Angle of (x, y) to the x axis, y >= 0. The ratio of the two, turned by 45 degrees where that makes it smaller, is at
 most tan(22.5 degrees); there the Chebyshev fit of (atan(t)/t - 1)/t^2 with 11 terms in t^2 is good to 5e-18. */
 inline Lanes angleOf(Lanes x, Lanes y)

@@ -36,15 +36,15 @@ bool loadPoints(const void* points, bool isFloat, int n, double* x, double* y, d
         deinterleave((const float*)points, n, x, y, z);
     else
         deinterleave((const double*)points, n, x, y, z);
-    Mask bad = all(0) != 0;
+    Answers answers;
     for (int i = 0; i < n; i += LANES)
     {
         Lanes sum = load(x, i, n) + load(y, i, n);
         if (z)
             sum += load(z, i, n);
-        bad |= sum - sum != 0;
+        answers.where(sum - sum == 0, sum);
     }
-    return !any(bad);
+    return answers.complete();
 }
 
 template<typename T>
@@ -87,17 +87,16 @@ void transform(const double* R, const double* t, int n, double* x, double* y, do
 bool pinhole(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
              double* u, double* v)
 {
-    Mask bad = all(0) != 0;
+    Answers answers;
     for (int i = 0; i < n; i += LANES)
     {
         const Lanes a = load(x, i, n), b = load(y, i, n), c = load(z, i, n);
         const Lanes inverse = 1/(H[6]*a + H[7]*b + H[8]*c);
         const Mask good = axis[0]*a + axis[1]*b + axis[2]*c > 0;
-        bad |= ~good;
-        store(select(good, (H[0]*a + H[1]*b + H[2]*c)*inverse, noAnswer()), u, i, n);
+        store(answers.where(good, (H[0]*a + H[1]*b + H[2]*c)*inverse), u, i, n);
         store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, i, n);
     }
-    return !any(bad);
+    return answers.complete();
 }
 
 }}} // namespace

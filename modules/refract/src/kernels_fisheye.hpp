@@ -12,10 +12,11 @@
 
 namespace cv { namespace refract { namespace {
 
-bool projectFisheye(const FisheyeModel& m, int n, const double* px, const double* py, const double* pz,
+bool projectFisheye(const FisheyeModel& model, int n, const double* px, const double* py, const double* pz,
                     double* u, double* v)
 {
-    Mask bad = all(0) != 0;
+    const FisheyeModel m = model;
+    Answers answers;
     for (int i = 0; i < n; i += LANES)
     {
         const Lanes X = load(px, i, n), Y = load(py, i, n), r = sqrt(X*X + Y*Y), theta = angleOf(load(pz, i, n), r);
@@ -23,43 +24,66 @@ bool projectFisheye(const FisheyeModel& m, int n, const double* px, const double
         bendFactor(m, theta*theta, factor, slope);
         const Lanes scale = theta*factor/larger(r, all(1e-300)), x = X*scale, y = Y*scale;
         const Mask good = theta < m.thetaMax;
-        bad |= ~good;
-        store(select(good, m.fx*(x + m.alpha*y) + m.cx, noAnswer()), u, i, n);
+        store(answers.where(good, m.fx*(x + m.alpha*y) + m.cx), u, i, n);
         store(m.fy*y + m.cy, v, i, n);
     }
-    return !any(bad);
+    return answers.complete();
 }
 
-/* Newton from the inverse series; only a root in the middle of the domain is accepted here, as for OpenCV's model. */
-bool unprojectFisheye(const FisheyeModel& m, int n, const double* pu, const double* pv, double* px, double* py, double* pz)
+//! A search for the angle theta that is bent to |(xd, yd)|.
+struct AngleSearch
 {
-    const double ENOUGH = 1e-8, REGULAR = 1e-3;
+    Lanes xd, yd, target, theta, slope, move;
+};
+
+/* Newton from a polynomial's guess; only a root in the middle of the domain is accepted here, as for OpenCV's model. */
+bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const double* pv,
+                      double* px, double* py, double* pz)
+{
+    const FisheyeModel m = model;
+    const double ENOUGH = 1e-8, REGULAR = 1e-3, fx = 1/m.fx, fy = 1/m.fy;   // the error is the square of the last move
     const int STEPS = 8;
-    Mask bad = all(0) != 0;
-    for (int i = 0; i < n; i += LANES)
+    Answers answers;
+    AngleSearch search[GROUP];
+    for (int begin = 0; begin < n; begin += GROUP*LANES)
     {
-        const Lanes yd = (load(pv, i, n) - m.cy)/m.fy, xd = (load(pu, i, n) - m.cx)/m.fx - m.alpha*yd;
-        const Lanes target2 = xd*xd + yd*yd, target = sqrt(target2);
-        const double* b = m.inverse;
-        const Lanes series = 1 + target2*(b[0] + target2*(b[1] + target2*(b[2] + target2*b[3])));
-        Lanes theta = target*select((series > 0.5) & (series < 2), series, all(1)), move = all(1), slope = move;
-        for (int k = 0; k < STEPS && any(absolute(move) > ENOUGH); ++k)
+        const int size = groupSize(begin, n);
+        for (int g = 0; g < size; ++g)
         {
-            Lanes factor;
-            bendFactor(m, theta*theta, factor, slope);
-            move = (target - theta*factor)/slope;
-            theta += move;
+            AngleSearch& a = search[g];
+            a.yd = (load(pv, begin + g*LANES, n) - m.cy)*fy;
+            a.xd = (load(pu, begin + g*LANES, n) - m.cx)*fx - m.alpha*a.yd;
+            const Lanes target2 = a.xd*a.xd + a.yd*a.yd, series = 1 + target2*polynomial(m.inverse, target2);
+            a.target = sqrt(target2);
+            a.theta = a.target*select((series > 0.5) & (series < 2), series, all(1));
         }
-        const Mask good = (absolute(move) <= ENOUGH) & (theta >= 0) & (theta < m.thetaMax) & (slope > REGULAR);
-        bad |= ~good;
-        Lanes sine, cosine;
-        sineCosine(theta, sine, cosine);
-        const Lanes scale = select(target > 0, sine/larger(target, all(1e-300)), all(1));
-        store(select(good, xd*scale, noAnswer()), px, i, n);
-        store(yd*scale, py, i, n);
-        store(cosine, pz, i, n);
+        bool more = true;
+        for (int k = 0; k < STEPS && more; ++k)
+        {
+            more = false;
+            for (int g = 0; g < size; ++g)
+            {
+                AngleSearch& a = search[g];
+                Lanes factor;
+                bendFactor(m, a.theta*a.theta, factor, a.slope);
+                a.move = (a.target - a.theta*factor)*roughInverse(a.slope);
+                a.theta += a.move;
+                more = more || any(absolute(a.move) > ENOUGH);
+            }
+        }
+        for (int g = 0; g < size; ++g)
+        {
+            const AngleSearch& a = search[g];
+            const Mask good = (absolute(a.move) <= ENOUGH) & (a.theta >= 0) & (a.theta < m.thetaMax) & (a.slope > REGULAR);
+            Lanes sine, cosine;
+            sineCosine(a.theta, sine, cosine);
+            const Lanes scale = select(a.target > 0, sine/larger(a.target, all(1e-300)), all(1));
+            store(answers.where(good, a.xd*scale), px, begin + g*LANES, n);
+            store(a.yd*scale, py, begin + g*LANES, n);
+            store(cosine, pz, begin + g*LANES, n);
+        }
     }
-    return !any(bad);
+    return answers.complete();
 }
 
 }}} // namespace

@@ -10,9 +10,11 @@
 
 namespace cv { namespace refract { namespace {
 
-bool projectOpenCV(const OpenCVModel& m, int n, const double* px, const double* py, const double* pz, double* u, double* v)
+bool projectOpenCV(const OpenCVModel& model, int n, const double* px, const double* py, const double* pz,
+                   double* u, double* v)
 {
-    Mask bad = all(0) != 0;
+    const OpenCVModel m = model;    // a copy that no store can change stays in registers
+    Answers answers;
     for (int i = 0; i < n; i += LANES)
     {
         const Lanes z = load(pz, i, n), inverse = 1/z, x = load(px, i, n)*inverse, y = load(py, i, n)*inverse;
@@ -20,49 +22,112 @@ bool projectOpenCV(const OpenCVModel& m, int n, const double* px, const double* 
         Mask good = (z > 0) & (x*x + y*y < m.sMax) & (d.determinant() > 0);
         if (m.tilted)
             good &= homography(m.tilt, d.x, d.y) > 0;
-        bad |= ~good;
-        store(select(good, m.fx*d.x + m.cx, noAnswer()), u, i, n);
+        store(answers.where(good, m.fx*d.x + m.cx), u, i, n);
         store(m.fy*d.y + m.cy, v, i, n);
     }
-    return !any(bad);
+    return answers.complete();
 }
 
-/* Newton in the plane from the inverse radial series. Only a root in the middle of the domain is accepted here: at its
-edge, where the Jacobian is nearly singular, the safeguarded search of lens_opencv.cpp knows better. */
-bool unprojectOpenCV(const OpenCVModel& m, int n, const double* pu, const double* pv, double* px, double* py, double* pz)
+//! Where the search for the undistorted point begins: the radius by a polynomial, then what is not radial.
+inline void firstGuess(const OpenCVModel& m, Lanes xd, Lanes yd, Lanes& x, Lanes& y)
 {
-    const double ENOUGH = 1e-8, REGULAR = 1e-3;     // the error after a step is of the order of its square
-    const int STEPS = 8;
-    Mask bad = all(0) != 0;
-    for (int i = 0; i < n; i += LANES)
+    const Lanes sd = xd*xd + yd*yd, series = 1 + sd*polynomial(m.inverse, sd);
+    const Lanes scale = select((series > 0.5) & (series < 2), series, all(1));
+    x = xd*scale;
+    y = yd*scale;
+    const Radial<Lanes> radial(m, x*x + y*y);
+    Lanes a, b;
+    displace(m, radial, x, y, a, b);
+    x -= (a - x*radial.F)*scale;
+    y -= (b - y*radial.F)*scale;
+}
+
+//! A search for the undistorted point of (xd, yd).
+struct PlaneSearch
+{
+    Lanes xd, yd, x, y;
+    Lanes xx, xy, yx, yy, determinant;  //!< inverse of the Jacobian; the determinant of the Jacobian
+    Lanes move2;                        //!< square of the step that was taken with the fresh Jacobian
+    Mask inFront;                       //!< of the tilted sensor
+};
+
+//! Goes to where the distorted point would be right, were the map linear. Returns the square of the step.
+inline Lanes correct(PlaneSearch& p, Lanes xd, Lanes yd)
+{
+    const Lanes ex = p.xd - xd, ey = p.yd - yd, dx = p.xx*ex + p.xy*ey, dy = p.yx*ex + p.yy*ey;
+    p.x += dx;
+    p.y += dy;
+    return dx*dx + dy*dy;
+}
+
+inline void newtonStep(const OpenCVModel& m, PlaneSearch& p)
+{
+    const Distorted<Lanes> d = distort(m, p.x, p.y);
+    p.determinant = d.determinant();
+    const Lanes inverse = roughInverse(p.determinant);
+    p.xx = d.yy*inverse;
+    p.xy = -d.xy*inverse;
+    p.yx = -d.yx*inverse;
+    p.yy = d.xx*inverse;
+    p.move2 = correct(p, d.x, d.y);
+}
+
+/** A step with the Jacobian of the last Newton step. It leaves an error of the order of the product of both steps.
+@return square of that product */
+inline Lanes chordStep(const OpenCVModel& m, PlaneSearch& p)
+{
+    Lanes xd, yd;
+    displace(m, Radial<Lanes>(m, p.x*p.x + p.y*p.y), p.x, p.y, xd, yd);
+    return p.move2*correct(p, xd, yd);
+}
+
+/* Newton in the plane. Only a root in the middle of the domain is accepted here: at its edge, where the Jacobian is nearly
+singular, the safeguarded search of lens_opencv.cpp knows better. */
+bool unprojectOpenCV(const OpenCVModel& model, int n, const double* pu, const double* pv, double* px, double* py, double* pz)
+{
+    const OpenCVModel m = model;
+    const double ENOUGH = 1e-30, REGULAR = 1e-3, fx = 1/m.fx, fy = 1/m.fy;
+    const int TURNS = 4, CHORDS = 3;
+    Answers answers;
+    PlaneSearch search[GROUP];
+    for (int begin = 0; begin < n; begin += GROUP*LANES)
     {
-        Lanes xd = (load(pu, i, n) - m.cx)/m.fx, yd = (load(pv, i, n) - m.cy)/m.fy;
-        Mask good = xd == xd;
-        if (m.tilted)
-            good &= homography(m.untilt, xd, yd) > 0;
-        const Lanes sd = xd*xd + yd*yd;
-        const double* b = m.inverse;
-        const Lanes series = 1 + sd*(b[0] + sd*(b[1] + sd*(b[2] + sd*b[3])));
-        const Lanes scale = select((series > 0.5) & (series < 2), series, all(1));
-        Lanes x = xd*scale, y = yd*scale, move = all(1), determinant = move;
-        for (int k = 0; k < STEPS && any(move > ENOUGH); ++k)
+        const int size = groupSize(begin, n);
+        Lanes error[GROUP];
+        for (int g = 0; g < size; ++g)
         {
-            const Distorted<Lanes> d = distort(m, x, y);
-            determinant = d.determinant();
-            const Lanes ex = xd - d.x, ey = yd - d.y, inverse = 1/determinant;
-            const Lanes stepX = (d.yy*ex - d.xy*ey)*inverse, stepY = (d.xx*ey - d.yx*ex)*inverse;
-            x += stepX;
-            y += stepY;
-            move = absolute(stepX) + absolute(stepY);
+            PlaneSearch& p = search[g];
+            p.xd = (load(pu, begin + g*LANES, n) - m.cx)*fx;
+            p.yd = (load(pv, begin + g*LANES, n) - m.cy)*fy;
+            p.inFront = m.tilted ? homography(m.untilt, p.xd, p.yd) > 0 : p.xd == p.xd;
+            firstGuess(m, p.xd, p.yd, p.x, p.y);
         }
-        const Lanes s = x*x + y*y, z = 1/sqrt(1 + s);
-        good &= (move <= ENOUGH) & (s < m.sMax) & (determinant > REGULAR);
-        bad |= ~good;
-        store(select(good, x*z, noAnswer()), px, i, n);
-        store(y*z, py, i, n);
-        store(z, pz, i, n);
+        bool more = true;
+        for (int k = 0; k < TURNS && more; ++k)
+        {
+            for (int g = 0; g < size; ++g)
+                newtonStep(m, search[g]);
+            for (int chord = 0; chord < CHORDS && more; ++chord)
+            {
+                more = false;
+                for (int g = 0; g < size; ++g)
+                {
+                    error[g] = chordStep(m, search[g]);
+                    more = more || any(error[g] > ENOUGH);
+                }
+            }
+        }
+        for (int g = 0; g < size; ++g)
+        {
+            const PlaneSearch& p = search[g];
+            const Lanes s = p.x*p.x + p.y*p.y, z = inverseSqrt(1 + s);
+            const Mask good = p.inFront & (error[g] <= ENOUGH) & (s < m.sMax) & (p.determinant > REGULAR);
+            store(answers.where(good, p.x*z), px, begin + g*LANES, n);
+            store(p.y*z, py, begin + g*LANES, n);
+            store(z, pz, begin + g*LANES, n);
+        }
     }
-    return !any(bad);
+    return answers.complete();
 }
 
 }}} // namespace

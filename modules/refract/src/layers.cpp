@@ -14,12 +14,12 @@ static std::vector<Medium> mediaOf(const std::vector<double>& height, const std:
     std::map<double, Medium> media;
     const auto medium = [&](double n) -> Medium&
     {
-        const Medium empty = { 0, 0, n*n, rarest/n, rarest/std::sqrt((n - rarest)*(n + rarest)) };
+        const Medium empty = { 0, false, n > rarest ? rarest : 1, n*n, 1/n, 1/std::sqrt((n - rarest)*(n + rarest)) };
         return media.insert(std::make_pair(n, empty)).first->second;
     };
     for (size_t k = 0; k < height.size(); ++k)
-        medium(index[k]).height += height[k];
-    medium(outer).scene = 1;
+        medium(index[k]).height += height[k]*medium(index[k]).scale;
+    medium(outer).isScene = true;
     std::vector<Medium> list;
     for (const auto& m : media)
         list.push_back(m.second);

@@ -47,6 +47,7 @@ private:
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
     OpenCVModel m_;
+    bool radialOnly_;
     int given_;
     String model_;
 };
@@ -95,22 +96,23 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     m_.sMax = monotoneRange(k);
     m_.rational = k[K4] != 0 || k[K5] != 0 || k[K6] != 0;
     m_.tilted = k[TAUX] != 0 || k[TAUY] != 0;
-    m_.radialOnly = k[P1] == 0 && k[P2] == 0 && k[S1] == 0 && k[S2] == 0 && k[S3] == 0 && k[S4] == 0;
+    m_.prism = k[S1] != 0 || k[S2] != 0 || k[S3] != 0 || k[S4] != 0;
+    radialOnly_ = k[P1] == 0 && k[P2] == 0 && !m_.prism;
     const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]), untilt = tilt.inv();
     std::copy(tilt.val, tilt.val + 9, m_.tilt);
     std::copy(untilt.val, untilt.val + 9, m_.untilt);
-    // N/D as a power series
-    const double a1 = k[K1] - k[K4], a2 = k[K2] - k[K5] - k[K4]*a1, a3 = k[K3] - k[K6] - k[K5]*a1 - k[K4]*a2;
-    const double series[] = { a1, a2, a3, -k[K6]*a1 - k[K5]*a2 - k[K4]*a3 };
-    invertSeries(series, m_.inverse);
+    // Exact over the image, whose corner lies about as far from the principal point as the origin does.
+    const auto radialFunction = [this](double r, double& slope) { return radial(r, slope); };
+    const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
+    const double r = invertMonotone(radialFunction, corner, std::sqrt(m_.sMax));
+    fitInverse(radialFunction, std::isfinite(r) ? r : 0.95*std::sqrt(m_.sMax), TERMS, m_.inverse);
 }
 
 double OpenCVLens::radial(double r, double& slope) const
 {
-    double F, inverseD, F2;
-    radialFactor(m_, r*r, F, inverseD, F2);
-    slope = F + r*r*F2;
-    return r*F;
+    const Radial<double> f(m_, r*r);
+    slope = f.F + r*r*f.slope(m_);
+    return r*f.F;
 }
 
 void OpenCVLens::project(int n, const double* x, const double* y, const double* z,
@@ -142,13 +144,13 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
     double r = invertMonotone([this](double radius, double& slope) { return radial(radius, slope); }, target, rMax);
     if (!std::isfinite(r))
     {
-        if (m_.radialOnly)
+        if (radialOnly_)
             return REFRACT_OUTSIDE_LENS_MODEL;
         r = std::isfinite(rMax) ? 0.999*rMax : target;
     }
     const double scale = target > 0 ? r/target : 1;
     x = xd*scale; y = yd*scale;
-    if (m_.radialOnly)
+    if (radialOnly_)
         return REFRACT_OK;
 
     double best = DBL_MAX;

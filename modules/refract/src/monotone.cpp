@@ -28,13 +28,16 @@ double firstPositiveRoot(std::vector<double> c)
     return first;
 }
 
-void invertSeries(const double* a, double* b)
+void fitPolynomial(int n, double* x, double* y)
 {
-    const double a2 = a[0]*a[0];
-    b[0] = -a[0];
-    b[1] = 3*a2 - a[1];
-    b[2] = -12*a2*a[0] + 8*a[0]*a[1] - a[2];
-    b[3] = 55*a2*a2 - 55*a2*a[1] + 5*a[1]*a[1] + 10*a[0]*a[2] - a[3];
+    // Newton's divided differences in y, ...
+    for (int k = 1; k < n; ++k)
+        for (int i = n - 1; i >= k; --i)
+            y[i] = (y[i] - y[i - 1])/(x[i] - x[i - k]);
+    // ... multiplied out from the inside.
+    for (int k = n - 2; k >= 0; --k)
+        for (int i = k; i < n - 1; ++i)
+            y[i] -= x[k]*y[i + 1];
 }
 
 }} // namespace

@@ -14,10 +14,6 @@ namespace cv { namespace refract {
 //! Smallest positive real root of sum_k coefficients[k] s^k, infinity if there is none. coefficients[0] > 0.
 double firstPositiveRoot(std::vector<double> coefficients);
 
-/** Reversal of a series: y = x (1 + a[0] x^2 + a[1] x^4 + ...) -> x = y (1 + b[0] y^2 + b[1] y^4 + ...), four terms.
-Where a search for x begins that does not go far. */
-void invertSeries(const double* a, double* b);
-
 /** Solves f(x) = target for 0 <= x < upper, where f increases from f(0) = 0; upper may be infinite.
 @param f callable: f(x, derivative&) -> value
 @return x, or NaN if target lies beyond f(upper) */
@@ -47,6 +43,26 @@ double invertMonotone(const F& f, double target, double upper)
         x = next;
     }
     return std::numeric_limits<double>::quiet_NaN();
+}
+
+//! The polynomial through n points (x, y), its coefficients by rising power in y.
+void fitPolynomial(int n, double* x, double* y);
+
+/** Where a search for the inverse of f, f(x) = x (1 + O(x^2)), begins: x = y (1 + y^2 (c[0] + c[1] y^2 + ...)), exact at n
+values of x up to `upper`, spread as Chebyshev's nodes.
+@param f callable: f(x, derivative&) -> value */
+template<typename F>
+void fitInverse(const F& f, double upper, int n, double* c)
+{
+    AutoBuffer<double> y2(n);
+    for (int i = 0; i < n; ++i)
+    {
+        double slope;
+        const double x = upper*std::cos(0.25*CV_PI*(2*i + 1)/n), y = f(x, slope);
+        y2[i] = y*y;
+        c[i] = (x/y - 1)/y2[i];
+    }
+    fitPolynomial(n, y2.data(), c);
 }
 
 }} // namespace

@@ -32,7 +32,10 @@ void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<Refrac
     const Camera& cam = cameraOf(camera);
     const PointReader in(src, 2, "src");
     const Matx33d R = readRotation(R_, "R"), P = readProjection(P_, "P");
-    const std::vector<double> depths = readDepths(depth, in.size(), "depth");
+    const DepthReader depths(depth, "depth");
+    if (depths.size() != 1 && depths.size() != in.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("depth has %d values; it must have 1 or one per point (%d)", depths.size(),
+                                             in.size()));
     PointWriter out(dst, in.size(), 2, in.depth());
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
@@ -40,8 +43,7 @@ void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<Refrac
         double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
         double x[BLOCK], y[BLOCK], z[BLOCK], mu[BLOCK], planeD[BLOCK];
         uchar st[BLOCK];
-        for (int i = 0; i < n; ++i)
-            planeD[i] = depths.size() == 1 ? depths[0] : depths[begin + i];
+        depths.load(begin, n, planeD);
         in.load(begin, n, u, v, NULL, st);
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
         meetPlane(cam.layers(), n, Vec3d(0, 0, 1), planeD, tau, dx, dy, dz, x, y, z, mu, st);
@@ -62,13 +64,12 @@ void refractiveUndistortPoints(InputArray src, OutputArray dst,
 static Vec4d scenePlane(InputArray depth)
 {
     const double infinity = std::numeric_limits<double>::infinity();
-    const std::vector<double> d = readDepths(depth, -1, "depth");
+    const DepthReader d(depth, "depth");
     if (d.size() == 1)
-        return planeOfDepth(d[0], "depth");
+        return planeOfDepth(d.at(0), "depth");
     if (d.size() != 4)
-        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane), or be empty",
-                                      (int)d.size()));
-    const Vec4d plane(d[0], d[1], d[2], d[3]);
+        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane), or be empty", d.size()));
+    const Vec4d plane(d.at(0), d.at(1), d.at(2), d.at(3));
     checkPlane(plane, "depth");
     return plane[3] == -infinity ? -plane : plane;
 }

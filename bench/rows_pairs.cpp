@@ -1,0 +1,190 @@
+#include "rows.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace bench {
+
+namespace {
+
+const Matx33d R(0.9553364891256061, 0, 0.2955202066613396, 0, 1, 0, -0.2955202066613396, 0, 0.9553364891256061);
+const Vec3d T(-180, 0, 25);
+
+//! Two cameras, and noisy pixels of the same points in both.
+struct Pair
+{
+    explicit Pair(int count) : scene1(FIVE, 1), scene2(FIVE, 1, true)
+    {
+        std::mt19937_64 engine(7);
+        std::uniform_real_distribution<double> side(-80, 80), depth(500, 720);
+        std::normal_distribution<double> noise(0, 0.1);
+        std::vector<Point3d> points(count);
+        for (Point3d& X : points)
+            X = Point3d(side(engine), side(engine), depth(engine));
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), scene1.camera, pixels1);
+        refractiveProjectPoints(points, R, T, scene2.camera, pixels2);
+        for (std::vector<Point2d>* pixels : { &pixels1, &pixels2 })
+            for (Point2d& p : *pixels)
+                p += Point2d(noise(engine), noise(engine));
+        // cv::triangulatePoints wants normalised points of pinhole cameras: given to it for nothing.
+        Mat(2, count, CV_64F).copyTo(normal1);
+        normal1.copyTo(normal2);
+        for (int i = 0; i < count; ++i)
+        {
+            const Point3d& X = points[i];
+            const Vec3d Y = R*Vec3d(X) + T;
+            normal1.at<double>(0, i) = X.x/X.z + noise(engine)/2438;
+            normal1.at<double>(1, i) = X.y/X.z + noise(engine)/2438;
+            normal2.at<double>(0, i) = Y[0]/Y[2] + noise(engine)/2438;
+            normal2.at<double>(1, i) = Y[1]/Y[2] + noise(engine)/2438;
+        }
+        hconcat(Mat(R), Mat(T), P2);
+    }
+    Scene scene1, scene2;
+    std::vector<Point2d> pixels1, pixels2;
+    Mat normal1, normal2, P2, homogeneous;
+    std::vector<Point3d> points;
+    std::vector<uchar> status;
+    std::vector<std::vector<Point2d> > lines;
+};
+
+using reference::dot;
+
+typedef std::shared_ptr<Pair> Data;
+
+Point toCamera2(const Point& X)
+{
+    Point Y;
+    for (int r = 0; r < 3; ++r)
+        Y[r] = (long double)R(r, 0)*X[0] + (long double)R(r, 1)*X[1] + (long double)R(r, 2)*X[2] + T[r];
+    return Y;
+}
+
+//! Gradient of the squared pixel errors by X over their curvature: how far X is from the optimum.
+long double distanceToOptimum(const reference::Camera<long double>& c1, const reference::Camera<long double>& c2,
+                              const Pixel& p1, const Pixel& p2, const Point& X)
+{
+    const auto residual = [&](const Point& Y)
+    {
+        const Pixel a = c1.project(Y), b = c2.project(toCamera2(Y));
+        return std::array<long double, 4>{ a[0] - p1[0], a[1] - p1[1], b[0] - p2[0], b[1] - p2[1] };
+    };
+    const long double h = 1e-5L;
+    const auto e = residual(X);
+    Matx33d A;
+    Vec3d g;
+    std::array<long double, 4> J[3];
+    for (int c = 0; c < 3; ++c)
+    {
+        Point up = X, down = X;
+        up[c] += h;
+        down[c] -= h;
+        const auto a = residual(up), b = residual(down);
+        for (int k = 0; k < 4; ++k)
+            J[c][k] = (a[k] - b[k])/(2*h);
+    }
+    for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 4; ++k)
+        {
+            g[r] += (double)(J[r][k]*e[k]);
+            for (int c = 0; c < 3; ++c)
+                A(r, c) += (double)(J[r][k]*J[c][k]);
+        }
+    return norm(A.inv()*g);
+}
+
+double optimumError(const Data& d)
+{
+    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
+    long double worst = 0;
+    for (int i : sample((int)d->points.size(), 200))
+        worst = std::max(worst, distanceToOptimum(c1, c2, exact(d->pixels1[i]), exact(d->pixels2[i]), exact(d->points[i])));
+    return (double)worst;
+}
+
+double midpointError(const Data& d)
+{
+    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
+    long double worst = 0;
+    for (int i : sample((int)d->points.size(), 200))
+    {
+        const auto a = c1.unproject(exact(d->pixels1[i]));
+        auto b = c2.unproject(exact(d->pixels2[i]));
+        Point o = reference::add(b.origin, -1.L, Point{ T[0], T[1], T[2] }), o2, d2;
+        for (int r = 0; r < 3; ++r)
+        {
+            o2[r] = R(0, r)*o[0] + R(1, r)*o[1] + R(2, r)*o[2];
+            d2[r] = R(0, r)*b.direction[0] + R(1, r)*b.direction[1] + R(2, r)*b.direction[2];
+        }
+        // Both normal equations of |o1 + s d1 - o2 - t d2|^2.
+        const Point between = reference::add(o2, -1.L, a.origin);
+        const long double c = dot(a.direction, d2), e = dot(between, a.direction), f = dot(between, d2);
+        const long double dd1 = dot(a.direction, a.direction), dd2 = dot(d2, d2), det = dd1*dd2 - c*c;
+        const long double s = (e*dd2 - f*c)/det, t = (e*c - f*dd1)/det;
+        const Point X = reference::add(a.origin, s, a.direction), Y = reference::add(o2, t, d2);
+        for (int r = 0; r < 3; ++r)
+            worst = std::max(worst, std::abs((X[r] + Y[r])/2 - (r == 0 ? d->points[i].x : r == 1 ? d->points[i].y
+                                                                                                 : d->points[i].z)));
+    }
+    return (double)worst;
+}
+
+Row triangulateRow(const Data& d, const std::string& key, const std::string& work, int flags, double target)
+{
+    Row r = { key, work, "cv::triangulatePoints", { target, target }, (int)d->pixels1.size(), {}, {}, {}, {}, 57, "mm", 1e-8,
+              {}, {}, {} };
+    r.ours = [=] { triangulateRefractive(d->scene1.camera, d->scene2.camera, R, T, d->pixels1, d->pixels2, d->points,
+                                         d->status, flags); };
+    r.peer = [=] { triangulatePoints(Matx34d::eye(), d->P2, d->normal1, d->normal2, d->homogeneous); };
+    r.error = [=] { return flags ? midpointError(d) : optimumError(d); };
+    r.successes = [=] { return countOk(d->status); };
+    return r;
+}
+
+//! Largest distance of exact points of the curves from their polylines.
+double curveError(const Data& d)
+{
+    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
+    double worst = 0;
+    for (int i : sample((int)d->lines.size(), 100))
+    {
+        const auto ray = c1.unproject(exact(d->pixels1[i]));
+        for (int k = 0; k <= 100; ++k)
+        {
+            const long double z = 1/(1/300.L + k*(1/1500.L - 1/300.L)/100);
+            const Pixel p = c2.project(toCamera2(reference::add(ray.origin, (z - ray.origin[2])/ray.direction[2], ray.direction)));
+            double nearest = DBL_MAX;
+            for (size_t j = 1; j < d->lines[i].size(); ++j)
+            {
+                const Point2d a = d->lines[i][j - 1], ab = d->lines[i][j] - a, ap = Point2d((double)p[0], (double)p[1]) - a;
+                const double t = std::min(1., std::max(0., ap.dot(ab)/ab.dot(ab)));
+                nearest = std::min(nearest, norm(ap - t*ab));
+            }
+            worst = std::max(worst, nearest);
+        }
+    }
+    return worst;
+}
+
+} // namespace
+
+void addPairRows(std::vector<Row>& rows, int count)
+{
+    const Data many = std::make_shared<Pair>(count), few = std::make_shared<Pair>(std::min(count, 2000));
+    rows.push_back(triangulateRow(many, "triangulate", "triangulate, maximum likelihood", TRIANGULATE_OPTIMAL, 1/4.));
+    rows.push_back(triangulateRow(many, "midpoint", "triangulate, midpoint", TRIANGULATE_MIDPOINT, 1/15.));
+    Row lines = triangulateRow(few, "epilines", "epipolar curve, 300-1500 mm", 0, 0);
+    lines.bytes = 0;
+    lines.peerName = "cv::computeCorrespondEpilines";
+    lines.ours = [=] { computeRefractiveEpilines(few->pixels1, 1, few->scene1.camera, few->scene2.camera, R, T,
+                                                 Vec2d(300, 1500), few->lines, 0.01, few->status); };
+    lines.peer = [=] { Mat straight; computeCorrespondEpilines(few->pixels1, 1, Mat(R), straight); };
+    lines.error = [=] { return curveError(few); };
+    lines.tolerance = 0.01;
+    lines.unit = "px";
+    rows.push_back(lines);
+}
+
+} // namespace bench
