@@ -27,32 +27,22 @@ void Camera::unproject(int n, const double* u, const double* v,
     layers_.traceOut(n, wx, wy, wz, tau, dx, dy, dz, status);
 }
 
-uchar Camera::projectJacobian(const Vec3d& point, Vec2d& pixel, double* dPoint, double* dParameters) const
+void Camera::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                             const Columns& byPoint, const Columns& byParameters, uchar* status) const
 {
-    const int nLens = lensCount(), nWindow = windowCount(), count = nLens + nWindow;
-    AutoBuffer<double> buffer(3*nWindow + 2*nLens);
-    double* dWindow = buffer.data();
-    double* dLens = dWindow + 3*nWindow;
-    double dX[9], dDirection[6];
-    Vec3d direction;
-    uchar status = layers_.solveInJacobian(point, direction, dX, dParameters ? dWindow : NULL);
-    if (status == REFRACT_OK)
-        status = lens_->projectJacobian(direction, pixel, dDirection, dParameters ? dLens : NULL);
-    if (status != REFRACT_OK)
-        return status;
+    double dx[BLOCK], dy[BLOCK], dz[BLOCK], ratio[BLOCK], D[6*BLOCK];
+    CV_DbgAssert(n <= BLOCK);
+    const Columns byDirection = { D, 3, BLOCK };
+    layers_.solveIn(n, x, y, z, NULL, dx, dy, dz, status, ratio);
+    lens_->projectJacobian(n, dx, dy, dz, u, v, byDirection, byParameters, status);
+    layers_.chain(2, n, x, y, z, ratio, byDirection, byPoint, byParameters.from(lensCount()));
+}
 
-    for (int r = 0; r < 2; ++r)
-    {
-        const double* D = dDirection + 3*r;
-        for (int c = 0; c < 3; ++c)
-            dPoint[3*r + c] = D[0]*dX[c] + D[1]*dX[3 + c] + D[2]*dX[6 + c];
-        if (!dParameters)
-            continue;
-        double* row = dParameters + r*count;
-        std::copy(dLens + r*nLens, dLens + (r + 1)*nLens, row);
-        for (int c = 0; c < nWindow; ++c)
-            row[nLens + c] = D[0]*dWindow[c] + D[1]*dWindow[nWindow + c] + D[2]*dWindow[2*nWindow + c];
-    }
+uchar Camera::projectJacobian(const Vec3d& X, Vec2d& pixel, double* dPoint, double* dParameters) const
+{
+    uchar status = REFRACT_OK;
+    const Columns byPoint = { dPoint, 3, 1 }, byParameters = { dParameters, parameterCount(), 1 };
+    projectJacobian(1, &X[0], &X[1], &X[2], &pixel[0], &pixel[1], byPoint, byParameters, &status);
     return status;
 }
 

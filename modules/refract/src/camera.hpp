@@ -30,9 +30,14 @@ public:
                    double* tau, double* dx, double* dy, double* dz, uchar* status) const;
 
     //! Number of lens parameters, of window parameters, and both: the columns of dPixel_dParameters.
-    int lensCount() const { return (int)lens_->parameters().size(); }
+    int lensCount() const { return lens_->parameterCount(); }
     int windowCount() const { return layers_.parameterCount(); }
     int parameterCount() const { return lensCount() + windowCount(); }
+
+    /** Finite camera-frame points, at most a block. byPoint 2x3, byParameters 2 x parameterCount(), which may be null. Where
+    there is no answer the derivatives mean nothing. */
+    void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                         const Columns& byPoint, const Columns& byParameters, uchar* status) const;
 
     /** One finite camera-frame point. dPixel_dPoint 2x3, dPixel_dParameters 2 x parameterCount(), row-major; the latter
     may be null. */

@@ -37,6 +37,20 @@ struct Stack
     double rarest;              //!< the smallest index
     const Medium* media;        //!< the rarest first
     int count;
+    const double *heights, *indices;    //!< the gap, then the layers, as given
+    int layers;                 //!< how many heights
+};
+
+/** Where a matrix of each lane goes, one array for each element: element (r, c) of lane i is at(r, c)[i]. With stride 1 that
+is one lane's matrix, row-major. */
+struct Columns
+{
+    double* data;       //!< null: not wanted
+    int perRow;         //!< columns of a row
+    int stride;         //!< from one array to the next
+    double* at(int r, int c) const { return data + (r*perRow + c)*stride; }
+    //! The same rows from column c on.
+    Columns from(int c) const { const Columns rest = { data ? data + c*stride : nullptr, perRow, stride }; return rest; }
 };
 
 //! Positions in OpenCV's order of coefficients.
@@ -53,6 +67,8 @@ struct OpenCVModel
     double sMax;                //!< square of the radius where the radial part stops growing
     bool rational, prism, tilted;       //!< whether D, s1 ... s4, the tilt do anything
     double tilt[9], untilt[9];
+    double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
+    int given;                          //!< how many coefficients are parameters
     double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
 };
 
@@ -86,15 +102,24 @@ struct Kernels
     bool (*traceOut)(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,
                      double* tau, double* dx, double* dy, double* dz);
     bool (*solveIn)(const Stack& stack, int n, const double* x, const double* y, const double* z, const double* w,
-                    double* dx, double* dy, double* dz);
+                    double* dx, double* dy, double* dz, double* ratio);
+    void (*chainWindow)(const Stack& stack, int rows, int n, const double* x, const double* y, const double* z,
+                        const double* ratio, const Columns& byDirection, const Columns& byPoint, const Columns& byWindow);
+    //! Two rows by the point -> the one column of each by the parameter of A, whose point moves by A X.
+    void (*chainLinear)(const double* A, int n, const double* x, const double* y, const double* z, const Columns& byPoint,
+                        const Columns& out);
     bool (*projectOpenCV)(const OpenCVModel& lens, int n, const double* x, const double* y, const double* z,
                           double* u, double* v);
     bool (*unprojectOpenCV)(const OpenCVModel& lens, int n, const double* u, const double* v,
                             double* x, double* y, double* z);
+    bool (*projectJacobianOpenCV)(const OpenCVModel& lens, int n, const double* x, const double* y, const double* z,
+                                  double* u, double* v, const Columns& byDirection, const Columns& byParameters);
     bool (*projectFisheye)(const FisheyeModel& lens, int n, const double* x, const double* y, const double* z,
                            double* u, double* v);
     bool (*unprojectFisheye)(const FisheyeModel& lens, int n, const double* u, const double* v,
                              double* x, double* y, double* z);
+    bool (*projectJacobianFisheye)(const FisheyeModel& lens, int n, const double* x, const double* y, const double* z,
+                                   double* u, double* v, const Columns& byDirection, const Columns& byParameters);
 };
 
 //! The fastest that this machine runs (OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 in the environment leaves levels out).

@@ -134,7 +134,7 @@ inline Path beginPath(const Stack& s, Lanes x, Lanes y, Lanes z, Lanes weight)
 }
 
 bool solveIn(const Stack& stack, int n, const double* px, const double* py, const double* pz, const double* pw,
-             double* dx, double* dy, double* dz)
+             double* dx, double* dy, double* dz, double* ratio)
 {
     // The relative error after a Halley step is a few times the cube of the relative step.
     const double ENOUGH = 1e-5;
@@ -171,6 +171,8 @@ bool solveIn(const Stack& stack, int n, const double* px, const double* py, cons
             if (excess > 0)
                 kappa *= s.rarest*inverseSqrt(inner2 + excess*path.radius2*path.ratio*path.ratio);
             store(answers.where(good, s.normal[0] + kappa*path.radial[0]), dx, begin + g*LANES, n);
+            if (ratio)
+                store(path.ratio, ratio, begin + g*LANES, n);
             store(s.normal[1] + kappa*path.radial[1], dy, begin + g*LANES, n);
             store(s.normal[2] + kappa*path.radial[2], dz, begin + g*LANES, n);
         }

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_KERNELS_TABLE_HPP
 
 #include "kernels_arrays.hpp"
+#include "kernels_derivatives.hpp"
 #include "kernels_layers.hpp"
 #include "kernels_opencv.hpp"
 #include "kernels_fisheye.hpp"
@@ -21,8 +22,8 @@ const Kernels table = {
 #else
     "baseline",
 #endif
-    loadPoints, storePoints, transform, pinhole, meetPlane, traceOut, solveIn,
-    projectOpenCV, unprojectOpenCV, projectFisheye, unprojectFisheye
+    loadPoints, storePoints, transform, pinhole, meetPlane, traceOut, solveIn, chainWindow, chainLinear,
+    projectOpenCV, unprojectOpenCV, projectJacobianOpenCV, projectFisheye, unprojectFisheye, projectJacobianFisheye
 };
 
 }}} // namespace

@@ -48,7 +48,7 @@ Layers::Layers(const GlassWindow& window)
 Stack Layers::stack() const
 {
     Stack s = { { normal_[0], normal_[1], normal_[2] }, refracts_, total_, index_[0], outer_, rarest_,
-                media_.data(), (int)media_.size() };
+                media_.data(), (int)media_.size(), height_.data(), index_.data(), (int)height_.size() };
     return s;
 }
 
@@ -138,99 +138,67 @@ uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
 }
 
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
-                     double* dx, double* dy, double* dz, uchar* status) const
+                     double* dx, double* dy, double* dz, uchar* status, double* ratio) const
 {
     if (!refracts_)
     {
         std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
         return;
     }
-    if (kernels().solveIn(stack(), n, x, y, z, w, dx, dy, dz))
+    if (kernels().solveIn(stack(), n, x, y, z, w, dx, dy, dz, ratio))
         return;
     for (int i = 0; i < n; ++i)
     {
         if (status[i] != REFRACT_OK || !std::isnan(dx[i]))
             continue;
         Vec3d d;
-        status[i] = solveOne(Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d);
+        double found = 0;
+        status[i] = solveOne(Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d, found);
         dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
+        if (ratio)
+            ratio[i] = found;
     }
 }
 
-uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d) const
+uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const
 {
     const double U = normal_.dot(X), r2 = rarest_*rarest_, inner2 = index_[0]*index_[0];
     if (!(U > w*total_))
         return REFRACT_BEHIND_WINDOW;
     const Vec3d radial = X - U*normal_;
     const double V = cv::norm(radial);
-    double ratio = 0;
     const uchar status = solveTangent(U, V, w, ratio);
     const double t = V*ratio, kappa = rarest_*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
     d = normal_ + kappa*radial;
     return status;
 }
 
-/* Implicit differentiation of sum h_i T_i(p) + h_out T_out(p) = V, T_i = p/q_i, dT_i/dp = n_i^2/q_i^3,
-dT_i/dn_i = -p n_i/q_i^3, h_out = U - sum h_i; everything is written with rho = p/V, which is regular on the axis. The
-direction is n + kappa (X - U n) with kappa = T_in/V. */
-uchar Layers::solveInJacobian(const Vec3d& X, Vec3d& direction, double* dX, double* dWindow) const
+void Layers::chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
+                   const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const
 {
-    const int count = parameterCount(), layers = (int)height_.size() - 1;
-    if (dWindow)
-        std::fill(dWindow, dWindow + 3*count, 0.);
-    if (!refracts_)
+    if (refracts_)
     {
-        direction = X;
-        const Matx33d identity = Matx33d::eye();
-        std::copy(identity.val, identity.val + 9, dX);
-        return REFRACT_OK;
+        kernels().chainWindow(stack(), rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
+        return;
     }
-
-    const Vec3d& n = normal_;
-    const double U = n.dot(X);
-    const Vec3d radial = X - U*n;
-    const double V = cv::norm(radial);
-    double ratio = 0;
-    const uchar status = U > total_ ? solveTangent(U, V, 1., ratio) : (uchar)REFRACT_BEHIND_WINDOW;
-    if (status != REFRACT_OK)
-        return status;
-    const double t2 = V*ratio*V*ratio, r2 = rarest_*rarest_, c2 = 1/(1 + t2);
-    const double rho = rarest_*ratio*std::sqrt(c2);
-    const auto q = [&](double index) { return std::sqrt((index*index + (index*index - r2)*t2)*c2); };
-
-    const double inner = index_[0], qIn = q(inner), qOut = q(outer_), hOut = U - total_;
-    double S = hOut*outer_*outer_/(qOut*qOut*qOut);
-    for (int k = 0; k <= layers; ++k)
-        S += height_[k]*index_[k]*index_[k]/std::pow(q(index_[k]), 3);
-    const double k0 = rho/qIn, A = inner*inner/(qIn*qIn*qIn)/S;     // A = (dT_in/dp) / S
-    const double dU = -A*rho/qOut;                                  // d kappa / dU
-    const Vec3d e = radial/std::max(V, DBL_MIN);
-    const double bend = A - k0;                                     // V d kappa / dV
-    direction = n + k0*radial;
-
-    Matx33d tangent = Matx33d::eye() - n*n.t();
-    const Matx33d JX = k0*tangent + (dU*radial)*n.t() + (bend*e)*e.t();
-    std::copy(JX.val, JX.val + 9, dX);
-    if (!dWindow)
-        return status;
-
-    const Matx33d Jn = ((1 - k0*U)*Matx33d::eye() - (k0*n)*X.t() + (dU*radial)*X.t() - (bend*U*e)*e.t())*tangent;
-    const auto set = [&](int column, double dKappa)
+    for (int r = 0; r < rows; ++r)
     {
-        for (int r = 0; r < 3; ++r)
-            dWindow[r*count + column] = dKappa*radial[r];
-    };
-    for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
-            dWindow[r*count + c] = Jn(r, c);
-    for (int k = 0; k <= layers; ++k)                               // distance, thickness
-        set(3 + k, -A*rho*(1/q(index_[k]) - 1/qOut));
-    for (int k = 1; k <= layers; ++k)                               // index
-        set(3 + layers + k, A*rho*height_[k]*index_[k]/std::pow(q(index_[k]), 3));
-    const double dInner = inner/(qIn*qIn*qIn);
-    set(4 + 2*layers, A*rho*height_[0]*dInner - rho*dInner);        // innerIndex
-    set(5 + 2*layers, A*rho*hOut*outer_/(qOut*qOut*qOut));          // outerIndex
+            std::copy(byDirection.at(r, c), byDirection.at(r, c) + n, byPoint.at(r, c));
+        for (int c = 0; c < (byWindow.data ? parameterCount() : 0); ++c)
+            std::fill(byWindow.at(r, c), byWindow.at(r, c) + n, 0.);
+    }
+}
+
+uchar Layers::solveInJacobian(const Vec3d& X, Vec3d& d, double* dX, double* dWindow) const
+{
+    uchar status = REFRACT_OK;
+    double ratio = 0;
+    solveIn(1, &X[0], &X[1], &X[2], NULL, &d[0], &d[1], &d[2], &status, &ratio);
+    Matx33d identity = Matx33d::eye();
+    const Columns byDirection = { identity.val, 3, 1 }, byPoint = { dX, 3, 1 }, byWindow = { dWindow, parameterCount(), 1 };
+    if (status == REFRACT_OK)
+        chain(3, 1, &X[0], &X[1], &X[2], &ratio, byDirection, byPoint, byWindow);
     return status;
 }
 

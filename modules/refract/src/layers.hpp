@@ -33,12 +33,19 @@ public:
                   double* tau, double* dx, double* dy, double* dz, uchar* status) const;
 
     /** Homogeneous scene points (x, y, z, w), w >= 0 (0 = infinitely far; null = all 1) -> inner directions, not unit:
-    n + kappa (X - (n.X) n). Domain: beyond the last surface. */
+    n + kappa (X - (n.X) n). Domain: beyond the last surface.
+    @param ratio what chain() wants to know of the paths; may be null */
     void solveIn(int n, const double* x, const double* y, const double* z, const double* w,
-                 double* dx, double* dy, double* dz, uchar* status) const;
+                 double* dx, double* dy, double* dz, uchar* status, double* ratio = NULL) const;
 
     //! Number of window parameters: normal (3), distance, thickness[], index[], innerIndex, outerIndex.
     int parameterCount() const { return 6 + 2 * ((int)height_.size() - 1); }
+
+    /** Chain rule through solveIn for finite points: rows of derivatives by the direction -> by the point (3 columns) and by
+    the window (parameterCount() columns, by the *unnormalised* normal; may be null).
+    @param ratio as solveIn gave it */
+    void chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
+               const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const;
 
     /** solveIn for one finite point with derivatives of the direction.
     @param dDirection_dX 3x3 row-major
@@ -63,7 +70,7 @@ public:
 private:
     //! One lane of traceOut and solveIn that the kernel left without an answer: the answer, or why there is none.
     uchar traceOne(const Vec3d& w, double& tau, Vec3d& d) const;
-    uchar solveOne(const Vec3d& X, double w, Vec3d& d) const;
+    uchar solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const;
     //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
     uchar solveTangent(double U, double V, double w, double& ratio) const;
 

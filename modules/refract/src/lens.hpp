@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_LENS_HPP
 
 #include "precomp.hpp"
+#include "kernels.hpp"
 
 namespace cv { namespace refract {
 
@@ -30,9 +31,19 @@ public:
     virtual void unproject(int n, const double* u, const double* v,
                            double* x, double* y, double* z, uchar* status) const = 0;
 
-    //! One direction with derivatives: by the direction (2x3 row-major) and by parameters() (2 x count row-major).
-    virtual uchar projectJacobian(const Vec3d& direction, Vec2d& pixel,
-                                  double* dPixel_dDirection, double* dPixel_dParameters) const = 0;
+    //! project with derivatives: by the direction (2x3) and by parameters() (2 x count; may be null).
+    virtual void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                                 const Columns& byDirection, const Columns& byParameters, uchar* status) const = 0;
+    virtual int parameterCount() const = 0;
+
+    //! The same for one direction, matrices row-major.
+    uchar projectJacobian(const Vec3d& d, Vec2d& pixel, double* dPixel_dDirection, double* dPixel_dParameters) const
+    {
+        uchar status = REFRACT_OK;
+        const Columns byDirection = { dPixel_dDirection, 3, 1 }, byParameters = { dPixel_dParameters, parameterCount(), 1 };
+        projectJacobian(1, &d[0], &d[1], &d[2], &pixel[0], &pixel[1], byDirection, byParameters, &status);
+        return status;
+    }
 
     virtual String model() const = 0;
     virtual Mat cameraMatrix() const = 0;

@@ -27,7 +27,10 @@ public:
                  double* u, double* v, uchar* status) const CV_OVERRIDE;
     void unproject(int n, const double* u, const double* v,
                    double* x, double* y, double* z, uchar* status) const CV_OVERRIDE;
-    uchar projectJacobian(const Vec3d& direction, Vec2d& pixel, double* dDirection, double* dParameters) const CV_OVERRIDE;
+    using Lens::projectJacobian;
+    void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                         const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
+    int parameterCount() const CV_OVERRIDE { return 8; }
 
     String model() const CV_OVERRIDE { return "fisheye"; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(K_, true); }
@@ -100,46 +103,14 @@ uchar FisheyeLens::unprojectOne(double u, double v, double& x, double& y, double
     return std::isfinite(theta) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
 
-uchar FisheyeLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirection, double* dParameters) const
+void FisheyeLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                                  const Columns& byDirection, const Columns& byParameters, uchar* status) const
 {
-    uchar status = REFRACT_OK;
-    project(1, &d[0], &d[1], &d[2], &pixel[0], &pixel[1], &status);
-    if (status != REFRACT_OK)
-        return status;
-
-    // With e = (X, Y)/r: d(x, y) = theta_d/r (I - e e^T) + e theta_d' dtheta, dtheta = (Z e, -r)/|d|^2. On the axis
-    // theta_d/r and theta_d' Z/|d|^2 are both 1/Z and e drops out.
-    const double r = std::sqrt(d[0]*d[0] + d[1]*d[1]), l2 = r*r + d[2]*d[2], theta = std::atan2(r, d[2]);
-    double slope;
-    const double thetaD = bend(theta, slope), side = r > 0 ? thetaD/r : 1/d[2], along = slope*d[2]/l2;
-    const double e[2] = { d[0]/std::max(r, DBL_MIN), d[1]/std::max(r, DBL_MIN) };
-    double J[2][3];
-    for (int a = 0; a < 2; ++a)
-    {
-        for (int b = 0; b < 2; ++b)
-            J[a][b] = (a == b ? side : 0) + (along - side)*e[a]*e[b];
-        J[a][2] = -slope*r/l2*e[a];
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-        dDirection[c] = m_.fx*(J[0][c] + m_.alpha*J[1][c]);
-        dDirection[3 + c] = m_.fy*J[1][c];
-    }
-    if (!dParameters)
-        return status;
-
-    std::fill(dParameters, dParameters + 16, 0.);
-    const double x = thetaD*e[0] + m_.alpha*thetaD*e[1], y = thetaD*e[1];
-    dParameters[0] = x; dParameters[2] = 1;
-    dParameters[9] = y; dParameters[11] = 1;
-    double power = theta;
-    for (int c = 0; c < 4; ++c)
-    {
-        power *= theta*theta;
-        dParameters[4 + c] = m_.fx*power*(e[0] + m_.alpha*e[1]);
-        dParameters[12 + c] = m_.fy*power*e[1];
-    }
-    return status;
+    if (kernels().projectJacobianFisheye(m_, n, x, y, z, u, v, byDirection, byParameters))
+        return;
+    for (int i = 0; i < n; ++i)
+        if (status[i] == REFRACT_OK && std::isnan(u[i]))
+            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
 }
 
 std::vector<double> FisheyeLens::parameters() const

@@ -30,11 +30,14 @@ public:
                  double* u, double* v, uchar* status) const CV_OVERRIDE;
     void unproject(int n, const double* u, const double* v,
                    double* x, double* y, double* z, uchar* status) const CV_OVERRIDE;
-    uchar projectJacobian(const Vec3d& direction, Vec2d& pixel, double* dDirection, double* dParameters) const CV_OVERRIDE;
+    using Lens::projectJacobian;
+    void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                         const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
+    int parameterCount() const CV_OVERRIDE { return 4 + m_.given; }
 
     String model() const CV_OVERRIDE { return model_; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(Matx33d(m_.fx, 0, m_.cx, 0, m_.fy, m_.cy, 0, 0, 1), true); }
-    Mat distCoeffs() const CV_OVERRIDE { return given_ ? Mat(given_, 1, CV_64F, (void*)m_.k).clone() : Mat(); }
+    Mat distCoeffs() const CV_OVERRIDE { return m_.given ? Mat(m_.given, 1, CV_64F, (void*)m_.k).clone() : Mat(); }
     std::vector<double> parameters() const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& parameters) const CV_OVERRIDE;
 
@@ -48,7 +51,6 @@ private:
 
     OpenCVModel m_;
     bool radialOnly_;
-    int given_;
     String model_;
 };
 
@@ -85,7 +87,7 @@ double monotoneRange(const double* k)
 }
 
 OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, const String& model)
-    : given_((int)distCoeffs.size()), model_(model)
+    : model_(model)
 {
     if (K(0, 1) != 0)
         CV_Error_(Error::StsBadArg, ("cameraMatrix(0, 1) is %g; this lens model has no skew", K(0, 1)));
@@ -93,6 +95,7 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     double* k = m_.k;
     std::fill(k, k + DIST_COEFFS, 0.);
     std::copy(distCoeffs.begin(), distCoeffs.end(), k);
+    m_.given = (int)distCoeffs.size();
     m_.sMax = monotoneRange(k);
     m_.rational = k[K4] != 0 || k[K5] != 0 || k[K6] != 0;
     m_.tilted = k[TAUX] != 0 || k[TAUY] != 0;
@@ -101,6 +104,10 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]), untilt = tilt.inv();
     std::copy(tilt.val, tilt.val + 9, m_.tilt);
     std::copy(untilt.val, untilt.val + 9, m_.untilt);
+    Matx33d dTilt[2];
+    tiltDerivatives(k[TAUX], k[TAUY], dTilt);
+    for (int i = 0; i < 2; ++i)
+        std::copy(dTilt[i].val, dTilt[i].val + 9, m_.dTilt[i]);
     // Exact over the image, whose corner lies about as far from the principal point as the origin does.
     const auto radialFunction = [this](double r, double& slope) { return radial(r, slope); };
     const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
@@ -195,69 +202,20 @@ uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double&
     return status;
 }
 
-uchar OpenCVLens::projectJacobian(const Vec3d& d, Vec2d& pixel, double* dDirection, double* dParameters) const
+void OpenCVLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                                 const Columns& byDirection, const Columns& byParameters, uchar* status) const
 {
-    uchar status = REFRACT_OK;
-    project(1, &d[0], &d[1], &d[2], &pixel[0], &pixel[1], &status);
-    if (status != REFRACT_OK)
-        return status;
-
-    const double x = d[0]/d[2], y = d[1]/d[2], s = x*x + y*y;
-    const Distorted<double> distorted = distort(m_, x, y);
-    const double xd = distorted.x, yd = distorted.y;
-    const Matx22d J(distorted.xx, distorted.xy, distorted.yx, distorted.yy);
-    const Matx33d tilt(m_.tilt);
-    Matx22d T = Matx22d::eye();      // the sensor's tilt
-    Vec3d t(xd, yd, 1);
-    if (m_.tilted)
-    {
-        t = tilt*t;
-        for (int r = 0; r < 2; ++r)
-            for (int c = 0; c < 2; ++c)
-                T(r, c) = (tilt(r, c) - t[r]/t[2]*tilt(2, c))/t[2];
-    }
-    const double f[2] = { m_.fx, m_.fy };
-    const Matx22d TJ = T*J;
-    for (int r = 0; r < 2; ++r)
-    {
-        dDirection[3*r] = f[r]*TJ(r, 0)/d[2];
-        dDirection[3*r + 1] = f[r]*TJ(r, 1)/d[2];
-        dDirection[3*r + 2] = -f[r]*(TJ(r, 0)*x + TJ(r, 1)*y)/d[2];
-    }
-    if (!dParameters)
-        return status;
-
-    const double* k = m_.k;
-    const double D = 1/(1 + s*(k[K4] + s*(k[K5] + s*k[K6])));
-    const double F = (1 + s*(k[K1] + s*(k[K2] + s*k[K3])))*D, s2 = s*s, s3 = s2*s;
-    const double dDistorted[2][TAUX] = {
-        { x*s*D, x*s2*D, 2*x*y, s + 2*x*x, x*s3*D, -x*F*s*D, -x*F*s2*D, -x*F*s3*D, s, s2, 0, 0 },
-        { y*s*D, y*s2*D, s + 2*y*y, 2*x*y, y*s3*D, -y*F*s*D, -y*F*s2*D, -y*F*s3*D, 0, 0, s, s2 } };
-    Matx33d dTilt[2];
-    if (given_ > TAUX)
-        tiltDerivatives(k[TAUX], k[TAUY], dTilt);
-    const int count = 4 + given_;
-    std::fill(dParameters, dParameters + 2*count, 0.);
-    for (int r = 0; r < 2; ++r)
-    {
-        double* row = dParameters + r*count;
-        row[r] = t[r]/t[2];
-        row[2 + r] = 1;
-        for (int c = 0; c < std::min<int>(given_, TAUX); ++c)
-            row[4 + c] = f[r]*(T(r, 0)*dDistorted[0][c] + T(r, 1)*dDistorted[1][c]);
-        for (int c = TAUX; c < given_; ++c)
-        {
-            const Vec3d dt = dTilt[c - TAUX]*Vec3d(xd, yd, 1);
-            row[4 + c] = f[r]*(dt[r] - t[r]/t[2]*dt[2])/t[2];
-        }
-    }
-    return status;
+    if (kernels().projectJacobianOpenCV(m_, n, x, y, z, u, v, byDirection, byParameters))
+        return;
+    for (int i = 0; i < n; ++i)
+        if (status[i] == REFRACT_OK && std::isnan(u[i]))
+            status[i] = projectOne(x[i], y[i], z[i], u[i], v[i]);
 }
 
 std::vector<double> OpenCVLens::parameters() const
 {
     std::vector<double> p = { m_.fx, m_.fy, m_.cx, m_.cy };
-    p.insert(p.end(), m_.k, m_.k + given_);
+    p.insert(p.end(), m_.k, m_.k + m_.given);
     return p;
 }
 

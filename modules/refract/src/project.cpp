@@ -42,31 +42,16 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
                             imagePoints, status);
 }
 
-//! One point: pixel and its two rows of the jacobian: rvec, tvec, lens, window.
-static uchar projectOne(const Camera& cam, const Vec3d& object, const Matx33d& R, const Matx33d* dR, const Vec3d& t,
-                        Vec2d& pixel, Mat rows)
+//! The columns of a block's jacobian, computed side by side, as the rows u, v of each point; NaN where there is no answer.
+static void storeRows(const Columns& columns, int n, const uchar* status, double* rows)
 {
-    double dPoint[6];
-    AutoBuffer<double> dParameters(2*cam.parameterCount());
-    const uchar status = cam.projectJacobian(R*object + t, pixel, dPoint, dParameters.data());
-    if (status != REFRACT_OK)
-    {
-        rows.setTo(std::numeric_limits<double>::quiet_NaN());
-        return status;
-    }
-    for (int r = 0; r < 2; ++r)
-    {
-        double* row = rows.ptr<double>(r);
-        const Vec3d D(dPoint + 3*r);
-        for (int i = 0; i < 3; ++i)
-        {
-            row[i] = D.dot(dR[i]*object);
-            row[3 + i] = D[i];
-        }
-        const double* p = dParameters.data() + r*cam.parameterCount();
-        std::copy(p, p + cam.parameterCount(), row + 6);
-    }
-    return status;
+    for (int i = 0; i < n; ++i)
+        for (int r = 0; r < 2; ++r, rows += columns.perRow)
+            if (status[i] == REFRACT_OK)
+                for (int c = 0; c < columns.perRow; ++c)
+                    rows[c] = columns.at(r, c)[i];
+            else
+                std::fill(rows, rows + columns.perRow, std::numeric_limits<double>::quiet_NaN());
 }
 
 void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
@@ -80,29 +65,37 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
     Matx33d dR[3];
     const Vec3d r = rotationVector(readRotation(rvec, "rvec")), t = readVec3(tvec, "tvec");
     const Matx33d R = rotationMatrix(r, dR);
+    const int count = 6 + cam.parameterCount();
     PointWriter out(imagePoints, in.size(), 2, in.depth());
     StatusWriter outStatus(status, in.size());
-    Mat J(2*in.size(), 6 + cam.parameterCount(), CV_64F);
-    forEachBlock(in.size(), [&](int begin, int n)
-    {
-        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
-        uchar st[BLOCK];
-        in.load(begin, n, x, y, z, st);
-        for (int i = 0; i < n; ++i)
-        {
-            Vec2d pixel;
-            Mat rows = J.rowRange(2*(begin + i), 2*(begin + i) + 2);
-            if (st[i] == REFRACT_OK)
-                st[i] = projectOne(cam, Vec3d(x[i], y[i], z[i]), R, dR, t, pixel, rows);
-            else
-                rows.setTo(std::numeric_limits<double>::quiet_NaN());
-            u[i] = pixel[0]; v[i] = pixel[1];
-        }
-        out.store(begin, n, u, v, NULL, st);
-        outStatus.store(begin, n, st);
-    });
+    Mat J;
     if (jacobian.needed())
-        J.copyTo(jacobian);
+    {
+        jacobian.create(2*in.size(), count, CV_64F);
+        J = jacobian.getMat();
+    }
+    const int SMALL = 32;       // so many points' derivatives stay in the first-level cache
+    forEachBlock(in.size(), [&](int blockBegin, int blockSize)
+    {
+        AutoBuffer<double, 2*64*SMALL> buffer(2*count*SMALL);
+        const Columns columns = { buffer.data(), count, SMALL }, byPoint = columns.from(3);
+        double x[SMALL], y[SMALL], z[SMALL], X[SMALL], Y[SMALL], Z[SMALL], u[SMALL], v[SMALL];
+        uchar st[SMALL];
+        for (int begin = blockBegin; begin < blockBegin + blockSize; begin += SMALL)
+        {
+            const int n = std::min(SMALL, blockBegin + blockSize - begin);
+            in.load(begin, n, x, y, z, st);
+            std::copy(x, x + n, X); std::copy(y, y + n, Y); std::copy(z, z + n, Z);
+            kernels().transform(R.val, t.val, n, X, Y, Z);
+            cam.projectJacobian(n, X, Y, Z, u, v, byPoint, columns.from(6), st);
+            for (int k = 0; k < 3; ++k)
+                kernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
+            if (!J.empty())
+                storeRows(columns, n, st, J.ptr<double>(2*begin));
+            out.store(begin, n, u, v, NULL, st);
+            outStatus.store(begin, n, st);
+        }
+    });
 }
 
 void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, OutputArray directions,
