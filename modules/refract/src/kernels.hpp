@@ -108,6 +108,13 @@ struct Kernels
     //! Two rows by the point -> the one column of each by the parameter of A, whose point moves by A X.
     void (*chainLinear)(const double* A, int n, const double* x, const double* y, const double* z, const Columns& byPoint,
                         const Columns& out);
+    /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in two images.
+    @param R rotation of camera 2
+    @param observed, predicted 4x1: u1, v1, u2, v2
+    @param byPoint1, byPoint2 derivatives of the predicted pixels, each in the frame of its camera
+    @param moved square of the pixels that the step moves the predictions */
+    void (*gaussNewton)(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
+                        const Columns& byPoint2, double* x, double* y, double* z, double* moved);
     bool (*projectOpenCV)(const OpenCVModel& lens, int n, const double* x, const double* y, const double* z,
                           double* u, double* v);
     bool (*unprojectOpenCV)(const OpenCVModel& lens, int n, const double* u, const double* v,

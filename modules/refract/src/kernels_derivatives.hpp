@@ -121,6 +121,46 @@ void chainLinear(const double* A, int n, const double* px, const double* py, con
     }
 }
 
+inline Vector cross(const Vector& a, const Vector& b)
+{
+    return { a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x };
+}
+
+void gaussNewton(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
+                 const Columns& byPoint2, double* px, double* py, double* pz, double* pMoved)
+{
+    for (int i = 0; i < n; i += LANES)
+    {
+        Vector J[4], A[3] = {}, g = {};     // A: J^T J by rows
+        for (int k = 0; k < 4; ++k)
+        {
+            J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, i, n);
+            if (k >= 2)
+            {
+                const Vector D = J[k];
+                J[k] = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
+            }
+            const Lanes e = load(observed.at(k, 0), i, n) - load(predicted.at(k, 0), i, n);
+            const Vector& D = J[k];
+            g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
+            A[0] = { A[0].x + D.x*D.x, A[0].y + D.x*D.y, A[0].z + D.x*D.z };
+            A[1] = { A[0].y, A[1].y + D.y*D.y, A[1].z + D.y*D.z };
+            A[2] = { A[0].z, A[1].z, A[2].z + D.z*D.z };
+        }
+        // The rows of the inverse are cross products of the rows over the determinant.
+        const Vector a = cross(A[1], A[2]), b = cross(A[2], A[0]), c = cross(A[0], A[1]);
+        const Lanes inverse = 1/dot(A[0], a);
+        const Vector step = { dot(a, g)*inverse, dot(b, g)*inverse, dot(c, g)*inverse };
+        Lanes moved = all(0);
+        for (const Vector& D : J)
+            moved += square(dot(D, step));
+        store(load(px, i, n) + step.x, px, i, n);
+        store(load(py, i, n) + step.y, py, i, n);
+        store(load(pz, i, n) + step.z, pz, i, n);
+        store(moved, pMoved, i, n);
+    }
+}
+
 //! The sensor's tilt at a distorted point, and its linear map there.
 struct Tilt
 {

@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "camera.hpp"
+#include "kernels.hpp"
 #include "rotation.hpp"
 #include <Eigen/Dense>
 
@@ -98,17 +99,100 @@ uchar refine(const Pair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
     return REFRACT_NOT_CONVERGED;
 }
 
-uchar triangulateOne(const Pair& pair, const Rays& rays, const Vec2d& p1, const Vec2d& p2, int flags, Vec3d& X)
+//! A block of pixel pairs on its way to points.
+struct Block
 {
-    uchar status = midpoint(rays, X);
-    if (status == REFRACT_OK && !(flags & TRIANGULATE_MIDPOINT))
-        status = refine(pair, p1, p2, X);
-    if (status != REFRACT_OK)
-        return status;
+    double pixels[4*BLOCK];             //!< u1, v1, u2, v2
+    double x[BLOCK], y[BLOCK], z[BLOCK];
+    uchar status[BLOCK];
+    double* pixel(int k) { return pixels + k*BLOCK; }
+};
+
+/* Full Gauss-Newton steps of all lanes side by side. They converge at a rate that the sum of squares leaves small; a lane
+whose moves shrink so fast that less than DONE pixels are left has arrived, any other is left where it was, for refine().
+Returns which lanes have arrived. */
+void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
+{
+    const double DONE = 1e-11;
+    const int STEPS = 6;
+    double predicted[4*BLOCK], J1[6*BLOCK], J2[6*BLOCK], x[BLOCK], y[BLOCK], z[BLOCK], x2[BLOCK], y2[BLOCK], z2[BLOCK];
+    double moved[BLOCK], last[BLOCK];
+    uchar st[BLOCK];
+    CV_Assert(n > 0 && n <= BLOCK);
+    const Columns observed = { block.pixels, 1, BLOCK }, prediction = { predicted, 1, BLOCK };
+    const Columns byPoint1 = { J1, 3, BLOCK }, byPoint2 = { J2, 3, BLOCK }, none = { NULL, 0, 0 };
+    std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
+    std::copy(block.status, block.status + n, st);
+    std::fill(arrived, arrived + n, (uchar)false);
+    std::fill(last, last + n, 1.);
+    int missing = n;
+    for (int k = 0; k < STEPS && missing > 0; ++k)
+    {
+        std::copy(x, x + n, x2); std::copy(y, y + n, y2); std::copy(z, z + n, z2);
+        kernels().transform(pair.R.val, pair.T.val, n, x2, y2, z2);
+        pair.camera1.projectJacobian(n, x, y, z, predicted, predicted + BLOCK, byPoint1, none, st);
+        pair.camera2.projectJacobian(n, x2, y2, z2, predicted + 2*BLOCK, predicted + 3*BLOCK, byPoint2, none, st);
+        kernels().gaussNewton(n, pair.R.val, observed, prediction, byPoint1, byPoint2, x, y, z, moved);
+        missing = 0;
+        for (int i = 0; i < n; ++i)
+        {
+            // What is left after moves of a, then b: about b^2/a. Squares throughout.
+            const bool shrinks = moved[i] <= 0.01*last[i] && st[i] == REFRACT_OK;
+            const bool done = shrinks && moved[i]*moved[i] <= DONE*DONE*last[i];
+            if (done && !arrived[i])
+            {
+                block.x[i] = x[i]; block.y[i] = y[i]; block.z[i] = z[i];
+                arrived[i] = true;
+            }
+            if (!shrinks && st[i] == REFRACT_OK)
+                st[i] = REFRACT_NOT_CONVERGED;
+            missing += !arrived[i] && st[i] == REFRACT_OK;
+            last[i] = moved[i];
+        }
+    }
+}
+
+//! The point of one pair of rays: its midpoint, by which the search begins.
+uchar meet(const Pair& pair, double tau1, const Vec3d& d1, double tau2, const Vec3d& d2, Vec3d& X)
+{
+    const Matx33d Rt = pair.R.t();
+    const Rays rays = { tau1*pair.camera1.layers().normal(), d1, Rt*(tau2*pair.camera2.layers().normal() - pair.T), Rt*d2 };
+    return midpoint(rays, X);
+}
+
+bool isBeyondBoth(const Pair& pair, const Vec3d& X)
+{
     const Vec3d X2 = pair.R*X + pair.T;
-    const bool beyond = pair.camera1.layers().isBeyond(X[0], X[1], X[2])
-                     && pair.camera2.layers().isBeyond(X2[0], X2[1], X2[2]);
-    return beyond ? REFRACT_OK : REFRACT_BEHIND_WINDOW;
+    return pair.camera1.layers().isBeyond(X[0], X[1], X[2]) && pair.camera2.layers().isBeyond(X2[0], X2[1], X2[2]);
+}
+
+void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
+{
+    double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
+    pair.camera1.unproject(n, block.pixel(0), block.pixel(1), tau1, dx1, dy1, dz1, block.status);
+    pair.camera2.unproject(n, block.pixel(2), block.pixel(3), tau2, dx2, dy2, dz2, block.status);
+    for (int i = 0; i < n; ++i)
+    {
+        Vec3d X;
+        if (block.status[i] == REFRACT_OK)
+            block.status[i] = meet(pair, tau1[i], Vec3d(dx1[i], dy1[i], dz1[i]), tau2[i], Vec3d(dx2[i], dy2[i], dz2[i]), X);
+        block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
+    }
+    uchar arrived[BLOCK];
+    if (!(flags & TRIANGULATE_MIDPOINT))
+        refineTogether(pair, block, n, arrived);
+    for (int i = 0; i < n; ++i)
+    {
+        Vec3d X(block.x[i], block.y[i], block.z[i]);
+        if (block.status[i] == REFRACT_OK && !(flags & TRIANGULATE_MIDPOINT) && !arrived[i])
+        {
+            block.status[i] = refine(pair, Vec2d(block.pixel(0)[i], block.pixel(1)[i]),
+                                     Vec2d(block.pixel(2)[i], block.pixel(3)[i]), X);
+            block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
+        }
+        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, X))
+            block.status[i] = REFRACT_BEHIND_WINDOW;
+    }
 }
 
 /* Covariance of the maximum-likelihood point: sigma^2 (J^T J)^-1 from the pixels, plus G C G^T, G = -J^+ J_parameters,
@@ -195,34 +279,21 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
         covariance = Mat(in1.size(), 9, CV_64F, Scalar::all(std::numeric_limits<double>::quiet_NaN()));
     PointWriter out(points3D, in1.size(), 3, std::max(in1.depth(), in2.depth()));
     StatusWriter outStatus(status, in1.size());
-    const Matx33d Rt = pair.R.t();
     forEachBlock(in1.size(), [&](int begin, int n)
     {
-        double u1[BLOCK], v1[BLOCK], u2[BLOCK], v2[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK];
-        double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
-        uchar st[BLOCK], st2[BLOCK];
-        in1.load(begin, n, u1, v1, NULL, st);
-        in2.load(begin, n, u2, v2, NULL, st2);
-        pair.camera1.unproject(n, u1, v1, tau1, dx1, dy1, dz1, st);
-        pair.camera2.unproject(n, u2, v2, tau2, dx2, dy2, dz2, st2);
+        Block block;
+        uchar status2[BLOCK];
+        in1.load(begin, n, block.pixel(0), block.pixel(1), NULL, block.status);
+        in2.load(begin, n, block.pixel(2), block.pixel(3), NULL, status2);
         for (int i = 0; i < n; ++i)
-        {
-            Vec3d X;
-            if (st[i] == REFRACT_OK)
-                st[i] = st2[i];
-            if (st[i] == REFRACT_OK)
-            {
-                const Rays rays = { tau1[i]*pair.camera1.layers().normal(), Vec3d(dx1[i], dy1[i], dz1[i]),
-                                    Rt*(tau2[i]*pair.camera2.layers().normal() - pair.T),
-                                    Rt*Vec3d(dx2[i], dy2[i], dz2[i]) };
-                st[i] = triangulateOne(pair, rays, Vec2d(u1[i], v1[i]), Vec2d(u2[i], v2[i]), flags, X);
-            }
-            x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
-            if (pointCovariance && st[i] == REFRACT_OK)
-                pointCovariance->evaluate(X, covariance.ptr<double>(begin + i));
-        }
-        out.store(begin, n, x, y, z, st);
-        outStatus.store(begin, n, st);
+            if (block.status[i] == REFRACT_OK)
+                block.status[i] = status2[i];
+        triangulateBlock(pair, block, n, flags);
+        for (int i = 0; i < n && pointCovariance; ++i)
+            if (block.status[i] == REFRACT_OK)
+                pointCovariance->evaluate(Vec3d(block.x[i], block.y[i], block.z[i]), covariance.ptr<double>(begin + i));
+        out.store(begin, n, block.x, block.y, block.z, block.status);
+        outStatus.store(begin, n, block.status);
     });
 }
 
