@@ -17,26 +17,78 @@ std::vector<double*> pointers(Blocks& blocks)
     return p;
 }
 
-//! Largest difference between the jacobian of one coordinate and central differences, relative to its size.
-double jacobianError(const ceres::CostFunction& cost, Blocks& blocks, int block, int coordinate, double step)
+//! Where a camera's window comes from.
+enum WindowOwner { ITSELF, CAMERA_1, CAMERA_3 };
+
+//! One image's cost with all its parameter blocks.
+struct Image
 {
-    const int rows = cost.num_residuals();
+    Image(const Camera& prototype, const ImagePoints& points, const std::vector<double>& rootWeights, bool isCamera1,
+          bool refracted, WindowOwner owner) : camera(prototype), isCamera1_(isCamera1), refracted_(refracted), owner_(owner)
+    {
+        const std::vector<double> all = prototype.parameters();
+        const int lens = prototype.lensCount();
+        blocks.push_back({ 0.1, -0.2, 0.3, 5, 6, 600 });
+        if (!isCamera1)
+            blocks.push_back({ 0.05, 0.1, -0.07, 20, -10, 30 });
+        blocks.push_back({ all.begin(), all.begin() + lens });
+        window_ = { std::vector<double>(all.begin() + lens, all.begin() + lens + 3),
+                    std::vector<double>(all.begin() + lens + 3, all.end()), { -0.1, 0.06, 0.03, -15, 8, 20 } };
+        if (refracted)
+            for (int i = 0; i < (owner == CAMERA_3 ? 3 : 2); i++)
+                blocks.push_back(window_[i]);
+        setCamera();
+        cost.reset(ImageResidual::Create(camera, points, rootWeights, { refracted, isCamera1, owner == CAMERA_1 }));
+    }
+
+    //! The camera holds what the blocks say.
+    void setCamera()
+    {
+        const int lens = isCamera1_ ? 1 : 2;
+        Blocks& window = refracted_ ? blocks : window_;
+        const int normal = refracted_ ? lens + 1 : 0;
+        camera.set({ isCamera1_ ? nullptr : blocks[1].data(), blocks[lens].data(), window[normal].data(),
+                     window[normal + 1].data(), owner_ == CAMERA_3 ? window[normal + 2].data() : nullptr,
+                     owner_ == ITSELF });
+    }
+
+    bool evaluate(std::vector<double>& residuals, double** jacobians)
+    {
+        setCamera();
+        residuals.resize(cost->num_residuals());
+        return cost->Evaluate(pointers(blocks).data(), residuals.data(), jacobians);
+    }
+
+    RigCamera camera;
+    Blocks blocks;
+    std::unique_ptr<ceres::CostFunction> cost;
+
+private:
+    bool isCamera1_, refracted_;
+    WindowOwner owner_;
+    Blocks window_;
+};
+
+//! Largest difference between the jacobian of one coordinate and central differences, relative to its size.
+double jacobianError(Image& image, int block, int coordinate, double step)
+{
+    const int rows = image.cost->num_residuals();
     Blocks jacobians;
-    for (const std::vector<double>& b : blocks)
+    for (const std::vector<double>& b : image.blocks)
         jacobians.push_back(std::vector<double>(rows*b.size()));
-    std::vector<double> residuals(rows), above(rows), below(rows);
-    REQUIRE(cost.Evaluate(pointers(blocks).data(), residuals.data(), pointers(jacobians).data()));
-    double& value = blocks[block][coordinate];
+    std::vector<double> residuals, above, below;
+    REQUIRE(image.evaluate(residuals, pointers(jacobians).data()));
+    double& value = image.blocks[block][coordinate];
     const double kept = value;
     value = kept + step;
-    REQUIRE(cost.Evaluate(pointers(blocks).data(), above.data(), nullptr));
+    REQUIRE(image.evaluate(above, nullptr));
     value = kept - step;
-    REQUIRE(cost.Evaluate(pointers(blocks).data(), below.data(), nullptr));
+    REQUIRE(image.evaluate(below, nullptr));
     value = kept;
     double error = 0, size = 1e-3;
     for (int r = 0; r < rows; r++)
     {
-        const double exact = jacobians[block][r*blocks[block].size() + coordinate];
+        const double exact = jacobians[block][r*image.blocks[block].size() + coordinate];
         error = std::max(error, std::abs((above[r] - below[r])/(2*step) - exact));
         size = std::max(size, std::abs(exact));
     }
@@ -50,60 +102,74 @@ TEST_CASE("Every jacobian of the residual equals central differences", "[residua
     GlassWindow window({ -0.24, 0.1, 1 }, 20, 1.5437, 50, 1.2);
     window.innerIndex = 1.1;
     const Ptr<RefractiveCamera> handle = makeCamera(allLenses()[2], window);
-    const Camera& camera = cameraOf(handle);
-    const std::vector<double> all = camera.parameters();
-    const int lens = camera.lensCount();
     ImagePoints points;
     Random random(500);
     points.object = cloud(random, 5);
     points.pixel.assign(5, Point2d(600, 500));
+    const std::vector<double> rootWeights = { 1, 0.5, 0, 0.1, 1 };
 
-    for (bool isCamera2 : { false, true })
-        for (ImageResidual::Window kind : { ImageResidual::WITHOUT, ImageResidual::OWN, ImageResidual::OF_CAMERA_1 })
-        {
-            if (!isCamera2 && kind == ImageResidual::OF_CAMERA_1)
-                continue;
-            const std::unique_ptr<ceres::CostFunction> cost(ImageResidual::Create(camera, points, isCamera2, kind));
-            Blocks blocks(1, std::vector<double>{ 0.1, -0.2, 0.3, 5, 6, 600 });
-            if (isCamera2)
-                blocks.push_back({ 0.05, 0.1, -0.07, 20, -10, 30 });
-            blocks.push_back({ all.begin(), all.begin() + lens });
-            if (kind != ImageResidual::WITHOUT)
+    for (bool isCamera1 : { true, false })
+        for (bool refracted : { false, true })
+            for (WindowOwner owner : { ITSELF, CAMERA_1, CAMERA_3 })
             {
-                blocks.push_back({ all.begin() + lens, all.begin() + lens + 3 });
-                blocks.push_back({ all.begin() + lens + 3, all.end() });
+                if (isCamera1 && owner != ITSELF)
+                    continue;
+                Image image(cameraOf(handle), points, rootWeights, isCamera1, refracted, owner);
+                for (int b = 0; b < (int)image.blocks.size(); b++)
+                    for (int i = 0; i < (int)image.blocks[b].size(); i++)
+                    {
+                        const double scale = std::max(0.1, std::abs(image.blocks[b][i]));
+                        double least = 1;
+                        for (double step : { 1e-2, 1e-3, 1e-4, 1e-5, 1e-6 })
+                            least = std::min(least, jacobianError(image, b, i, step*scale));
+                        CAPTURE(isCamera1, refracted, (int)owner, b, i, seed());
+                        CHECK(least < 1e-7);
+                    }
             }
-            for (int b = 0; b < (int)blocks.size(); b++)
-                for (int i = 0; i < (int)blocks[b].size(); i++)
-                {
-                    const double scale = std::max(0.1, std::abs(blocks[b][i]));
-                    double least = 1;
-                    for (double step : { 1e-2, 1e-3, 1e-4, 1e-5, 1e-6 })
-                        least = std::min(least, jacobianError(*cost, blocks, b, i, step*scale));
-                    CAPTURE(isCamera2, (int)kind, b, i, seed());
-                    CHECK(least < 1e-7);
-                }
-        }
+}
+
+TEST_CASE("Residuals with and without jacobians are the same; weights scale them, 0 leaves a point out", "[residual]")
+{
+    const Ptr<RefractiveCamera> handle = paperCamera(paperWindow());
+    ImagePoints points;
+    points.object = board();
+    points.pixel.assign(30, Point2d(600, 500));
+    std::vector<double> rootWeights(30, 1.);
+    std::vector<double> residuals, weighted, withJacobian;
+    Image image(cameraOf(handle), points, rootWeights, false, true, CAMERA_1);
+    REQUIRE(image.evaluate(residuals, nullptr));
+    rootWeights[3] = 0.5;
+    rootWeights[7] = 0;
+    points.object[7] = Point3d(0, 0, -1e4);     // no image, and none is needed
+    REQUIRE(image.evaluate(weighted, nullptr));
+    std::vector<double> byPose(60*6, NaN);
+    std::vector<double*> jacobians(image.blocks.size(), nullptr);
+    jacobians[0] = byPose.data();
+    REQUIRE(image.evaluate(withJacobian, jacobians.data()));
+    CHECK(largestDifference(weighted, withJacobian) < 1e-9);
+    CHECK(weighted[6] == 0.5*residuals[6]);
+    CHECK(weighted[8] == residuals[8]);
+    CHECK(weighted[14] == 0);
+    CHECK(byPose[14*6] == 0);
 }
 
 TEST_CASE("The residual fails where a point has no image, and at impossible parameters", "[residual]")
 {
     const Ptr<RefractiveCamera> handle = paperCamera(paperWindow());
-    const Camera& camera = cameraOf(handle);
-    const std::vector<double> all = camera.parameters();
-    const int lens = camera.lensCount();
     ImagePoints points;
     points.object = board();
     points.pixel.assign(30, Point2d(600, 500));
-    const std::unique_ptr<ceres::CostFunction> cost(ImageResidual::Create(camera, points, false, ImageResidual::OWN));
-    std::vector<double> residuals(60);
-    Blocks blocks = { { 0, 0, 0, 0, 0, 600 }, { all.begin(), all.begin() + lens },
-                      { all.begin() + lens, all.begin() + lens + 3 }, { all.begin() + lens + 3, all.end() } };
+    const std::vector<double> rootWeights(30, 1.);
+    Image image(cameraOf(handle), points, rootWeights, true, true, ITSELF);
+    image.blocks[0] = { 0, 0, 0, 0, 0, 600 };
+    std::vector<double> residuals;
     const auto evaluates = [&](int block, int coordinate, double value)
     {
-        Blocks changed = blocks;
-        changed[block][coordinate] = value;
-        return cost->Evaluate(pointers(changed).data(), residuals.data(), nullptr);
+        const double kept = image.blocks[block][coordinate];
+        image.blocks[block][coordinate] = value;
+        const bool possible = image.evaluate(residuals, nullptr);
+        image.blocks[block][coordinate] = kept;
+        return possible;
     };
     CHECK(evaluates(0, 5, 600));
     CHECK(!evaluates(0, 5, 60));        // inside the window
@@ -112,4 +178,45 @@ TEST_CASE("The residual fails where a point has no image, and at impossible para
     CHECK(!evaluates(2, 2, -1));        // normal towards the camera
     CHECK(!evaluates(3, 0, -1));        // distance
     CHECK(!evaluates(3, 0, NaN));
+}
+
+TEST_CASE("A window seen from another camera: the same points lie on it", "[residual]")
+{
+    Random random(510);
+    CAPTURE(seed());
+    for (int run = 0; run < 20; run++)
+    {
+        std::vector<double> a, b;
+        for (int i = 0; i < 6; i++)
+        {
+            a.push_back(random.uniform(-0.3, 0.3)*(i < 3 ? 1 : 300));
+            b.push_back(random.uniform(-0.3, 0.3)*(i < 3 ? 1 : 300));
+        }
+        const Extrinsics owner(a.data()), camera(b.data());
+        const Vec3d normal = randomNormal(random, 30);
+        const double distance = random.uniform(10, 500);
+        const WindowTransfer window(normal, distance, owner, camera);
+        const Vec3d across = normal.cross(random.vector(100)), onWindow = distance*normal + across;
+        const Vec3d inCamera1 = owner.rotation.R.t()*(onWindow - owner.T);
+        const Vec3d there = camera.rotation.R*inCamera1 + camera.T;
+        CHECK(window.normal.dot(there) == Approx(window.distance).margin(1e-9));
+        CHECK(norm(window.normal) == Approx(1));
+    }
+}
+
+TEST_CASE("The prior of a known pose has the size that its covariance says", "[residual]")
+{
+    const std::array<double, 6> known = { { 0.1, 0.2, 0.3, 1, 2, 3 } };
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Identity();
+    rows(3, 0) = 0.5;
+    const std::unique_ptr<ceres::CostFunction> cost(PosePrior::Create(known, rows, 2));
+    std::vector<double> pose(known.begin(), known.end()), residuals(6), jacobian(36);
+    pose[0] += 0.01;
+    const double* parameters[] = { pose.data() };
+    double* jacobians[] = { jacobian.data() };
+    REQUIRE(cost->Evaluate(parameters, residuals.data(), jacobians));
+    CHECK(residuals[0] == Approx(0.02));
+    CHECK(residuals[3] == Approx(0.01));
+    CHECK(jacobian[3*6] == 1);
+    CHECK(jacobian[0] == 2);
 }

@@ -8,8 +8,8 @@ left when the poses are unknown is
     A = sum over views of J^T (I - P_K) J,     P_K the projector on the range of K
 
 It is kept as its square root R, A = R^T R, built by orthogonal transformations only, so that the condition number is not
-squared; views whose points do not fix a pose need no special case. Covariance = s^2 A^-1 with s^2 the sum of squared
-residuals over the degrees of freedom, 2 points - parameters - 6 views. */
+squared; views whose points do not fix a pose need no special case. An image depends on few parameters: its rows are
+reduced first, on their own columns. Covariance = s^2 A^-1 with s^2 the variance of a pixel coordinate. */
 
 #include "covariance.hpp"
 #include <Eigen/QR>
@@ -41,9 +41,14 @@ struct FreeParameter
 double meanRange(const RigProblem& rig)
 {
     double sum = 0;
+    int count = 0;
     for (int view = 0; view < rig.viewCount(); view++)
-        sum += norm(rig.pose(view).tvec);
-    return sum/rig.viewCount();
+        if (rig.pose(view).found)
+        {
+            sum += norm(rig.pose(view).tvec);
+            count++;
+        }
+    return sum/count;
 }
 
 std::vector<FreeParameter> freeParameters(const RigProblem& rig)
@@ -57,7 +62,7 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
                 continue;
             FreeParameter p;
             p.name = block.nameOf(i);
-            if (rig.isStereo() && block.kind != RigBlock::EXTRINSICS)
+            if (rig.cameraCount() > (block.kind == RigBlock::EXTRINSICS ? 2 : 1))
                 p.name += format(" of camera %d", block.camera + 1);
             p.block = &block;
             p.coordinate = i;
@@ -70,21 +75,61 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
     return parameters;
 }
 
-//! Derivatives by all free parameters of one image.
-MatrixXd byFreeParameters(const RigProblem& rig, const RigProblem::Derivatives& d)
+//! The free coordinates of each block, and where they stand among all.
+struct FreeSpace
 {
-    MatrixXd J = MatrixXd::Zero(d.byPose.rows(), rig.freeCount());
-    int column = 0;
-    for (int b = 0; b < (int)rig.blocks().size(); b++)
+    explicit FreeSpace(const RigProblem& rig) : count(0)
     {
-        const MatrixXd tangent = rig.blocks()[b].tangentBasis();
-        for (size_t k = 0; k < d.blocks.size(); k++)
-            if (d.blocks[k] == b)
-                J.middleCols(column, tangent.cols()) = d.byBlock[k]*tangent;
-        column += (int)tangent.cols();
+        for (const RigBlock& block : rig.blocks())
+        {
+            bases.push_back(block.tangentBasis());
+            first.push_back(count);
+            count += (int)bases.back().cols();
+        }
     }
-    return J;
-}
+    std::vector<MatrixXd> bases;
+    std::vector<int> first;
+    int count;
+};
+
+//! One image's derivatives by its pose (6 columns) and by the free parameters that it depends on.
+struct ImageRows
+{
+    ImageRows(const FreeSpace& space, const RigProblem::Derivatives& d)
+    {
+        rows = d.byPose;
+        for (size_t i = 0; i < d.blocks.size(); i++)
+        {
+            const MatrixXd& basis = space.bases[d.blocks[i]];
+            if (basis.cols() == 0)
+                continue;
+            const int before = (int)rows.cols();
+            rows.conservativeResize(Eigen::NoChange, before + basis.cols());
+            rows.rightCols(basis.cols()) = d.byBlock[i]*basis;
+            for (int j = 0; j < basis.cols(); j++)
+                columns.push_back(space.first[d.blocks[i]] + j);
+        }
+    }
+
+    //! As few rows with the same products.
+    void reduce()
+    {
+        const int least = (int)std::min(rows.rows(), rows.cols());
+        const Eigen::HouseholderQR<MatrixXd> qr(rows);
+        rows = MatrixXd(qr.matrixQR().topRows(least).triangularView<Eigen::Upper>());
+    }
+
+    MatrixXd spread(int count) const
+    {
+        MatrixXd all = MatrixXd::Zero(rows.rows(), count);
+        for (size_t i = 0; i < columns.size(); i++)
+            all.col(columns[i]) = rows.col(6 + i);
+        return all;
+    }
+
+    MatrixXd rows;
+    std::vector<int> columns;
+};
 
 MatrixXd stacked(const MatrixXd& top, const MatrixXd& bottom)
 {
@@ -112,26 +157,80 @@ struct Information
     VectorXd effect;        //!< of each parameter alone: the norm of its derivatives
 };
 
+//! Appends rows, and replaces all by the triangle with the same products when they are many.
+class SquareRoot
+{
+public:
+    explicit SquareRoot(int count) : rows_(8*count + 64, count), used_(0) {}
+
+    void add(const MatrixXd& rows)
+    {
+        if (used_ + rows.rows() > rows_.rows())
+            reduce();
+        if (used_ + rows.rows() > rows_.rows())
+            rows_.conservativeResize(used_ + rows.rows(), Eigen::NoChange);
+        rows_.middleRows(used_, rows.rows()) = rows;
+        used_ += (int)rows.rows();
+    }
+
+    MatrixXd triangle()
+    {
+        const int count = (int)rows_.cols();
+        add(MatrixXd::Zero(count, count));
+        reduce();
+        return rows_.topRows(count);
+    }
+
+private:
+    void reduce()
+    {
+        const int count = (int)rows_.cols();
+        if (used_ <= count)
+            return;
+        const Eigen::HouseholderQR<MatrixXd> qr(rows_.topRows(used_));
+        rows_.topRows(count) = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+        used_ = count;
+    }
+    MatrixXd rows_;
+    int used_;
+};
+
+std::vector<std::vector<const RigImage*> > imagesByView(const RigProblem& rig)
+{
+    std::vector<std::vector<const RigImage*> > images(rig.viewCount());
+    for (const RigImage& image : rig.images())
+        images[image.view].push_back(&image);
+    return images;
+}
+
 Information informationOf(const RigProblem& rig)
 {
-    const int count = rig.freeCount();
+    const FreeSpace space(rig);
     Information information;
-    information.root = MatrixXd::Zero(count, count);
-    VectorXd squares = VectorXd::Zero(count);
+    SquareRoot root(space.count);
+    VectorXd squares = VectorXd::Zero(space.count);
+    const std::vector<std::vector<const RigImage*> > images = imagesByView(rig);
     for (int view = 0; view < rig.viewCount(); view++)
     {
-        MatrixXd J(0, count), K(0, 6);
-        for (const RigImage& image : rig.images())
-            if (image.view == view)
-            {
-                const RigProblem::Derivatives d = rig.derivatives(image);
-                J = stacked(J, byFreeParameters(rig, d));
-                K = stacked(K, d.byPose);
-            }
+        MatrixXd J(0, space.count), K(0, 6);
+        for (const RigImage* image : images[view])
+        {
+            ImageRows own(space, rig.derivatives(*image));
+            own.reduce();
+            J = stacked(J, own.spread(space.count));
+            K = stacked(K, own.rows.leftCols<6>());
+        }
+        if (J.rows() == 0)
+            continue;
         squares += J.colwise().squaredNorm().transpose();
-        const Eigen::HouseholderQR<MatrixXd> qr(stacked(information.root, withoutPose(J, K)));
-        information.root = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+        if (rig.knowledgeOf(view) == PoseKnowledge::UNCERTAIN)
+        {
+            J = stacked(J, MatrixXd::Zero(6, space.count));
+            K = stacked(K, rig.priorByPose(view));
+        }
+        root.add(withoutPose(J, K));
     }
+    information.root = root.triangle();
     information.effect = squares.cwiseSqrt();
     return information;
 }
@@ -157,13 +256,12 @@ void refuse(const std::vector<FreeParameter>& parameters, const VectorXd& part, 
             word += format(" +- %.2g", sigma[i]);
         if (std::find(words.begin(), words.end(), word) == words.end())     // two angles of one normal
             words.push_back(word);
-        const std::vector<double>& values = p.block->values;
-        const int layers = ((int)values.size() - 3)/2;
+        const int last = (int)p.block->values.size() - 1, layers = last/2 - 1;
         for (int j = i + 1; j < (int)parameters.size(); j++)
             if (p.block->kind == RigBlock::MEDIA && p.coordinate > 0 && parameters[j].block == p.block &&
                 parameters[j].coordinate == p.coordinate + layers && takesPart(j))
                 hint += format("; at small angles only thickness (1 - outerIndex/index) = %.4g shows",
-                               p.value()*(1 - values.back()/parameters[j].value()));
+                               p.value()*(1 - p.block->values[last]/parameters[j].value()));
     }
     String text;
     for (size_t i = 0; i < words.size(); i++)
@@ -214,27 +312,30 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
 
 } // namespace
 
-MatrixXd rigCovariance(const RigProblem& rig)
+MatrixXd rigCovariance(const RigProblem& rig, double variance)
 {
-    const int freedom = 2*rig.pointCount() - rig.freeCount() - 6*rig.viewCount();
-    const MatrixXd free = freeCovariance(rig, freeParameters(rig), rig.squaredError()/freedom);
+    const MatrixXd free = freeCovariance(rig, freeParameters(rig), variance);
     const MatrixXd basis = rig.publicBasis();
     return basis*free*basis.transpose();
 }
 
 MatrixXd rigJacobian(const RigProblem& rig)
 {
-    CV_Assert(!rig.isStereo());
+    const FreeSpace space(rig);
     const MatrixXd basis = rig.publicBasis();
-    MatrixXd jacobian = MatrixXd::Zero(2*rig.pointCount(), rig.publicCount() + 6*rig.viewCount());
+    int rows = 0;
+    for (const RigImage& image : rig.images())
+        rows += 2*(int)image.points.pixel.size();
+    MatrixXd jacobian = MatrixXd::Zero(rows, rig.publicCount() + 6*rig.viewCount());
     int row = 0;
     for (const RigImage& image : rig.images())
     {
-        const RigProblem::Derivatives d = rig.derivatives(image);
-        const int rows = (int)d.byPose.rows();
-        jacobian.block(row, 0, rows, rig.publicCount()) = byFreeParameters(rig, d)*basis.transpose();
-        jacobian.block(row, rig.publicCount() + 6*image.view, rows, 6) = d.byPose;
-        row += rows;
+        const ImageRows own(space, rig.derivatives(image));
+        const int count = (int)own.rows.rows();
+        for (size_t i = 0; i < own.columns.size(); i++)
+            jacobian.block(row, 0, count, rig.publicCount()) += own.rows.col(6 + i)*basis.col(own.columns[i]).transpose();
+        jacobian.block(row, rig.publicCount() + 6*image.view, count, 6) = own.rows.leftCols<6>();
+        row += count;
     }
     return jacobian;
 }

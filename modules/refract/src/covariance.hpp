@@ -9,9 +9,10 @@
 
 namespace cv { namespace refract {
 
-/** What the data can and cannot tell: covariance of the public parameters of a solved problem, P x P, scaled by the
-variance of the residuals; 0 where fixed. Throws, naming the direction, if the data do not determine what is free. */
-Eigen::MatrixXd rigCovariance(const RigProblem& rig);
+/** What the data can and cannot tell: covariance of the public parameters of a solved problem, P x P; 0 where fixed. Throws,
+naming the direction, if the data do not determine what is free.
+@param variance of a pixel coordinate */
+Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance);
 
 /** Derivatives of all residuals, 2M x (P + 6 V): image by image in the order of images(); columns: the public parameters,
 then the pose of each view; 0 where fixed. One camera. */

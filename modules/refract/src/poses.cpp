@@ -10,10 +10,10 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 
 #include "poses.hpp"
 #include "arrays.hpp"
-#include "residual.hpp"
+#include "rig_camera.hpp"
 #include "rotation.hpp"
-#include <ceres/problem.h>
-#include <ceres/solver.h>
+#include "views.hpp"
+#include <ceres/tiny_solver.h>
 
 namespace cv { namespace refract {
 
@@ -55,103 +55,168 @@ Pose makePose(const Matx33d& R, const Vec3d& t)
     return pose;
 }
 
-//! The rays of the points that have one.
-void raysOf(const Camera& camera, const ImagePoints& points, std::vector<Point3d>& object,
-            std::vector<Vec3d>& directions, double& meanTau)
+//! The points that have a ray in front, as a pinhole at the rays' mean origin sees them.
+struct CentralView
 {
-    meanTau = 0;
-    for (size_t i = 0; i < points.pixel.size(); i++)
+    std::vector<Point3d> object;
+    std::vector<Point2d> normalized;
+    std::vector<int> point;         //!< in the image
+    Matx33d turn;                   //!< camera -> pinhole
+    Vec3d origin;                   //!< of the pinhole, in the camera
+};
+
+CentralView centralView(const Camera& camera, const ImagePoints& points)
+{
+    CentralView view;
+    const int count = (int)points.pixel.size();
+    std::vector<Vec3d> directions(count);
+    std::vector<uchar> status(count, REFRACT_OK);
+    Vec3d look;
+    double sumTau = 0;
+    int found = 0;
+    for (int i = 0; i < count; i++)
     {
-        const Point2d& pixel = points.pixel[i];
         double tau;
-        Vec3d d;
-        uchar status = REFRACT_OK;
-        camera.unproject(1, &pixel.x, &pixel.y, &tau, &d[0], &d[1], &d[2], &status);
-        if (status != REFRACT_OK)
+        Vec3d& d = directions[i];
+        camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status[i]);
+        if (status[i] != REFRACT_OK)
             continue;
-        object.push_back(points.object[i]);
-        directions.push_back(d);
-        meanTau += (tau - meanTau)/(double)object.size();
+        look += d;
+        sumTau += tau;
+        found++;
     }
+    if (!(norm(look) > 0))
+        return view;
+    view.turn = turnToZ(look/norm(look));
+    view.origin = camera.layers().normal()*(sumTau/found);
+    for (int i = 0; i < count; i++)
+    {
+        const Vec3d d = view.turn*directions[i];
+        if (status[i] != REFRACT_OK || !(d[2] > 0.05))      // normalised coordinates end before 90 degrees
+            continue;
+        view.object.push_back(points.object[i]);
+        view.normalized.push_back(Point2d(d[0]/d[2], d[1]/d[2]));
+        view.point.push_back(i);
+    }
+    return view;
 }
 
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
 {
-    std::vector<Point3d> withRay;
-    std::vector<Vec3d> directions;
-    double meanTau;
-    raysOf(camera, points, withRay, directions, meanTau);
-    Vec3d look;
-    for (const Vec3d& d : directions)
-        look += d;
-    if (!(norm(look) > 0))
-        return std::vector<Pose>();
-    const Matx33d turn = turnToZ(look/norm(look));
-    const Vec3d origin = camera.layers().normal()*meanTau;
-
-    std::vector<Point3d> object;
-    std::vector<Point2d> normalized;
-    for (size_t i = 0; i < directions.size(); i++)
-    {
-        const Vec3d d = turn*directions[i];
-        if (!(d[2] > 0.05))     // normalised coordinates end before 90 degrees
-            continue;
-        object.push_back(withRay[i]);
-        normalized.push_back(Point2d(d[0]/d[2], d[1]/d[2]));
-    }
+    const CentralView view = centralView(camera, points);
     std::vector<Pose> poses;
-    const int rank = object.size() < 4 ? 0 : scatterRank(object);
+    const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
     if (rank < 2)
         return poses;
     std::vector<Mat> rvecs, tvecs;
-    solvePnPGeneric(object, normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
+    solvePnPGeneric(view.object, view.normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
                     rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
     for (size_t i = 0; i < rvecs.size(); i++)
     {
         if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
-            poses.push_back(makePose(turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
-                                     turn.t()*Vec3d(tvecs[i].ptr<double>()) + origin));
+            poses.push_back(makePose(view.turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
+                                     view.turn.t()*Vec3d(tvecs[i].ptr<double>()) + view.origin));
     }
     return poses;
 }
 
+//! Reprojection errors of one image by the pose, for ceres::TinySolver.
+struct PoseErrors
+{
+    typedef double Scalar;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
+    const Camera& camera;
+    const ImagePoints& points;
+
+    int NumResiduals() const { return 2*(int)points.pixel.size(); }
+
+    //! The jacobian is column-major. Where a point has no image the errors are infinite: no step is taken there.
+    bool operator()(const double* pose, double* errors, double* jacobian) const
+    {
+        const Rotation object(pose);
+        Eigen::Map<Eigen::MatrixXd> byPose(jacobian, NumResiduals(), jacobian ? 6 : 0);
+        for (size_t i = 0; i < points.pixel.size(); i++)
+        {
+            Vec2d pixel;
+            Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
+            const Vec3d X(points.object[i]);
+            if (camera.projectJacobian(object.R*X + Vec3d(pose + 3), pixel, byPoint.data(), nullptr) != REFRACT_OK)
+            {
+                std::fill(errors, errors + NumResiduals(), std::numeric_limits<double>::infinity());
+                return false;
+            }
+            errors[2*i] = pixel[0] - points.pixel[i].x;
+            errors[2*i + 1] = pixel[1] - points.pixel[i].y;
+            if (!jacobian)
+                continue;
+            const Matx33d byRvec = object.derivativeOf(X);
+            byPose.block<2, 3>(2*i, 0) = byPoint*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(byRvec.val);
+            byPose.block<2, 3>(2*i, 3) = byPoint;
+        }
+        return true;
+    }
+};
+
 //! Maximum likelihood from a start; the RMS, NaN if it failed.
 double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
 {
-    std::vector<double> parameters = camera.parameters();
-    double* lens = parameters.data();
-    double* normal = lens + camera.lensCount();
-    double values[6];
-    std::copy(pose.rvec.val, pose.rvec.val + 3, values);
-    std::copy(pose.tvec.val, pose.tvec.val + 3, values + 3);
-
-    ceres::Problem problem;
-    problem.AddResidualBlock(ImageResidual::Create(camera, points, false, ImageResidual::OWN), nullptr,
-                             std::vector<double*>{ values, lens, normal, normal + 3 });
-    for (double* block : { lens, normal, normal + 3 })
-        problem.SetParameterBlockConstant(block);
-
-    // A start that gives some point no image is none. Ceres would log an error whatever its logging_type says.
-    double cost;
-    if (!problem.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr))
+    const PoseErrors errors = { camera, points };
+    Eigen::Matrix<double, 6, 1> six;
+    six << pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2];
+    std::vector<double> atStart(errors.NumResiduals());
+    if (!errors(six.data(), atStart.data(), nullptr))       // a start that gives some point no image is none
         return NaN;
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 100;
-    options.function_tolerance = 1e-14;
-    options.parameter_tolerance = 1e-14;
-    options.gradient_tolerance = 1e-14;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    if (!summary.IsSolutionUsable())
+    ceres::TinySolver<PoseErrors> solver;
+    solver.options.max_num_iterations = 100;
+    solver.options.function_tolerance = 1e-15*errors.NumResiduals();        // square pixels
+    solver.options.parameter_tolerance = 1e-14;
+    solver.options.gradient_tolerance = solver.options.cost_threshold = 0;
+    const double cost = solver.Solve(errors, &six).final_cost;
+    if (!six.allFinite() || !std::isfinite(cost))
         return NaN;
-    pose.rvec = Vec3d(values);
-    pose.tvec = Vec3d(values + 3);
-    return std::sqrt(2*summary.final_cost/(double)points.pixel.size());
+    pose.rvec = Vec3d(six.data());
+    pose.tvec = Vec3d(six.data() + 3);
+    return std::sqrt(2*cost/(double)points.pixel.size());
 }
 
 } // namespace
+
+std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
+                                     const std::vector<Point2d>& imagePoints)
+{
+    const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what the rays' different origins do
+    const int TRIALS = 300;                     // half of four points wrong: still 20 good samples
+    const ImagePoints points = observed(objectPoints, imagePoints);
+    const CentralView view = centralView(camera, points);
+    std::vector<Point2d> agreeing;
+    if (view.object.size() < 4 || scatterRank(view.object) < 2)
+        return agreeing;
+    const double focalLength = camera.lens().parameters()[0];
+    std::vector<int> inliers;
+    for (double limit = NARROWEST; limit <= WIDEST && 2*inliers.size() < points.pixel.size(); limit *= 2)
+    {
+        Vec3d rvec, tvec;
+        if (!solvePnPRansac(view.object, view.normalized, Matx33d::eye(), noArray(), rvec, tvec, false, TRIALS,
+                            (float)(limit/focalLength), 0.9999, inliers, SOLVEPNP_AP3P))
+            inliers.clear();
+    }
+    if (inliers.size() < 4 || 2*inliers.size() < points.pixel.size())
+        return agreeing;
+    agreeing.assign(imagePoints.size(), Point2d(NaN, NaN));
+    for (int i : inliers)
+        agreeing[points.index[view.point[i]]] = points.pixel[view.point[i]];
+    return agreeing;
+}
+
+Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
+{
+    const Matx33d Rt = rotationMatrix(extrinsics.rvec).t();
+    Pose pose;
+    pose.rvec = rotationVector(Rt*rotationMatrix(inCamera.rvec));
+    pose.tvec = Rt*(inCamera.tvec - extrinsics.tvec);
+    pose.found = true;
+    return pose;
+}
 
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms)

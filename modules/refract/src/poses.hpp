@@ -16,12 +16,20 @@ struct Pose
     bool found = false;
 };
 
+//! Object -> camera, with camera 1 -> camera, gives object -> camera 1.
+Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
+
 /** Pose of a target seen through lens and window: closed-form start on the bearings (solvePnP on the pinhole directions),
 then maximum likelihood. NaN image points are left out.
 @param start if found, the start
 @param rms reprojection error in pixels by cv::calibrateCamera's definition */
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms);
+
+/** The image points that one pose agrees with to a few pixels, found by random samples (the same ones every time); the
+others NaN. Empty if they are fewer than half, or fewer than 4. */
+std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
+                                     const std::vector<Point2d>& imagePoints);
 
 }} // namespace
 

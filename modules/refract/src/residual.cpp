@@ -3,194 +3,196 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "residual.hpp"
-#include "rotation.hpp"
-#include <Eigen/Core>
+#include "arrays.hpp"
 
 namespace cv { namespace refract {
 
 namespace {
 
-typedef Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> Rows;
-typedef Eigen::Map<Rows, 0, Eigen::OuterStride<> > RowsMap;
+template<int Columns>
+using RowsMap = Eigen::Map<Eigen::Matrix<double, 2, Columns, Eigen::RowMajor>, 0, Eigen::OuterStride<> >;
 typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Matrix3Map;
 
-Vec3d vec3(const double* v) { return Vec3d(v[0], v[1], v[2]); }
-
 //! The two rows that point i fills in the jacobian of one block.
-RowsMap rowsOf(double* jacobian, int i, int size)
-{ return RowsMap(jacobian + (size_t)2*i*size, 2, size, Eigen::OuterStride<>(size)); }
+template<int Columns>
+RowsMap<Columns> rowsOf(double* jacobian, int i, int size = Columns)
+{ return RowsMap<Columns>(jacobian + (size_t)2*i*size, 2, size, Eigen::OuterStride<>(size)); }
 
 Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 
-Eigen::RowVector3d row(const Vec3d& v) { return Eigen::RowVector3d(v[0], v[1], v[2]); }
-
 } // namespace
 
-Rotation::Rotation(const double* rvec)
+ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights,
+                             const Image& image)
+    : rig_(camera), points_(points), rootWeights_(rootWeights), refracted_(image.refracted)
 {
-    R = rotationMatrix(vec3(rvec), dR);
-}
-
-Matx33d Rotation::derivativeOf(const Vec3d& v) const
-{
-    Matx33d d;
-    for (int i = 0; i < 3; i++)
-    {
-        const Vec3d column = dR[i]*v;
-        for (int k = 0; k < 3; k++)
-            d(k, i) = column[k];
-    }
-    return d;
-}
-
-void windowInCamera2(const Matx33d& R, const Vec3d& T, Vec3d& normal, double& distance)
-{
-    normal = R*normal;
-    distance += normal.dot(T);
-}
-
-ImageResidual::ImageResidual(const Camera& camera, const ImagePoints& points, bool isCamera2, Window window)
-    : camera_(camera), points_(points), window_(window), extrinsics_(isCamera2 ? 1 : -1),
-      lens_(isCamera2 ? 2 : 1), normal_(lens_ + 1), media_(lens_ + 2)
-{
-    CV_Assert(isCamera2 || window != OF_CAMERA_1);
     set_num_residuals(2*(int)points.pixel.size());
     std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
-    sizes.assign(isCamera2 ? 2 : 1, 6);
-    sizes.push_back(camera.lensCount());
-    if (hasWindow())
+    const auto addBlock = [&](bool exists, int size)
     {
-        sizes.push_back(3);
-        sizes.push_back(camera.windowCount() - 3);
-    }
+        if (exists)
+            sizes.push_back(size);
+        return exists ? (int)sizes.size() - 1 : -1;
+    };
+    addBlock(true, 6);
+    extrinsics_ = addBlock(!image.isCamera1, 6);
+    lens_ = addBlock(true, camera.lensCount());
+    normal_ = addBlock(image.refracted, 3);
+    media_ = addBlock(image.refracted, camera.mediaCount());
+    owner_ = addBlock(image.refracted && camera.window && !image.ownerIsCamera1, 6);
 }
 
-ceres::CostFunction* ImageResidual::Create(const Camera& camera, const ImagePoints& points, bool isCamera2,
-                                           Window window)
+ceres::CostFunction* ImageResidual::Create(const RigCamera& camera, const ImagePoints& points,
+                                           const std::vector<double>& rootWeights, const Image& image)
 {
-    return new ImageResidual(camera, points, isCamera2, window);
+    return new ImageResidual(camera, points, rootWeights, image);
 }
-
-bool ImageResidual::setCamera(double const* const* parameters, Camera& camera) const
-{
-    const double* lens = parameters[lens_];
-    if (!(lens[0] > 0 && lens[1] > 0))      // a trial step may leave the focal lengths' domain
-        return false;
-    std::vector<double> all(lens, lens + camera.lensCount());
-    if (hasWindow())
-    {
-        Vec3d normal = vec3(parameters[normal_]);
-        const double* media = parameters[media_];
-        double distance = media[0];
-        if (window_ == OF_CAMERA_1)
-        {
-            windowInCamera2(Rotation(parameters[extrinsics_]).R, vec3(parameters[extrinsics_] + 3), normal, distance);
-            // With equal media the distance has no effect, and need not be known well enough to be positive here.
-            const int last = camera.windowCount() - 4;
-            if (media[last] == media[last - 1])
-                distance = std::max(distance, 0.);
-        }
-        if (!(normal[2] > 0 && distance >= 0))
-            return false;
-        all.insert(all.end(), normal.val, normal.val + 3);
-        all.push_back(distance);
-        all.insert(all.end(), media + 1, media + camera.windowCount() - 3);
-    }
-    else
-    {
-        const double none[] = { 0, 0, 1, 0, 1, 1 };
-        camera.setWindow(GlassWindow());
-        all.insert(all.end(), none, none + 6);
-    }
-    camera.setParameters(all);
-    return true;
-}
-
-//! The path from the object to the camera.
-struct ImageResidual::Frames
-{
-    Frames(const double* pose, const double* extrinsics, const double* normal)
-        : object(pose), camera2(extrinsics), tPose(vec3(pose + 3)), T(vec3(extrinsics + 3)), normal1(vec3(normal)) {}
-    const Rotation object, camera2;
-    const Vec3d tPose, T, normal1;      //!< the normal in the frame that its block is in
-};
 
 //! One point on its way, and the derivatives of its pixel.
 struct ImageResidual::Point
 {
     Vec3d inObject, inCamera1;
     Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
-    Rows byParameters;
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> byParameters;
 };
 
 //! The rows of point i in every jacobian that is wanted.
-void ImageResidual::writeJacobians(const Frames& frames, Point& point, int i, double** jacobians) const
+void ImageResidual::writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const
 {
-    const int lensCount = camera_.lensCount(), mediaCount = camera_.windowCount() - 3;
     const auto wanted = [&](int block) { return block >= 0 && jacobians[block]; };
     if (wanted(0))
     {
-        RowsMap pose = rowsOf(jacobians[0], i, 6);
-        pose.rightCols<3>() = point.byPoint*eigen(frames.camera2.R);
-        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(frames.object.derivativeOf(point.inObject));
+        RowsMap<6> pose = rowsOf<6>(jacobians[0], i);
+        pose.rightCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.R);
+        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(object.derivativeOf(point.inObject));
     }
     if (wanted(extrinsics_))
     {
-        RowsMap rows = rowsOf(jacobians[extrinsics_], i, 6);
-        rows.leftCols<3>() = point.byPoint*eigen(frames.camera2.derivativeOf(point.inCamera1));
+        RowsMap<6> rows = rowsOf<6>(jacobians[extrinsics_], i);
+        rows.leftCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.derivativeOf(point.inCamera1));
         rows.rightCols<3>() = point.byPoint;
     }
+    const int lensCount = parameter_block_sizes()[lens_];
     if (wanted(lens_))
-        rowsOf(jacobians[lens_], i, lensCount) = point.byParameters.leftCols(lensCount);
-    if (!hasWindow())
+        rowsOf<Eigen::Dynamic>(jacobians[lens_], i, lensCount) = point.byParameters.leftCols(lensCount);
+    if (!refracted_)
         return;
 
-    Rows byNormal = point.byParameters.middleCols(lensCount, 3);
-    if (window_ == OF_CAMERA_1)
+    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount);     // normal, distance
+    if (rig_.window)
     {
-        const Eigen::Vector2d byDistance = point.byParameters.col(lensCount + 3);
-        byNormal += byDistance*row(frames.T);       // d2 = d1 + n2.T moves with n2 = R n1
         if (wanted(extrinsics_))
-        {
-            RowsMap rows = rowsOf(jacobians[extrinsics_], i, 6);
-            rows.leftCols<3>() += byNormal*eigen(frames.camera2.derivativeOf(frames.normal1));
-            rows.rightCols<3>() += byDistance*row(frames.camera2.R*frames.normal1);
-        }
-        byNormal = byNormal*eigen(frames.camera2.R);
+            rowsOf<6>(jacobians[extrinsics_], i) += byWindow*rig_.window->byCamera;
+        if (wanted(owner_))
+            rowsOf<6>(jacobians[owner_], i) = byWindow*rig_.window->byOwner;
+        byWindow *= rig_.window->byWindow;
     }
     if (wanted(normal_))
-        rowsOf(jacobians[normal_], i, 3) = byNormal;
-    if (wanted(media_))
-        rowsOf(jacobians[media_], i, mediaCount) = point.byParameters.middleCols(lensCount + 3, mediaCount);
+        rowsOf<3>(jacobians[normal_], i) = byWindow.leftCols<3>();
+    if (!wanted(media_))
+        return;
+    const int mediaCount = parameter_block_sizes()[media_];
+    RowsMap<Eigen::Dynamic> media = rowsOf<Eigen::Dynamic>(jacobians[media_], i, mediaCount);
+    media.col(0) = byWindow.col(3);
+    media.rightCols(mediaCount - 1) = point.byParameters.rightCols(mediaCount - 1);
+}
+
+bool ImageResidual::linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const
+{
+    const Rotation object(pose);
+    const Vec3d t(pose + 3);
+    const std::vector<int32_t>& sizes = parameter_block_sizes();
+    // Known windows and lenses do without the derivatives by camera parameters.
+    const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes.size(),
+                                          [](const double* jacobian) { return jacobian != nullptr; }) ||
+                              (rig_.window && jacobians[extrinsics_]);
+    Point point;
+    point.byParameters.setZero(2, camera.parameterCount());
+    for (int i = 0; i < (int)points_.pixel.size(); i++)
+    {
+        const double w = rootWeights_[i];
+        if (w == 0)
+        {
+            residuals[2*i] = residuals[2*i + 1] = 0;
+            for (size_t block = 0; block < sizes.size(); block++)
+                if (jacobians[block])
+                    rowsOf<Eigen::Dynamic>(jacobians[block], i, sizes[block]).setZero();
+            continue;
+        }
+        point.inObject = points_.object[i];
+        point.inCamera1 = object.R*point.inObject + t;
+        Vec2d pixel;
+        if (camera.projectJacobian(rig_.extrinsics.rotation.R*point.inCamera1 + rig_.extrinsics.T, pixel,
+                                   point.byPoint.data(), byParameters ? point.byParameters.data() : nullptr) != REFRACT_OK)
+            return false;
+        residuals[2*i] = w*(pixel[0] - points_.pixel[i].x);
+        residuals[2*i + 1] = w*(pixel[1] - points_.pixel[i].y);
+        point.byPoint *= w;
+        point.byParameters *= w;
+        writeJacobians(object, point, i, jacobians);
+    }
+    return true;
+}
+
+//! Residuals only, in blocks.
+bool ImageResidual::project(const Camera& camera, const double* pose, double* residuals) const
+{
+    const Extrinsics& toCamera = rig_.extrinsics;
+    const Matx33d R = toCamera.rotation.R*Rotation(pose).R;
+    const Vec3d t = toCamera.rotation.R*Vec3d(pose + 3) + toCamera.T;
+    double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
+    uchar status[BLOCK];
+    for (int begin = 0; begin < (int)points_.pixel.size(); begin += BLOCK)
+    {
+        const int n = std::min(BLOCK, (int)points_.pixel.size() - begin);
+        for (int i = 0; i < n; i++)
+        {
+            const Vec3d X = R*Vec3d(points_.object[begin + i]) + t;
+            x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
+            status[i] = REFRACT_OK;
+        }
+        camera.project(n, x, y, z, nullptr, u, v, status);
+        for (int i = 0; i < n; i++)
+        {
+            const double w = rootWeights_[begin + i];
+            if (w != 0 && status[i] != REFRACT_OK)
+                return false;
+            residuals[2*(begin + i)] = w == 0 ? 0 : w*(u[i] - points_.pixel[begin + i].x);
+            residuals[2*(begin + i) + 1] = w == 0 ? 0 : w*(v[i] - points_.pixel[begin + i].y);
+        }
+    }
+    return true;
 }
 
 bool ImageResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
 {
-    Camera camera(camera_);
-    if (!setCamera(parameters, camera))
+    const Camera* camera = rig_.camera(refracted_);
+    if (!camera)
         return false;
-    const double nothing[6] = { 0, 0, 0, 0, 0, 0 };
-    const Frames frames(parameters[0], extrinsics_ > 0 ? parameters[extrinsics_] : nothing,
-                        hasWindow() ? parameters[normal_] : nothing);
+    return jacobians ? linearize(*camera, parameters[0], residuals, jacobians)
+                     : project(*camera, parameters[0], residuals);
+}
 
-    // A pose alone (solvePose) does without the derivatives by camera parameters.
-    const bool byParameters = jacobians && std::any_of(jacobians + 1, jacobians + parameter_block_sizes().size(),
-                                                       [](const double* jacobian) { return jacobian != nullptr; });
-    Point point;
-    point.byParameters = Rows::Zero(2, camera.parameterCount());
-    for (int i = 0; i < (int)points_.pixel.size(); i++)
-    {
-        point.inObject = points_.object[i];
-        point.inCamera1 = frames.object.R*point.inObject + frames.tPose;
-        Vec2d pixel;
-        if (camera.projectJacobian(frames.camera2.R*point.inCamera1 + frames.T, pixel, point.byPoint.data(),
-                                   byParameters ? point.byParameters.data() : nullptr) != REFRACT_OK)
-            return false;
-        residuals[2*i] = pixel[0] - points_.pixel[i].x;
-        residuals[2*i + 1] = pixel[1] - points_.pixel[i].y;
-        if (jacobians)
-            writeJacobians(frames, point, i, jacobians);
-    }
+PosePrior::PosePrior(const std::array<double, 6>& known, const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& rows)
+    : known_(known), rows_(rows)
+{
+    set_num_residuals(6);
+    mutable_parameter_block_sizes()->push_back(6);
+}
+
+ceres::CostFunction* PosePrior::Create(const std::array<double, 6>& known,
+                                       const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& inverseRoot, double scale)
+{
+    return new PosePrior(known, scale*inverseRoot);
+}
+
+bool PosePrior::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
+{
+    typedef Eigen::Map<const Eigen::Matrix<double, 6, 1> > Map6;
+    Eigen::Map<Eigen::Matrix<double, 6, 1> > out(residuals);
+    out = rows_*(Map6(parameters[0]) - Map6(known_.data()));
+    if (jacobians && jacobians[0])
+        std::copy(rows_.data(), rows_.data() + rows_.size(), jacobians[0]);
     return true;
 }
 

@@ -5,8 +5,9 @@
 #ifndef OPENCV_REFRACT_RESIDUAL_HPP
 #define OPENCV_REFRACT_RESIDUAL_HPP
 
-#include "camera.hpp"
+#include "rig_camera.hpp"
 #include "views.hpp"
+#include <array>
 #include <ceres/cost_function.h>
 
 namespace cv { namespace refract {
@@ -14,50 +15,57 @@ namespace cv { namespace refract {
 /** One Ceres cost: predicted minus observed pixel of all points of one image, with analytic derivatives through
 Camera::projectJacobian.
 
-    object --pose--> camera 1 --extrinsics (camera 2 only)--> camera --window, lens--> pixel
+    object --pose--> camera 1 --extrinsics--> camera --window, lens--> pixel
 
-Parameter blocks, in this order: pose (rvec, tvec; 6), extrinsics (rvec, T; 6) for camera 2 only, lens, and through a
-window its normal (3, unit) and media (distance, thickness[], index[], innerIndex, outerIndex).
+The pose is taken from the parameter blocks; the camera is evaluated once for all its images (RigCamera), which must hold
+the values of the other blocks. Blocks in this order: pose (rvec, tvec; 6), extrinsics (rvec, T; 6) but for camera 1, lens,
+and through a window its normal (3, unit), media, and the owner's extrinsics if the window is neither the camera's own nor
+camera 1's.
 
-A pane that both cameras share is described in the frame of camera 1: camera 2 sees the normal n2 = R n1 at the distance
-d2 = d1 + n2.T, as n1.X1 = d1 and X2 = R X1 + T. */
+Every point has a weight: its residual is multiplied by the weight's root. 0: left out. */
 class ImageResidual : public ceres::CostFunction
 {
 public:
-    enum Window { WITHOUT, OWN, OF_CAMERA_1 };
-
-    //! camera: gives the lens model and the number of layers; its parameters are not used. Both must outlive the cost.
-    static ceres::CostFunction* Create(const Camera& camera, const ImagePoints& points, bool isCamera2, Window window);
+    struct Image
+    {
+        bool refracted, isCamera1, ownerIsCamera1;
+    };
+    //! All arguments must outlive the cost. rootWeights: one per point.
+    static ceres::CostFunction* Create(const RigCamera& camera, const ImagePoints& points,
+                                       const std::vector<double>& rootWeights, const Image& image);
 
     //! False where a point has no image: Ceres takes a shorter step.
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
 private:
-    ImageResidual(const Camera& camera, const ImagePoints& points, bool isCamera2, Window window);
+    ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights,
+                  const Image& image);
 
     struct Point;
-    struct Frames;
-    bool hasWindow() const { return window_ != WITHOUT; }
-    bool setCamera(double const* const* parameters, Camera& camera) const;
-    void writeJacobians(const Frames& frames, Point& point, int i, double** jacobians) const;
+    bool project(const Camera& camera, const double* pose, double* residuals) const;
+    bool linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const;
+    void writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const;
 
-    const Camera& camera_;
+    const RigCamera& rig_;
     const ImagePoints& points_;
-    Window window_;
-    int extrinsics_, lens_, normal_, media_;    //!< position of each block; extrinsics_ = -1 for camera 1
+    const std::vector<double>& rootWeights_;
+    bool refracted_;
+    int extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
 };
 
-//! The window that camera 2 sees of a pane described in the frame of camera 1.
-void windowInCamera2(const Matx33d& R, const Vec3d& T, Vec3d& normal, double& distance);
-
-//! A rotation vector's matrix and the derivatives of the matrix.
-struct Rotation
+//! A known pose with its covariance: rows of the covariance's inverse root times (pose - known).
+class PosePrior : public ceres::CostFunction
 {
-    explicit Rotation(const double* rvec);
-    Matx33d R;
-    Matx33d dR[3];
-    //! d(R v)/drvec
-    Matx33d derivativeOf(const Vec3d& v) const;
+public:
+    //! Both must outlive the cost. scale: of the rows.
+    static ceres::CostFunction* Create(const std::array<double, 6>& known,
+                                       const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& inverseRoot, double scale);
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+private:
+    PosePrior(const std::array<double, 6>& known, const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& rows);
+    const std::array<double, 6>& known_;
+    const Eigen::Matrix<double, 6, 6, Eigen::RowMajor> rows_;
 };
 
 }} // namespace

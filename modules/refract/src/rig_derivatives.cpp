@@ -45,27 +45,42 @@ String RigBlock::nameOf(int coordinate) const
     return layer == 2*layers ? "innerIndex" : "outerIndex";
 }
 
-std::vector<const double*> RigProblem::valuesOf(const RigImage& image) const
-{
-    std::vector<const double*> values(1, poses_[image.view].data());
-    for (int i : blocksOf(image))
-        values.push_back(blocks_[i].values.data());
-    return values;
-}
-
-double RigProblem::squaredError(const RigImage& image) const
+Eigen::VectorXd RigProblem::residuals(const RigImage& image) const
 {
     const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
     Eigen::VectorXd residuals(cost->num_residuals());
-    CV_Assert(cost->Evaluate(valuesOf(image).data(), residuals.data(), nullptr));
-    return residuals.squaredNorm();
+    std::vector<const double*> values(1, poses_[image.view].data());    // the cameras hold the rest
+    CV_Assert(cost->Evaluate(values.data(), residuals.data(), nullptr));
+    return residuals;
+}
+
+std::vector<double> RigProblem::pixelErrors(const RigImage& image, const Pose& pose) const
+{
+    const Camera* camera = cameras_[image.camera].camera(image.refracted);
+    const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
+    const Extrinsics toCamera1(pose);
+    std::vector<double> errors;
+    for (size_t i = 0; i < image.points.pixel.size(); i++)
+    {
+        const Vec3d X = toCamera.rotation.R*(toCamera1.rotation.R*Vec3d(image.points.object[i]) + toCamera1.T) + toCamera.T;
+        Point2d pixel;
+        uchar status = REFRACT_OK;
+        camera->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+        errors.push_back(status == REFRACT_OK ? norm(pixel - image.points.pixel[i]) :
+                         std::numeric_limits<double>::infinity());
+    }
+    return errors;
 }
 
 double RigProblem::squaredError() const
 {
     double sum = 0;
     for (const RigImage& image : images_)
-        sum += squaredError(image);
+        sum += residuals(image).squaredNorm();
+    typedef Eigen::Map<const Eigen::Matrix<double, 6, 1> > Map6;
+    for (int view = 0; view < viewCount(); view++)
+        if (isUncertain(view))
+            sum += (priorByPose(view)*(Map6(poses_[view].data()) - Map6(knownPoses_[view].data()))).squaredNorm();
     return sum;
 }
 
@@ -74,23 +89,39 @@ RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
     const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
     Derivatives result;
     result.blocks = blocksOf(image);
-    result.byPose.resize(cost->num_residuals(), 6);
-    std::vector<double*> jacobians(1, result.byPose.data());
+    result.byPose.setZero(cost->num_residuals(), 6);
+    std::vector<double*> jacobians(1, isAdjusted(image.view) ? result.byPose.data() : nullptr);
+    std::vector<const double*> values(1, poses_[image.view].data());
     for (int i : result.blocks)
+    {
         result.byBlock.push_back(RowMajorMatrix(cost->num_residuals(), blocks_[i].values.size()));
+        values.push_back(blocks_[i].values.data());
+    }
     for (RowMajorMatrix& byBlock : result.byBlock)
         jacobians.push_back(byBlock.data());
     result.residuals.resize(cost->num_residuals());
-    CV_Assert(cost->Evaluate(valuesOf(image).data(), result.residuals.data(), jacobians.data()));
+    CV_Assert(cost->Evaluate(values.data(), result.residuals.data(), jacobians.data()));
     return result;
 }
 
 int RigProblem::publicCount() const
 {
-    int count = isStereo() ? 6 : 0;
-    for (const Camera& camera : cameras_)
-        count += camera.parameterCount();
-    return count;
+    return publicRow(RigBlock::EXTRINSICS, rig_.count());
+}
+
+//! The first row of a block. A window has rows in every camera that looks through it.
+int RigProblem::publicRow(RigBlock::Kind kind, int camera) const
+{
+    int row = 0;
+    if (kind == RigBlock::EXTRINSICS)
+    {
+        for (const Camera& c : rig_.cameras)
+            row += c.parameterCount();
+        return row + 6*(camera - 1);
+    }
+    for (int c = 0; c < camera; c++)
+        row += rig_.cameras[c].parameterCount();
+    return row + (kind == RigBlock::LENS ? 0 : rig_.cameras[camera].lensCount() + (kind == RigBlock::NORMAL ? 0 : 3));
 }
 
 Eigen::MatrixXd RigProblem::publicBasis() const
@@ -100,42 +131,28 @@ Eigen::MatrixXd RigProblem::publicBasis() const
     for (const RigBlock& block : blocks_)
     {
         const Eigen::MatrixXd tangent = block.tangentBasis();
-        basis.block(publicRow(block), column, tangent.rows(), tangent.cols()) = tangent;
+        basis.block(publicRow(block.kind, block.camera), column, tangent.rows(), tangent.cols()) = tangent;
         column += (int)tangent.cols();
     }
-    if (shared_)
-        addSharedWindow(basis);
+    for (int c = 0; c < rig_.count(); c++)
+        if (!rig_.owns(c))
+            addSharedWindow(c, basis);
     return basis;
 }
 
-int RigProblem::publicRow(const RigBlock& block) const
+//! The rows of a window in a camera that does not own it.
+void RigProblem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
 {
-    if (block.kind == RigBlock::EXTRINSICS)
-        return publicCount() - 6;
-    const int camera = block.camera == 1 ? cameras_[0].parameterCount() : 0;
-    const int normal = camera + cameras_[block.camera].lensCount();
-    return block.kind == RigBlock::LENS ? camera : block.kind == RigBlock::NORMAL ? normal : normal + 3;
-}
-
-//! Camera 2's rows: n2 = R n1, d2 = d1 + n2.T, and the same media.
-void RigProblem::addSharedWindow(Eigen::MatrixXd& basis) const
-{
-    const int normal1Row = cameras_[0].lensCount(), extrinsicsRow = publicCount() - 6;
-    const int normal2Row = cameras_[0].parameterCount() + cameras_[1].lensCount();
-    const Pose toCamera2 = extrinsics();
-    const Rotation rotation(toCamera2.rvec.val);
-    const Vec3d normal1(blocks_[blockOf(RigBlock::NORMAL, 0)].values.data()), normal2 = rotation.R*normal1;
-    const Matx33d byRvec = rotation.derivativeOf(normal1);
-
-    typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Map33;
-    typedef Eigen::Map<const Eigen::RowVector3d> Map13;
-    basis.middleRows(normal2Row, 3) = Map33(rotation.R.val)*basis.middleRows(normal1Row, 3) +
-                                      Map33(byRvec.val)*basis.middleRows(extrinsicsRow, 3);
-    basis.row(normal2Row + 3) = basis.row(normal1Row + 3) +
-                                Map13(toCamera2.tvec.val)*basis.middleRows(normal2Row, 3) +
-                                Map13(normal2.val)*basis.middleRows(extrinsicsRow + 3, 3);
-    const int others = cameras_[0].windowCount() - 4;
-    basis.middleRows(normal2Row + 4, others) = basis.middleRows(normal1Row + 4, others).eval();
+    const int owner = rig_.owner[camera], row = publicRow(RigBlock::NORMAL, camera);
+    const int ownerRow = publicRow(RigBlock::NORMAL, owner);
+    const WindowTransfer& window = *cameras_[camera].window;
+    Eigen::MatrixXd rows = window.byWindow*basis.middleRows<4>(ownerRow) +
+                           window.byCamera*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, camera));
+    if (owner > 0)
+        rows += window.byOwner*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, owner));
+    basis.middleRows<4>(row) = rows;
+    const int others = rig_.cameras[camera].windowCount() - 4;
+    basis.middleRows(row + 4, others) = basis.middleRows(ownerRow + 4, others).eval();
 }
 
 }} // namespace

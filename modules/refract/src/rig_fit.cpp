@@ -4,22 +4,18 @@
 
 #include "rig_fit.hpp"
 #include "covariance.hpp"
+#include "rig_robust.hpp"
 #include "rig_start.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
 
-static Mat rmsPerView(const RigProblem& rig, int cameras)
-{
-    Mat errors(rig.viewCount(), 2*cameras, CV_64F, Scalar(std::numeric_limits<double>::quiet_NaN()));
-    for (const RigImage& image : rig.images())
-        errors.at<double>(image.view, 2*image.camera + (image.refracted ? 0 : 1)) =
-            std::sqrt(rig.squaredError(image)/(double)image.points.pixel.size());
-    return errors;
-}
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 //! Both limits in force: what the caller left open is generous.
-static TermCriteria checkedCriteria(TermCriteria criteria)
+TermCriteria checkedCriteria(TermCriteria criteria)
 {
     if (!(criteria.type & (TermCriteria::COUNT | TermCriteria::EPS)))
         CV_Error_(Error::StsBadArg, ("criteria.type is %d; it must have COUNT, EPS or both", criteria.type));
@@ -32,35 +28,139 @@ static TermCriteria checkedCriteria(TermCriteria criteria)
     return criteria;
 }
 
-RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& views, int flags,
-              const TermCriteria& criteria_, bool wantsJacobian)
+//! Equations beyond the unknowns.
+int freedomOf(const RigProblem& rig)
 {
-    const TermCriteria criteria = checkedCriteria(criteria_);
-    const std::vector<Pose> poses = startPoses(cameras, extrinsics, views);
-    RigProblem rig(cameras, extrinsics, views, poses, flags);
-    const int observations = 2*rig.pointCount(), unknowns = rig.freeCount() + 6*rig.viewCount();
-    if (observations <= unknowns)
+    return rig.equationCount() - rig.freeCount() - 6*rig.poseCount();
+}
+
+void checkFreedom(const RigProblem& rig)
+{
+    if (freedomOf(rig) <= 0)
         CV_Error_(Error::StsBadArg, ("%d points were observed, which give %d equations for %d unknowns; take more views",
-                                     rig.pointCount(), observations, unknowns));
-    const bool converged = rig.solve(criteria);
+                                     rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
+}
+
+//! Solves; where poses are known with a covariance, until they are weighed against the pixels' own noise.
+RobustOutcome solve(RigProblem& rig, const RigTask& task, const TermCriteria& criteria)
+{
+    const int ROUNDS = 20;
+    RobustOutcome outcome;
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        if (task.flags & GLASS_ROBUST)
+            outcome = solveRobustly(rig, criteria);
+        else
+        {
+            outcome.converged = rig.solve(criteria);
+            outcome.varianceFactor = 1;
+            outcome.imageStatus.assign(rig.images().size(), (uchar)GLASS_IMAGE_USED);
+        }
+        if (!rig.hasUncertainPoses() || !outcome.converged)
+            break;
+        const double before = rig.pixelSigma();
+        rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(freedomOf(rig), 1)));
+        if (std::abs(rig.pixelSigma() - before) < 1e-4*before)
+            break;
+    }
+    return outcome;
+}
+
+void describeImages(const RigProblem& rig, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
+{
+    const int columns = 2*rig.cameraCount();
+    fit.perViewErrors = Mat(rig.viewCount(), columns, CV_64F, Scalar(NaN));
+    fit.imageStatus = Mat(rig.viewCount(), columns, CV_8U, Scalar(GLASS_IMAGE_ABSENT));
+    fit.inliers.assign(rig.viewCount()*columns, Mat());
+    double sum = 0;
+    for (size_t i = 0; i < rig.images().size(); i++)
+    {
+        const RigImage& image = rig.images()[i];
+        const int column = 2*image.camera + (image.refracted ? 0 : 1), used = image.usedCount();
+        const double squares = rig.residuals(image).squaredNorm();
+        sum += squares;
+        fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
+        fit.imageStatus.at<uchar>(image.view, column) = status[i];
+        Mat mask((int)task.views.object[image.view].size(), 1, CV_8U, Scalar(0));
+        for (size_t k = 0; k < image.points.index.size(); k++)
+            mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
+        fit.inliers[image.view*columns + column] = mask;
+    }
+    fit.rms = std::sqrt(sum/rig.pointCount());
+}
+
+//! Images that gave no pose to start from.
+void markUnusable(const RigTask& task, RigFit& fit)
+{
+    for (int view = 0; view < task.views.count(); view++)
+        for (int column = 0; column < fit.imageStatus.cols; column++)
+        {
+            const CameraViews& seen = task.views.cameras[column/2];
+            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.refracted : seen.direct)[view];
+            uchar& status = fit.imageStatus.at<uchar>(view, column);
+            if (status != GLASS_IMAGE_ABSENT || countSeen(pixels) == 0)
+                continue;
+            status = GLASS_IMAGE_UNUSABLE;
+            fit.inliers[view*fit.imageStatus.cols + column] = Mat((int)pixels.size(), 1, CV_8U, Scalar(0));
+        }
+}
+
+//! Starts of windows (into rig) and poses. Robust: images without a pose are taken out of the task.
+std::vector<Pose> startPoses(Rig& rig, RigTask& task, RigFit& fit)
+{
+    const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
+    const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
+    std::vector<Pose> poses = posesWithoutWindow(rig, views, task.knownPoses);
+    const std::vector<OtherMinimum> minima = startWindows(rig, views, poses, task.flags);
+    addPosesThroughWindow(rig, views, poses);
+    fit.otherMinima.create(rig.count(), 4, CV_64F);
+    for (int c = 0; c < rig.count(); c++)
+    {
+        Mat(minima[c].normal.t()).copyTo(fit.otherMinima(Rect(0, c, 3, 1)));
+        fit.otherMinima.at<double>(c, 3) = minima[c].excess;
+    }
+    if (!isRobust)
+        checkPoses(views, poses);
+    for (int c = 0; isRobust && c < rig.count(); c++)
+        for (int view = 0; view < views.count(); view++)
+        {
+            CameraViews& seen = task.views.cameras[c];
+            if (views.cameras[c].direct[view].empty() || !poses[view].found)
+                seen.direct[view].clear();
+            if (views.cameras[c].refracted[view].empty() || !poses[view].found)
+                seen.refracted[view].clear();
+        }
+    return poses;
+}
+
+} // namespace
+
+RigFit fitRig(Rig& rig, const RigTask& task_)
+{
+    const TermCriteria criteria = checkedCriteria(task_.criteria);
+    RigFit fit;
+    RigTask task = task_;
+    Rig start = rig;
+    const std::vector<Pose> poses = startPoses(start, task, fit);
+    RigProblem problem(start, task.views, poses, task.knowledge, task.flags);
+    checkFreedom(problem);
+    const RobustOutcome outcome = solve(problem, task, criteria);
+    checkFreedom(problem);
 
     // First, as what is undetermined is also what does not converge.
-    RigFit fit;
-    eigen2cv(rigCovariance(rig), fit.covariance);
-    if (!converged)
+    const double variance = outcome.varianceFactor*problem.squaredError()/freedomOf(problem);
+    eigen2cv(rigCovariance(problem, variance), fit.covariance);
+    if (!outcome.converged)
         CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
                                      "what the views hardly determine", criteria.maxCount));
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
-    fit.perViewErrors = rmsPerView(rig, (int)cameras.size());
-    if (wantsJacobian)
-        eigen2cv(rigJacobian(rig), fit.jacobian);
-    fit.rms = std::sqrt(rig.squaredError()/rig.pointCount());
-    for (int view = 0; view < rig.viewCount(); view++)
-        fit.poses.push_back(rig.pose(view));
-    for (int c = 0; c < (int)cameras.size(); c++)
-        cameras[c] = rig.camera(c);
-    if (rig.isStereo())
-        extrinsics = rig.extrinsics();
+    describeImages(problem, task, outcome.imageStatus, fit);
+    markUnusable(task_, fit);
+    if (task.wantsJacobian)
+        eigen2cv(rigJacobian(problem), fit.jacobian);
+    for (int view = 0; view < problem.viewCount(); view++)
+        fit.poses.push_back(problem.pose(view));
+    rig = problem.rig();
     return fit;
 }
 
@@ -70,11 +170,12 @@ static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, Ou
     if (!out.needed())
         return;
     const int count = (int)poses.size();
+    Mat all(count, 1, CV_64FC3, Scalar::all(NaN));
+    for (int i = 0; i < count; i++)
+        if (poses[i].found)
+            all.at<Vec3d>(i) = poses[i].*member;
     if (!out.isMatVector())
     {
-        Mat all(count, 1, CV_64FC3);
-        for (int i = 0; i < count; i++)
-            all.at<Vec3d>(i) = poses[i].*member;
         all.copyTo(out);
         return;
     }
@@ -82,23 +183,20 @@ static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, Ou
     for (int i = 0; i < count; i++)
     {
         out.create(3, 1, CV_64F, i, true);
-        Mat(poses[i].*member).copyTo(out.getMat(i));
+        Mat(all.at<Vec3d>(i)).copyTo(out.getMat(i));
     }
 }
 
-void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
-              OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian)
+void writePoses(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
 {
     writeVectors(fit.poses, &Pose::rvec, rvecs);
     writeVectors(fit.poses, &Pose::tvec, tvecs);
-    if (stdDeviations.needed())
-        fit.stdDeviations.copyTo(stdDeviations);
-    if (covariance.needed())
-        fit.covariance.copyTo(covariance);
-    if (perViewErrors.needed())
-        fit.perViewErrors.copyTo(perViewErrors);
-    if (jacobian.needed())
-        fit.jacobian.copyTo(jacobian);
+}
+
+void writeMat(const Mat& from, OutputArray to)
+{
+    if (to.needed())
+        from.copyTo(to);
 }
 
 }} // namespace

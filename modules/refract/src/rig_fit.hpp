@@ -5,27 +5,40 @@
 #ifndef OPENCV_REFRACT_RIG_FIT_HPP
 #define OPENCV_REFRACT_RIG_FIT_HPP
 
-#include "poses.hpp"
-#include "views.hpp"
+#include "rig_problem.hpp"
 
 namespace cv { namespace refract {
+
+//! What the calibrators are given beside the cameras.
+struct RigTask
+{
+    RigViews views;
+    std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
+    std::vector<PoseKnowledge> knowledge;       //!< of the same
+    int flags;
+    TermCriteria criteria;
+    bool wantsJacobian = false;
+};
 
 //! What the joint fit finds beside the cameras.
 struct RigFit
 {
-    std::vector<Pose> poses;        //!< object -> camera 1
+    std::vector<Pose> poses;        //!< object -> camera 1; NaN where a view has no point left
     double rms;
     Mat covariance, stdDeviations;  //!< of the public parameters
     Mat perViewErrors;              //!< columns: refracted, direct of each camera
-    Mat jacobian;                   //!< one camera only, if wanted
+    Mat jacobian;                   //!< if wanted
+    Mat imageStatus;                //!< GlassImageStatus, as perViewErrors
+    std::vector<Mat> inliers;       //!< of each element of perViewErrors, row by row
+    Mat otherMinima;                //!< one row a camera: normal, excess
 };
 
-//! Pose starts, fit, and what it tells. cameras and extrinsics are start and result.
-RigFit fitRig(std::vector<Camera>& cameras, Pose& extrinsics, const RigViews& views, int flags,
-              const TermCriteria& criteria, bool wantsJacobian);
+//! Starts, fit, and what it tells. rig is start and result.
+RigFit fitRig(Rig& rig, const RigTask& task);
 
-void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
-              OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian);
+void writePoses(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
+//! Copies what is wanted.
+void writeMat(const Mat& from, OutputArray to);
 
 }} // namespace
 

@@ -62,42 +62,49 @@ double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>
 
 } // namespace
 
-RigProblem::RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
-                       const std::vector<Pose>& poses, int flags)
-    : cameras_(cameras), shared_((flags & GLASS_SHARED_WINDOW) != 0)
+RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
+                       const std::vector<PoseKnowledge>& known, int flags)
+    : rig_(rig), known_(known), isSeen_(poses.size(), false), pixelSigma_(1)
 {
-    for (int c = 0; c < (int)cameras_.size(); c++)
+    size_t most = 6*rig_.cameras.size();
+    for (const Camera& camera : rig_.cameras)
+        most += camera.parameterCount();
+    values_.reserve(most);
+    for (int c = 0; c < rig_.count(); c++)
     {
-        const Camera& camera = cameras_[c];
+        const Camera& camera = rig_.cameras[c];
         const std::vector<double> all = camera.parameters();
         const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
         const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
         addBlock(RigBlock::LENS, c, lens, freeLens(lens, flags));
-        if (c == 1 && shared_)
+        if (!rig_.owns(c))
             continue;
         addBlock(RigBlock::NORMAL, c, std::vector<double>(lensEnd, lensEnd + 3), std::vector<bool>(3, true));
         addBlock(RigBlock::MEDIA, c, media, freeMedia(((int)media.size() - 3)/2, flags));
     }
-    if (isStereo())
+    for (int c = 1; c < rig_.count(); c++)
     {
-        const std::array<double, 6> six = sixOf(extrinsics);
-        addBlock(RigBlock::EXTRINSICS, 1, std::vector<double>(six.begin(), six.end()),
+        const std::array<double, 6> six = sixOf(rig_.extrinsics[c]);
+        addBlock(RigBlock::EXTRINSICS, c, std::vector<double>(six.begin(), six.end()),
                  std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
     }
     for (const Pose& pose : poses)
         poses_.push_back(sixOf(pose));
+    knownPoses_ = poses_;
     addImages(views);
+    for (const Camera& camera : rig_.cameras)
+        cameras_.push_back(RigCamera(camera));
+    updateCameras();
 }
 
 void RigProblem::addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values,
                           const std::vector<bool>& isFree)
 {
-    RigBlock block;
-    block.kind = kind;
-    block.camera = camera;
-    block.values = values;
-    block.isFree = isFree;
-    block.isHeld.assign(values.size(), false);
+    CV_Assert(values_.size() + values.size() <= values_.capacity());
+    double* const kept = values_.data() + values_.size();
+    values_.insert(values_.end(), values.begin(), values.end());
+    RigBlock block = { kind, camera, Eigen::Map<Eigen::VectorXd>(kept, values.size()), isFree, std::vector<double>(),
+                       std::vector<bool>(values.size(), false) };
     for (int i = 0; i < (int)values.size(); i++)
         block.lower.push_back(lowerBound(kind, i, values));
     blocks_.push_back(block);
@@ -115,82 +122,124 @@ void RigProblem::addImages(const RigViews& views)
                 image.camera = c;
                 image.refracted = refracted;
                 image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view]);
-                if (!image.points.pixel.empty())
-                    images_.push_back(image);
+                if (image.points.pixel.empty())
+                    continue;
+                image.rootWeights.assign(image.points.pixel.size(), 1.);
+                images_.push_back(image);
+                isSeen_[view] = true;
             }
 }
 
 int RigProblem::blockOf(RigBlock::Kind kind, int camera) const
 {
-    if (shared_ && (kind == RigBlock::NORMAL || kind == RigBlock::MEDIA))
-        camera = 0;
+    if (kind == RigBlock::NORMAL || kind == RigBlock::MEDIA)
+        camera = rig_.owner[camera];
     for (int i = 0; i < (int)blocks_.size(); i++)
         if (blocks_[i].kind == kind && blocks_[i].camera == camera)
             return i;
     return -1;
 }
 
+const double* RigProblem::valuesOf(RigBlock::Kind kind, int camera) const
+{
+    const int block = blockOf(kind, camera);
+    return block < 0 ? nullptr : blocks_[block].values.data();
+}
+
 //! In the order of ImageResidual's blocks after the pose.
 std::vector<int> RigProblem::blocksOf(const RigImage& image) const
 {
+    const int c = image.camera, owner = rig_.owner[c];
     std::vector<int> blocks;
-    if (image.camera == 1)
-        blocks.push_back(blockOf(RigBlock::EXTRINSICS, 1));
-    blocks.push_back(blockOf(RigBlock::LENS, image.camera));
-    if (image.refracted)
-    {
-        blocks.push_back(blockOf(RigBlock::NORMAL, image.camera));
-        blocks.push_back(blockOf(RigBlock::MEDIA, image.camera));
-    }
+    if (c > 0)
+        blocks.push_back(blockOf(RigBlock::EXTRINSICS, c));
+    blocks.push_back(blockOf(RigBlock::LENS, c));
+    if (!image.refracted)
+        return blocks;
+    blocks.push_back(blockOf(RigBlock::NORMAL, c));
+    blocks.push_back(blockOf(RigBlock::MEDIA, c));
+    if (owner != c && owner > 0)
+        blocks.push_back(blockOf(RigBlock::EXTRINSICS, owner));
     return blocks;
 }
 
 ceres::CostFunction* RigProblem::makeCost(const RigImage& image) const
 {
-    const bool isCamera2 = image.camera == 1;
-    const ImageResidual::Window window = !image.refracted ? ImageResidual::WITHOUT :
-        isCamera2 && shared_ ? ImageResidual::OF_CAMERA_1 : ImageResidual::OWN;
-    return ImageResidual::Create(cameras_[isCamera2 && shared_ ? 1 : image.camera], image.points, isCamera2, window);
+    const ImageResidual::Image kind = { image.refracted, image.camera == 0, rig_.owner[image.camera] == 0 };
+    return ImageResidual::Create(cameras_[image.camera], image.points, image.rootWeights, kind);
+}
+
+void RigProblem::updateCameras()
+{
+    for (int c = 0; c < rig_.count(); c++)
+    {
+        RigCamera::Parameters parameters;
+        parameters.extrinsics = valuesOf(RigBlock::EXTRINSICS, c);
+        parameters.lens = valuesOf(RigBlock::LENS, c);
+        parameters.normal = valuesOf(RigBlock::NORMAL, c);
+        parameters.media = valuesOf(RigBlock::MEDIA, c);
+        parameters.ownerExtrinsics = valuesOf(RigBlock::EXTRINSICS, rig_.owner[c]);
+        parameters.ownsWindow = rig_.owns(c);
+        cameras_[c].set(parameters);
+    }
 }
 
 Camera RigProblem::camera(int c) const
 {
-    const int window = shared_ ? 0 : c;
-    const std::vector<double>& normal = blocks_[blockOf(RigBlock::NORMAL, window)].values;
-    const std::vector<double>& media = blocks_[blockOf(RigBlock::MEDIA, window)].values;
-    std::vector<double> all = blocks_[blockOf(RigBlock::LENS, c)].values;
-    const size_t lensCount = all.size();
-    all.insert(all.end(), normal.begin(), normal.end());
-    all.insert(all.end(), media.begin(), media.end());
-    if (shared_ && c == 1)
-    {
-        const Pose toCamera2 = extrinsics();
-        Vec3d n(normal.data());
-        double distance = media[0];
-        windowInCamera2(Rotation(toCamera2.rvec.val).R, toCamera2.tvec, n, distance);
-        if (!(n[2] > 0))
-            CV_Error_(Error::StsBadArg, ("GLASS_SHARED_WINDOW: camera 2 looks away from the window, whose normal is "
-                                         "(%g, %g, %g) in its frame", n[0], n[1], n[2]));
-        if (distance < 0 && media[media.size() - 2] != media.back())
-            CV_Error_(Error::StsBadArg, ("GLASS_SHARED_WINDOW: camera 2 lies beyond the window, at distance %g",
-                                         distance));
-        std::copy(n.val, n.val + 3, all.begin() + lensCount);
-        all[lensCount + 3] = std::max(distance, 0.);
-    }
-    Camera result(cameras_[c]);
-    result.setParameters(all);
-    return result;
+    if (cameras_[c].camera(true))
+        return *cameras_[c].camera(true);
+    const WindowTransfer* window = cameras_[c].window.get();
+    CV_Assert(window);
+    const Vec3d& n = window->normal;
+    if (!(n[2] > 0))
+        CV_Error_(Error::StsBadArg, ("shared window: camera %d looks away from it, as its normal is (%g, %g, %g) in the "
+                                     "camera's frame", c + 1, n[0], n[1], n[2]));
+    CV_Error_(Error::StsBadArg, ("shared window: camera %d lies beyond the window, at distance %g", c + 1,
+                                 window->distance));
 }
 
-Pose RigProblem::pose(int view) const { return poseOf(poses_[view].data()); }
+Rig RigProblem::rig() const
+{
+    Rig rig = rig_;
+    for (int c = 0; c < rig.count(); c++)
+    {
+        rig.cameras[c] = camera(c);
+        if (c > 0)
+            rig.extrinsics[c] = poseOf(valuesOf(RigBlock::EXTRINSICS, c));
+    }
+    return rig;
+}
 
-Pose RigProblem::extrinsics() const { return poseOf(blocks_[blockOf(RigBlock::EXTRINSICS, 1)].values.data()); }
+Pose RigProblem::pose(int view) const
+{
+    Pose pose = poseOf(poses_[view].data());
+    pose.found = isSeen_[view];
+    return pose;
+}
+
+bool RigProblem::hasUncertainPoses() const
+{
+    for (int view = 0; view < viewCount(); view++)
+        if (isUncertain(view))
+            return true;
+    return false;
+}
+
+void RigProblem::setRootWeights(int image, const std::vector<double>& rootWeights)
+{
+    images_[image].rootWeights = rootWeights;
+    const int view = images_[image].view;
+    isSeen_[view] = false;
+    for (const RigImage& other : images_)
+        if (other.view == view && other.usedCount() > 0)
+            isSeen_[view] = true;
+}
 
 int RigProblem::pointCount() const
 {
     int count = 0;
     for (const RigImage& image : images_)
-        count += (int)image.points.pixel.size();
+        count += image.usedCount();
     return count;
 }
 
@@ -199,6 +248,22 @@ int RigProblem::freeCount() const
     int count = 0;
     for (const RigBlock& block : blocks_)
         count += (int)block.tangentBasis().cols();
+    return count;
+}
+
+int RigProblem::poseCount() const
+{
+    int count = 0;
+    for (int view = 0; view < viewCount(); view++)
+        count += isAdjusted(view);
+    return count;
+}
+
+int RigProblem::equationCount() const
+{
+    int count = 2*pointCount();
+    for (int view = 0; view < viewCount(); view++)
+        count += isUncertain(view) ? 6 : 0;
     return count;
 }
 

@@ -5,15 +5,32 @@
 #ifndef OPENCV_REFRACT_RIG_PROBLEM_HPP
 #define OPENCV_REFRACT_RIG_PROBLEM_HPP
 
-#include "poses.hpp"
 #include "residual.hpp"
-#include "views.hpp"
-#include <Eigen/Core>
-#include <array>
+#include <ceres/evaluation_callback.h>
 
 namespace cv { namespace refract {
 
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
+typedef Eigen::Matrix<double, 6, 6, Eigen::RowMajor> Matrix6;
+
+//! The cameras: lens and window of each, and where they are.
+struct Rig
+{
+    std::vector<Camera> cameras;
+    std::vector<int> owner;             //!< the first camera that looks through the same window, whose frame describes it
+    std::vector<Pose> extrinsics;       //!< camera 1 -> camera; the first is the identity
+
+    int count() const { return (int)cameras.size(); }
+    bool owns(int c) const { return owner[c] == c; }
+};
+
+//! What is known of a view's pose from outside.
+struct PoseKnowledge
+{
+    enum Kind { UNKNOWN, EXACT, UNCERTAIN };
+    Kind kind = UNKNOWN;
+    Matrix6 inverseRoot;                //!< W, W^T W = inverse of the covariance; UNCERTAIN only
+};
 
 //! One image of the problem.
 struct RigImage
@@ -21,6 +38,10 @@ struct RigImage
     int view, camera;
     bool refracted;
     ImagePoints points;
+    std::vector<double> rootWeights;    //!< one per point; 0: left out
+
+    int usedCount() const { return (int)std::count_if(rootWeights.begin(), rootWeights.end(),
+                                                      [](double w) { return w > 0; }); }
 };
 
 //! A block of parameters that the poses do not contain.
@@ -28,8 +49,8 @@ struct RigBlock
 {
     enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS };
     Kind kind;
-    int camera;
-    std::vector<double> values;
+    int camera;                     //!< of a window: its owner
+    Eigen::Map<Eigen::VectorXd> values;     //!< kept by the problem
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
     std::vector<double> lower;      //!< bounds
     std::vector<bool> isHeld;       //!< on its bound while solving
@@ -40,17 +61,20 @@ struct RigBlock
     String nameOf(int coordinate) const;
 };
 
-/** The joint problem: one or two cameras, each behind its own window or both behind one, a pose (object -> camera 1) for
-each view, every observed point of every image, through the window or direct. Maximum likelihood under equal isotropic
-pixel noise; Ceres eliminates the poses.
+/** The joint problem: cameras, each behind its own window or several behind one, a pose (object -> camera 1) for each view,
+every observed point of every image, through the window or direct. Maximum likelihood under equal isotropic pixel noise;
+Ceres eliminates the poses.
 
-The public parameters are, per camera, those of Camera::parameters(), then rvec and T of camera 2. What is free is said
-by GlassCalibrationFlags. */
-class RigProblem
+The public parameters are, per camera, those of Camera::parameters(), then rvec and T of each camera but the first. What is
+free is said by GlassCalibrationFlags. */
+class RigProblem : private ceres::EvaluationCallback
 {
 public:
-    RigProblem(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views,
-               const std::vector<Pose>& poses, int flags);
+    //! known: one per view, or empty. The start of a known pose is the known one.
+    RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
+               const std::vector<PoseKnowledge>& known, int flags);
+    RigProblem(const RigProblem&) = delete;
+    RigProblem& operator=(const RigProblem&) = delete;
 
     //! Empty, or which point has no image at the start.
     String startFault() const;
@@ -60,31 +84,45 @@ public:
     bool solve(const TermCriteria& criteria);
 
     int viewCount() const { return (int)poses_.size(); }
-    bool isStereo() const { return cameras_.size() == 2; }
+    int cameraCount() const { return rig_.count(); }
     const std::vector<RigImage>& images() const { return images_; }
     const std::vector<RigBlock>& blocks() const { return blocks_; }
+    void setRootWeights(int image, const std::vector<double>& rootWeights);
+    //! Standard deviation of a pixel coordinate, against which poses known with a covariance are weighed.
+    void setPixelSigma(double sigma) { pixelSigma_ = sigma; }
+    double pixelSigma() const { return pixelSigma_; }
 
-    Camera camera(int c) const;         //!< with the current parameters
+    Rig rig() const;                    //!< with the current parameters
+    Camera camera(int c) const;
     Pose pose(int view) const;
-    Pose extrinsics() const;
+    PoseKnowledge::Kind knowledgeOf(int view) const { return known_.empty() ? PoseKnowledge::UNKNOWN : known_[view].kind; }
+    bool hasUncertainPoses() const;
 
-    int pointCount() const;
+    int pointCount() const;             //!< of those with a weight
     int freeCount() const;              //!< without the poses
-    double squaredError(const RigImage& image) const;
-    double squaredError() const;
+    int poseCount() const;              //!< of those that are adjusted
+    int equationCount() const;
+    //! Weighted residuals of one image: u, v of each point.
+    Eigen::VectorXd residuals(const RigImage& image) const;
+    double squaredError() const;        //!< of all images, and of the poses known with a covariance
+
+    //! Distance of each predicted from the observed pixel, whatever its weight, with this pose; infinite without image.
+    std::vector<double> pixelErrors(const RigImage& image, const Pose& pose) const;
 
     //! One image's residuals and their derivatives: by its pose, and by all coordinates of the blocks that it depends on.
     struct Derivatives
     {
         std::vector<int> blocks;                    //!< indices into blocks()
         std::vector<RowMajorMatrix> byBlock;        //!< of the same
-        RowMajorMatrix byPose;
+        RowMajorMatrix byPose;                      //!< 0 if the pose is known exactly
         Eigen::VectorXd residuals;
     };
     Derivatives derivatives(const RigImage& image) const;
+    //! What is known of a pose counts as six more residuals; their derivatives by the pose.
+    Matrix6 priorByPose(int view) const { return pixelSigma_*known_[view].inverseRoot; }
 
-    /** d public parameters / d free coordinates of all blocks, in the order of blocks(). The window of camera 2 follows
-    from the shared one. */
+    /** d public parameters / d free coordinates of all blocks, in the order of blocks(). What the other cameras see of a
+    shared window follows from its owner's. */
     Eigen::MatrixXd publicBasis() const;
     int publicCount() const;
 
@@ -92,20 +130,32 @@ private:
     void addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values, const std::vector<bool>& isFree);
     void addImages(const RigViews& views);
     int blockOf(RigBlock::Kind kind, int camera) const;
+    const double* valuesOf(RigBlock::Kind kind, int camera) const;      //!< null for the extrinsics of camera 1
     std::vector<int> blocksOf(const RigImage& image) const;
-    std::vector<const double*> valuesOf(const RigImage& image) const;
     ceres::CostFunction* makeCost(const RigImage& image) const;
-    int publicRow(const RigBlock& block) const;
-    void addSharedWindow(Eigen::MatrixXd& basis) const;
+    int publicRow(RigBlock::Kind kind, int camera) const;
+    void addSharedWindow(int camera, Eigen::MatrixXd& basis) const;
+    bool isAdjusted(int view) const { return isSeen_[view] && knowledgeOf(view) != PoseKnowledge::EXACT; }
+    bool isUncertain(int view) const { return isSeen_[view] && knowledgeOf(view) == PoseKnowledge::UNCERTAIN; }
+
+    //! The cameras at the current values of the blocks.
+    void updateCameras();
+    void PrepareForEvaluation(bool, bool isNewPoint) override { if (isNewPoint) updateCameras(); }
+
     //! A ceres::TerminationType. iterations: in the limit, out how many were made.
     int solveInside(double change, int& iterations, double& radius);
+    bool isOnBound() const;
     bool holdAtBounds();            //!< true if that changes what is held
 
-    std::vector<Camera> cameras_;       //!< lens models and numbers of layers
-    bool shared_;
+    Rig rig_;                           //!< lens models and numbers of layers
+    std::vector<RigCamera> cameras_;
     std::vector<RigImage> images_;
+    std::vector<double> values_;        //!< of all blocks, one after the other, as Ceres sorts blocks by their address
     std::vector<RigBlock> blocks_;
-    std::vector<std::array<double, 6> > poses_;
+    std::vector<std::array<double, 6> > poses_, knownPoses_;
+    std::vector<PoseKnowledge> known_;
+    std::vector<bool> isSeen_;          //!< per view: some image
+    double pixelSigma_;
 };
 
 }} // namespace

@@ -40,18 +40,19 @@ String RigProblem::startFault() const
 {
     for (const RigImage& image : images_)
     {
-        Camera seenBy = camera(image.camera);
-        if (!image.refracted)
-            seenBy.setWindow(GlassWindow());
-        const Rotation object(poses_[image.view].data());
-        const Pose toCamera2 = image.camera == 1 ? extrinsics() : Pose();
+        const Camera* camera = cameras_[image.camera].camera(image.refracted);
+        if (!camera)
+            this->camera(image.camera);         // throws
+        const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
+        const Extrinsics toCamera1(poses_[image.view].data());
+        const Matx33d R = toCamera.rotation.R*toCamera1.rotation.R;
+        const Vec3d t = toCamera.rotation.R*toCamera1.T + toCamera.T;
         for (const Point3d& point : image.points.object)
         {
-            const Vec3d inCamera1 = object.R*Vec3d(point) + pose(image.view).tvec;
-            Vec2d pixel;
-            double byPoint[6];
-            const int status = seenBy.projectJacobian(Rotation(toCamera2.rvec.val).R*inCamera1 + toCamera2.tvec, pixel,
-                                                      byPoint, nullptr);
+            const Vec3d X = R*Vec3d(point) + t;
+            double u, v;
+            uchar status = REFRACT_OK;
+            camera->project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
             if (status != REFRACT_OK)
                 return format("view %d of camera %d, point (%g, %g, %g): no image %s at the start (RefractiveStatus %d); "
                               "check the window's distance and thickness, the lens and the units", image.view,
@@ -78,11 +79,20 @@ bool RigProblem::solve(const TermCriteria& criteria)
         if (outcome == ceres::FAILURE)
             return false;
         left -= iterations;
-        if (!holdAtBounds() && outcome == ceres::CONVERGENCE)
+        if (!(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE)
             return true;
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
     return !stopsByChange;
+}
+
+bool RigProblem::isOnBound() const
+{
+    for (const RigBlock& block : blocks_)
+        for (int i = 0; i < (int)block.values.size(); i++)
+            if (block.isFree[i] && block.values[i] <= block.lower[i])
+                return true;
+    return false;
 }
 
 bool RigProblem::holdAtBounds()
@@ -98,7 +108,7 @@ bool RigProblem::holdAtBounds()
     }
     bool changed = false;
     for (size_t b = 0; b < blocks_.size(); b++)
-        for (size_t i = 0; i < blocks_[b].values.size(); i++)
+        for (int i = 0; i < (int)blocks_[b].values.size(); i++)
         {
             RigBlock& block = blocks_[b];
             const bool hold = block.isFree[i] && block.values[i] <= block.lower[i] && gradients[b](i) >= 0;
@@ -110,7 +120,9 @@ bool RigProblem::holdAtBounds()
 
 int RigProblem::solveInside(double change, int& iterations, double& radius)
 {
-    ceres::Problem problem;
+    ceres::Problem::Options problemOptions;
+    problemOptions.evaluation_callback = this;
+    ceres::Problem problem(problemOptions);
     const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (RigBlock& block : blocks_)
     {
@@ -123,7 +135,17 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
         for (int i : blocksOf(image))
             values.push_back(blocks_[i].values.data());
         problem.AddResidualBlock(makeCost(image), nullptr, values);
-        ordering->AddElementToGroup(values[0], 0);
+    }
+    for (int view = 0; view < viewCount(); view++)
+    {
+        if (!isSeen_[view])
+            continue;
+        ordering->AddElementToGroup(poses_[view].data(), 0);
+        if (!isAdjusted(view))
+            problem.SetParameterBlockConstant(poses_[view].data());
+        else if (isUncertain(view))
+            problem.AddResidualBlock(PosePrior::Create(knownPoses_[view], known_[view].inverseRoot, pixelSigma_), nullptr,
+                                     poses_[view].data());
     }
 
     ceres::Solver::Options options;
@@ -138,6 +160,7 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
+    updateCameras();
     if (!summary.IsSolutionUsable())
         return ceres::FAILURE;
     iterations = std::max(1, (int)summary.iterations.size() - 1);

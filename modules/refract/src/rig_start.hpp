@@ -5,22 +5,35 @@
 #ifndef OPENCV_REFRACT_RIG_START_HPP
 #define OPENCV_REFRACT_RIG_START_HPP
 
-#include "poses.hpp"
-#include "views.hpp"
+#include "rig_problem.hpp"
 
 namespace cv { namespace refract {
 
-/** Start of one camera's window: its normal and, if free, its distance; the rest as given.
+/** Start of every view's pose, object -> camera 1, as far as it can be had without any window: the known pose, else from
+the direct image with the most points. */
+std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known);
 
-From pairs if there are any. Else, with the lens known, some views are fitted from the best few of a ring of tilts, as the
-cost through the window alone has more than one minimum, and all views from each of these and from the given window; the
-least cost wins. Else the given window. */
-GlassWindow startWindow(const Camera& camera, const CameraViews& seen, const std::vector<std::vector<Point3d> >& object,
-                        int flags);
+//! The other poses, from images through the windows; not found where no image gives one.
+void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses);
 
-/** Start of every view's pose, object -> camera 1: from its direct image with the most points, else from one through the
-window. Throws, naming the view, if no image gives a pose. */
-std::vector<Pose> startPoses(const std::vector<Camera>& cameras, const Pose& extrinsics, const RigViews& views);
+//! Throws, naming the view, if a view that has points has no pose.
+void checkPoses(const RigViews& views, const std::vector<Pose>& poses);
+
+//! A second minimum of the cost of a window that only images through it tell of.
+struct OtherMinimum
+{
+    Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the camera's frame
+    //! Root of the difference of the squared errors, in standard deviations of a pixel.
+    double excess = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** Start of every window: its normal and, if free, its distance; the rest as given.
+
+From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
+with the lens known, some views are fitted from the best few of a ring of tilts, as the cost through the window alone has
+more than one minimum, and all views from each distinct one of these; the least cost wins. Else the given window.
+@return one per camera; only an owner's may hold a minimum */
+std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags);
 
 }} // namespace
 

@@ -73,6 +73,11 @@ CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedN
     return views;
 }
 
+int countSeen(const std::vector<Point2d>& pixels)
+{
+    return (int)std::count_if(pixels.begin(), pixels.end(), isSeen);
+}
+
 bool seesAnything(const PixelViews& views)
 {
     for (const std::vector<Point2d>& view : views)
@@ -89,6 +94,7 @@ ImagePoints observed(const std::vector<Point3d>& object, const std::vector<Point
         {
             points.object.push_back(object[i]);
             points.pixel.push_back(pixels[i]);
+            points.index.push_back((int)i);
         }
     return points;
 }

@@ -18,7 +18,7 @@ struct CameraViews
     PixelViews refracted, direct;
 };
 
-//! A calibrator's input: views of targets by one or two cameras.
+//! A calibrator's input: views of targets by one or more cameras.
 struct RigViews
 {
     std::vector<std::vector<Point3d> > object;
@@ -39,6 +39,9 @@ CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedN
 
 inline bool isSeen(const Point2d& pixel) { return std::isfinite(pixel.x) && std::isfinite(pixel.y); }
 
+//! How many points of one image were seen.
+int countSeen(const std::vector<Point2d>& pixels);
+
 //! True if any view has a point that was seen.
 bool seesAnything(const PixelViews& views);
 
@@ -47,6 +50,7 @@ struct ImagePoints
 {
     std::vector<Point3d> object;    //!< object coordinates
     std::vector<Point2d> pixel;
+    std::vector<int> index;         //!< in the target
 };
 
 //! Drops the points that were not seen (NaN).

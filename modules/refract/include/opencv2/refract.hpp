@@ -62,7 +62,7 @@ enum TriangulateFlags {
     TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
 };
 
-//! Flags of calibrateGlass and stereoCalibrateGlass; the normal is always free
+//! Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
     GLASS_FREE_INDEX = 2,           //!< index of every layer
@@ -70,9 +70,19 @@ enum GlassCalibrationFlags {
     GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
     GLASS_FREE_INTRINSICS = 16,     //!< lens parameters (overloads with RefractiveCamera only); coefficients that are
                                     //!< exactly 0 stay 0
-    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass only)
+    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
-    GLASS_FIX_PRINCIPAL_POINT = 128 //!< with GLASS_FREE_INTRINSICS: cx and cy stay
+    GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
+    GLASS_ROBUST = 256,             //!< leave out wrong points and images; without: pure maximum likelihood of all points
+    GLASS_USE_POSES = 512           //!< the targets' poses are known (calibrateGlassRig only)
+};
+
+//! What became of one image in calibrateGlassRig
+enum GlassImageStatus {
+    GLASS_IMAGE_USED = 0,           //!< used, but for the points that inliers marks 0
+    GLASS_IMAGE_ABSENT = 1,         //!< not taken, or no point seen
+    GLASS_IMAGE_MOVED = 2,          //!< left out: its target is not where the view's other images have it
+    GLASS_IMAGE_UNUSABLE = 3        //!< left out: fewer than half of its points, or fewer than 4, fit one pose
 };
 
 /** @brief A flat window: parallel layers that share one normal.
@@ -485,6 +495,65 @@ CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+
+/** @brief calibrateGlass for any number of cameras, each behind its own window or several behind one; the general form of
+calibrateGlass and stereoCalibrateGlass.
+
+One target pose serves all images of a view (a moment), of all cameras, through the window and direct. A camera need not
+see every view, but views must tie the cameras together if R and T are free.
+
+With GLASS_ROBUST hidden, smeared or wrongly detected points and images whose target was moved are found and left out: a
+start from random samples (the same ones every time), a graduated redescending loss per point, then a hard decision with a
+chance of 1e-4 for a good point, so that clean data give what they give without. For a view of an unmoved target whose
+direct and refracted images contradict each other, beyond what all views do, the direct images go.
+
+With GLASS_USE_POSES the poses rvecs, tvecs are known from outside (a robot, a jig). A view with a covariance moves within
+it: one prior residual, weighed against the pixels' own noise, which is estimated. If also lens, thickness and index are
+known, one view determines the normal.
+
+@param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
+@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
+view was not taken, an empty list holds no view.
+@param imagePointsDirect per camera, per view: the same points of the same, unmoved target seen without the window; may be
+empty altogether.
+@param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
+@param windowOfCamera per camera: which window it looks through; equal numbers share one. The first camera of a shared
+window brings its start, what the others see of it follows from R and T.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity. Result with
+GLASS_FREE_EXTRINSICS. Not used for one camera.
+@param Ts 3x1, as Rs.
+@param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view of which
+nothing is left.
+@param tvecs object -> camera 1 translation of each view; as rvecs.
+@param stdDeviations Px1: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
+@param covariance PxP in the same order, scaled by the residuals.
+@param perViewErrors Vx2C CV_64F: RMS of each image: refracted and direct of camera 1, of camera 2, ...; NaN where there is
+none or it was left out.
+@param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
+@param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
+where there is no image.
+@param otherMinima Cx4 CV_64F: where a window starts from images through it alone, the normal (3) of the second best
+minimum in the frame of the camera that saw most, and how much worse it is, as the root of the difference of the squared
+errors in standard deviations of a pixel. Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN
+where no other minimum was found. The row is the first camera's of the window.
+@param flags see GlassCalibrationFlags.
+@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
+exact; noArray(): all are exact.
+@param criteria iterations and relative change of the cost at which to stop.
+@return RMS reprojection error in pixels over all points that were used.
+
+Throws as calibrateGlass, and with GLASS_ROBUST if fewer than half of all points fit.
+*/
+CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+        const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
+        OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
+        int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).

@@ -1,0 +1,196 @@
+// calibrateGlassRig: any number of cameras, shared windows, known poses.
+#include "rig_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+TEST_CASE("Four cameras behind three windows, R and T free, from perfect data", "[rig_glass]")
+{
+    Random random(600);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(4, { 0, 7, 0, 2 }, 1.333);
+    for (bool paired : { true, false })
+    {
+        const RigScene scene = makeRigScene(truth, 8, random, 0);
+        RigCall call(truth, scene, paired);
+        for (int c = 1; c < 4; c++)
+            call.Ts[c] += Mat(Vec3d(2, -1, 1));
+        CHECK(call.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE) < 1e-5);
+        for (int c = 0; c < 4; c++)
+        {
+            CAPTURE(paired, c);
+            CHECK(angleBetween(call.cameras[c]->window().normal, truth.cameras[c]->window().normal) < 1e-3);
+            CHECK(call.cameras[c]->window().distance == Approx(truth.cameras[c]->window().distance).epsilon(1e-4));
+            CHECK(norm(call.Ts[c], Mat(truth.Ts[c])) < 1e-2);
+        }
+        // Cameras 1 and 3 look through one window.
+        const Matx33d R(call.Rs[2]);
+        CHECK(norm(R*call.cameras[0]->window().normal - call.cameras[2]->window().normal) < 1e-12);
+        CHECK(call.imageStatus.size() == Size(8, 8));
+        CHECK(call.imageStatus.at<uchar>(0, 1) == (paired ? GLASS_IMAGE_USED : GLASS_IMAGE_ABSENT));
+        CHECK(call.perViewErrors.size() == Size(8, 8));
+        REQUIRE(call.inliers.size() == 64);
+        CHECK(countNonZero(call.inliers[0]) == 30);
+    }
+}
+
+TEST_CASE("A window shared by cameras other than the first, whose owner moves", "[rig_glass]")
+{
+    Random random(610);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(3, { 0, 1, 1 }, 1.333);
+    RigCall call(truth, makeRigScene(truth, 8, random, 0), true);
+    call.Ts[1] += Mat(Vec3d(1, 1, -1));
+    call.Ts[2] += Mat(Vec3d(-1, 2, 1));
+    CHECK(call.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE) < 1e-5);
+    CHECK(angleBetween(call.cameras[2]->window().normal, truth.cameras[2]->window().normal) < 1e-3);
+    CHECK(norm(call.Ts[2], Mat(truth.Ts[2])) < 1e-2);
+}
+
+TEST_CASE("The covariance of three cameras covers their errors", "[rig_glass]")
+{
+    const int runs = 60;
+    double mahalanobis = 0;
+    const RigTruth truth = makeRig(3, { 0, 1, 1 }, 1.333);
+    for (int run = 0; run < runs; run++)
+    {
+        Random random(6200 + run);
+        RigCall call(truth, makeRigScene(truth, 3, random, 0.1), true);
+        call.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+        // three cameras of 16 parameters, then R, T of the second and third
+        REQUIRE(call.covariance.size() == Size(60, 60));
+        const int normal3 = 32 + 8, T3 = 57;
+        std::vector<int> rows = { normal3, normal3 + 1, normal3 + 2, normal3 + 3, T3, T3 + 1, T3 + 2 };
+        const GlassWindow found = call.cameras[2]->window(), right = truth.cameras[2]->window();
+        const Vec3d n = found.normal - right.normal, T = Vec3d(call.Ts[2]) - truth.Ts[2];
+        mahalanobis += squaredMahalanobis({ n[0], n[1], n[2], found.distance - right.distance, T[0], T[1], T[2] },
+                                          call.covariance, rows)/runs;
+    }
+    CAPTURE(mahalanobis, seed());
+    CHECK(mahalanobis == Approx(6).epsilon(0.25));      // chi^2: normal 2, distance 1, T 3
+}
+
+TEST_CASE("One camera: the rig is calibrateGlass; the stereo pair is stereoCalibrateGlass", "[rig_glass]")
+{
+    Random random(630);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1);
+    const RigScene scene = makeRigScene(truth, 4, random, 0.1);
+    RigCall rig(truth, scene, true);
+    const double rms = rig.run(GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS);
+    RigCall start(truth, scene, true);
+    Mat R = start.Rs[1], T = start.Ts[1];
+    Mat covariance;
+    CHECK(stereoCalibrateGlass(scene.object, scene.refracted[0], scene.direct[0], scene.refracted[1], scene.direct[1],
+                               start.cameras[0], start.cameras[1], R, T, noArray(), noArray(), noArray(), covariance,
+                               noArray(), GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS) == rms);
+    CHECK(norm(T, rig.Ts[1]) == 0);
+    CHECK(norm(covariance, rig.covariance) == 0);
+
+    RigTruth one = truth;
+    RigScene seenByOne = scene;
+    keepFirst(one, seenByOne);
+    RigCall single(one, seenByOne, true), again(one, seenByOne, true);
+    const double alone = single.run(GLASS_FREE_THICKNESS);
+    CHECK(calibrateGlass(scene.object, scene.refracted[0], scene.direct[0], again.cameras[0], noArray(), noArray(),
+                         GLASS_FREE_THICKNESS) == alone);
+    CHECK(again.cameras[0]->window().normal == single.cameras[0]->window().normal);
+}
+
+TEST_CASE("Known poses: one view through the window determines its normal", "[rig_glass]")
+{
+    Random random(640);
+    CAPTURE(seed());
+    RigTruth truth = makeRig(1, { 0 }, 1);
+    const RigScene scene = makeRigScene(truth, 1, random, 0.1);
+    RigCall call(truth, scene, false);
+    call.rvecs = vectorsOf(scene.rvecs);
+    call.tvecs = vectorsOf(scene.tvecs);
+    const double rms = call.run(GLASS_USE_POSES);
+    CHECK(rms == Approx(0.1*std::sqrt(2.)).epsilon(0.3));
+    CHECK(norm(call.tvecs[0], Mat(scene.tvecs[0])) == 0);
+    const double error = angleBetween(call.cameras[0]->window().normal, truth.cameras[0]->window().normal);
+    const double sigma = std::sqrt(trace(call.covariance(Rect(8, 8, 3, 3)))[0])*180/CV_PI;
+    CHECK(sigma < 0.06);
+    CHECK(error < 4*sigma);
+}
+
+TEST_CASE("Poses known with a covariance: between none and exact, and as good as stated", "[rig_glass]")
+{
+    const int runs = 100;
+    double mahalanobis = 0, exact = 0, uncertain = 0, unknown = 0;
+    const RigTruth truth = makeRig(1, { 0 }, 1);
+    for (int run = 0; run < runs; run++)
+    {
+        Random random(6500 + run);
+        const RigScene scene = makeRigScene(truth, 4, random, 0.1);
+        Mat covariance = Mat::zeros(6, 6, CV_64F);
+        const double sigmaR = 1e-4, sigmaT = 0.03;
+        RigCall call(truth, scene, false), best(truth, scene, false), none(truth, scene, false);
+        best.rvecs = vectorsOf(scene.rvecs);
+        best.tvecs = vectorsOf(scene.tvecs);
+        for (int i = 0; i < 6; i++)
+            covariance.at<double>(i, i) = std::pow(i < 3 ? sigmaR : sigmaT, 2);
+        for (int view = 0; view < 4; view++)
+        {
+            const auto noise = [&](double s) { return Vec3d(random.normal(s), random.normal(s), random.normal(s)); };
+            call.rvecs.push_back(Mat(scene.rvecs[view] + noise(sigmaR)));
+            call.tvecs.push_back(Mat(scene.tvecs[view] + noise(sigmaT)));
+            call.poseCovariances.push_back(covariance);
+        }
+        const Vec3d normal = truth.cameras[0]->window().normal;
+        const auto square = [&](const RigCall& c) { return std::pow(angleBetween(c.cameras[0]->window().normal, normal), 2); };
+        call.run(GLASS_USE_POSES);
+        best.run(GLASS_USE_POSES);
+        none.run(0);
+        uncertain += square(call);
+        exact += square(best);
+        unknown += square(none);
+        const Vec3d n = call.cameras[0]->window().normal - normal;
+        mahalanobis += squaredMahalanobis({ n[0], n[1], n[2] }, call.covariance, { 8, 9, 10 })/runs;
+    }
+    CAPTURE(mahalanobis, std::sqrt(exact/runs), std::sqrt(uncertain/runs), std::sqrt(unknown/runs), seed());
+    CHECK(mahalanobis == Approx(2).epsilon(0.35));
+    CHECK(exact < uncertain);
+    CHECK(uncertain < 0.2*unknown);
+}
+
+TEST_CASE("calibrateGlassRig refuses", "[rig_glass]")
+{
+    Random random(660);
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1);
+    const RigScene scene = makeRigScene(truth, 3, random, 0.1);
+    const auto why = [&](int flags, const std::function<void(RigCall&)>& spoil)
+    {
+        RigCall call(truth, scene, true);
+        spoil(call);
+        return thrown([&] { call.run(flags); });
+    };
+    using Catch::Contains;
+    CHECK_THAT(why(GLASS_SHARED_WINDOW, [](RigCall&) {}), Contains("flags is 64"));
+    CHECK_THAT(why(GLASS_FREE_DISTANCE, [](RigCall&) {}), Contains("GLASS_FREE_DISTANCE"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.cameras.clear(); }), Contains("cameras is empty"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.windows.pop_back(); }), Contains("windowOfCamera has 1 elements; cameras has 2"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.refracted.pop_back(); }), Contains("imagePointsRefracted has 1"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.refracted[1].clear(); }), Contains("imagePointsRefracted[1] has no point"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.direct[1].pop_back(); }), Contains("imagePointsDirect[1] has 2 views"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.cameras[1] = c.cameras[0]; }), Contains("one object"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.cameras[1].release(); }), Contains("cameras[1] is empty"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.Rs.pop_back(); }), Contains("Rs has 1 elements"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.Ts[0] = Mat(Vec3d(1, 0, 0)); }), Contains("Rs[0] and Ts[0]"));
+    CHECK_THAT(why(GLASS_USE_POSES, [](RigCall&) {}), Contains("rvecs has 0 vectors"));
+    const auto givePoses = [&](RigCall& c)
+    {
+        c.rvecs = vectorsOf(scene.rvecs);
+        c.tvecs = vectorsOf(scene.tvecs);
+    };
+    CHECK_THAT(why(GLASS_USE_POSES, [&](RigCall& c) { givePoses(c); c.tvecs[1].at<double>(0) = NaN; }),
+               Contains("tvecs[1][0] is nan"));
+    CHECK_THAT(why(GLASS_USE_POSES, [&](RigCall& c) { givePoses(c); c.poseCovariances.assign(2, Mat::eye(6, 6, CV_64F)); }),
+               Contains("poseCovariances has 2 elements"));
+    CHECK_THAT(why(GLASS_USE_POSES, [&](RigCall& c) { givePoses(c); c.poseCovariances.assign(3, Mat::eye(5, 5, CV_64F)); }),
+               Contains("poseCovariances[0] has 25 values"));
+    CHECK_THAT(why(GLASS_USE_POSES, [&](RigCall& c) { givePoses(c); c.poseCovariances.assign(3, Mat::zeros(6, 6, CV_64F)); }),
+               Contains("poseCovariances[0] is not positive definite"));
+}
