@@ -80,6 +80,45 @@ inline CalibrationScene makeScene(const cv::Ptr<RefractiveCamera>& camera, int v
     return makeScene(camera, ObjectViews(views, board()), random, sigma);
 }
 
+//! The same scene, its pixels with noise.
+inline CalibrationScene withNoise(CalibrationScene scene, Random& random, double sigma)
+{
+    for (PixelViews* views : { &scene.refracted, &scene.direct })
+        for (std::vector<cv::Point2d>& view : *views)
+            for (cv::Point2d& p : view)
+                p += cv::Point2d(random.normal(sigma), random.normal(sigma));
+    return scene;
+}
+
+//! Displaces so many of the points by 1 to 20 px; what was displaced, per view.
+inline std::vector<std::vector<uchar> > displace(PixelViews& views, double part, Random& random)
+{
+    std::vector<std::vector<uchar> > displaced;
+    for (std::vector<cv::Point2d>& view : views)
+    {
+        displaced.push_back(std::vector<uchar>(view.size(), 0));
+        for (size_t i = 0; i < view.size(); i++)
+        {
+            if (random.uniform(0, 1) >= part)
+                continue;
+            const double size = random.uniform(1, 20), azimuth = random.uniform(0, 2*CV_PI);
+            view[i] += size*cv::Point2d(std::cos(azimuth), std::sin(azimuth));
+            displaced.back()[i] = 1;
+        }
+    }
+    return displaced;
+}
+
+//! The views without the points that are marked.
+inline PixelViews without(PixelViews views, const std::vector<std::vector<uchar> >& marked)
+{
+    for (size_t view = 0; view < views.size(); view++)
+        for (size_t i = 0; i < views[view].size(); i++)
+            if (marked[view][i])
+                views[view][i] = cv::Point2d(NaN, NaN);
+    return views;
+}
+
 //! Degrees between two directions.
 inline double angleBetween(const cv::Vec3d& a, const cv::Vec3d& b)
 {

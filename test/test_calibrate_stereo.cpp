@@ -1,4 +1,4 @@
-#include "calibration_scenes.hpp"
+#include "rig_scenes.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -20,20 +20,10 @@ struct StereoRig
     Vec3d T;
 };
 
-//! The paper's Table 3: its rotation maps right to left.
 StereoRig paperRig()
 {
-    StereoRig rig;
-    const Matx33d printed(0.9572, 0.0008, -0.2893, -0.0087, 0.9996, -0.0262, 0.2892, 0.0275, 0.9569);
-    Vec3d rvec;
-    Rodrigues(printed.t(), rvec);
-    Rodrigues(rvec, rig.R);
-    rig.T = Vec3d(-211.4756, 1.3306, 53.3775);
-    rig.camera1 = paperCamera(paperWindow());
-    rig.camera2 = RefractiveCamera::create(Matx33d(2443.13, 0, 647.83, 0, 2443.13, 487.49, 0, 0, 1),
-                                           std::vector<double>{ -0.4100, 0.4389, 0, 0 },
-                                           GlassWindow({ 0.1823, -0.2809, 1 }, 20, 1.5437, 40));
-    return rig;
+    const RigTruth rig = paperStereo();
+    return { rig.cameras[0], rig.cameras[1], rig.Rs[1], rig.Ts[1] };
 }
 
 //! Camera 2 looks through the pane of camera 1.

@@ -206,6 +206,64 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
     return estimate;
 }
 
+namespace {
+
+//! Median distance in pixels of a view's pairs to the lines through the centre of n.
+double medianError(const std::vector<Pair>& pairs, const Vec3d& n)
+{
+    std::vector<double> errors;
+    for (const Pair& pair : pairs)
+        errors.push_back(std::abs(n.dot(pair.a))/std::sqrt(n.dot(pair.S*n)));
+    std::nth_element(errors.begin(), errors.begin() + errors.size()/2, errors.end());
+    return errors[errors.size()/2];
+}
+
+double medianOf(std::vector<double> values)
+{
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+} // namespace
+
+NormalEstimate normalFromAgreeingPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted)
+{
+    const int MOST_CANDIDATES = 32;
+    const double STANDS_OUT = 4;        // times the median view's error
+    std::vector<std::vector<Pair> > views;
+    std::vector<size_t> places;
+    for (size_t view = 0; view < direct.size(); view++)
+    {
+        views.push_back(readPairs(camera.lens(), { direct[view] }, { refracted[view] }));
+        if (views.back().empty())
+            views.pop_back();
+        else
+            places.push_back(view);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<double> bestErrors;
+    const size_t step = views.size()/MOST_CANDIDATES + 1;
+    for (size_t i = 0; i < views.size(); i += step)
+    {
+        const NormalEstimate candidate = normalFromPairs(camera, { direct[places[i]] }, { refracted[places[i]] });
+        if (!candidate.undetermined.empty())
+            continue;
+        std::vector<double> errors;
+        for (const std::vector<Pair>& view : views)
+            errors.push_back(medianError(view, candidate.normal));
+        const double median = medianOf(errors);
+        if (!(median < least))
+            continue;
+        least = median;
+        bestErrors = errors;
+    }
+    PixelViews agreeing(direct.size());
+    for (size_t i = 0; i < views.size(); i++)
+        if (bestErrors.empty() || bestErrors[i] <= STANDS_OUT*least)
+            agreeing[places[i]] = direct[places[i]];
+    return normalFromPairs(camera, agreeing, refracted);
+}
+
 static double calibrateNormal(InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
                               const Camera& camera, OutputArray normal, OutputArray distortionCenter,
                               OutputArray normalCovariance)

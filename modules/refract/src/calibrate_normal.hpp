@@ -22,6 +22,10 @@ struct NormalEstimate
 the two, and pairs that are not seen in both, are left out. */
 NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted);
 
+/** The same from the views that agree: those whose errors stand out by the normal that the median view likes best are left
+out. For targets that were moved within a pair. */
+NormalEstimate normalFromAgreeingPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_CALIBRATE_NORMAL_HPP

@@ -185,22 +185,23 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
                                      const std::vector<Point2d>& imagePoints)
 {
     const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what the rays' different origins do
-    const int TRIALS = 300;                     // half of four points wrong: still 20 good samples
+    const int TRIALS = 500;                     // a third of the points right: still 6 samples of four right ones
     const ImagePoints points = observed(objectPoints, imagePoints);
     const CentralView view = centralView(camera, points);
     std::vector<Point2d> agreeing;
     if (view.object.size() < 4 || scatterRank(view.object) < 2)
         return agreeing;
     const double focalLength = camera.lens().parameters()[0];
+    const double least = std::max(4., LEAST_AGREEING*(double)points.pixel.size());
     std::vector<int> inliers;
-    for (double limit = NARROWEST; limit <= WIDEST && 2*inliers.size() < points.pixel.size(); limit *= 2)
+    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
     {
         Vec3d rvec, tvec;
         if (!solvePnPRansac(view.object, view.normalized, Matx33d::eye(), noArray(), rvec, tvec, false, TRIALS,
                             (float)(limit/focalLength), 0.9999, inliers, SOLVEPNP_AP3P))
             inliers.clear();
     }
-    if (inliers.size() < 4 || 2*inliers.size() < points.pixel.size())
+    if ((double)inliers.size() < least)
         return agreeing;
     agreeing.assign(imagePoints.size(), Point2d(NaN, NaN));
     for (int i : inliers)

@@ -42,14 +42,14 @@ void checkFreedom(const RigProblem& rig)
 }
 
 //! Solves; where poses are known with a covariance, until they are weighed against the pixels' own noise.
-RobustOutcome solve(RigProblem& rig, const RigTask& task, const TermCriteria& criteria)
+RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const TermCriteria& criteria)
 {
     const int ROUNDS = 20;
     RobustOutcome outcome;
     for (int round = 0; round < ROUNDS; round++)
     {
         if (task.flags & GLASS_ROBUST)
-            outcome = solveRobustly(rig, criteria);
+            outcome = solveRobustly(rig, seenCount, criteria);
         else
         {
             outcome.converged = rig.solve(criteria);
@@ -135,6 +135,15 @@ std::vector<Pose> startPoses(Rig& rig, RigTask& task, RigFit& fit)
 
 } // namespace
 
+static int seenCount(const RigViews& views)
+{
+    int count = 0;
+    for (const CameraViews& camera : views.cameras)
+        for (int view = 0; view < views.count(); view++)
+            count += countSeen(camera.refracted[view]) + countSeen(camera.direct[view]);
+    return count;
+}
+
 RigFit fitRig(Rig& rig, const RigTask& task_)
 {
     const TermCriteria criteria = checkedCriteria(task_.criteria);
@@ -143,8 +152,9 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     Rig start = rig;
     const std::vector<Pose> poses = startPoses(start, task, fit);
     RigProblem problem(start, task.views, poses, task.knowledge, task.flags);
-    checkFreedom(problem);
-    const RobustOutcome outcome = solve(problem, task, criteria);
+    if (!(task.flags & GLASS_ROBUST))
+        checkFreedom(problem);
+    const RobustOutcome outcome = solve(problem, task, seenCount(task_.views), criteria);
     checkFreedom(problem);
 
     // First, as what is undetermined is also what does not converge.

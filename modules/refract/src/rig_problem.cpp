@@ -217,6 +217,12 @@ Pose RigProblem::pose(int view) const
     return pose;
 }
 
+void RigProblem::setPose(int view, const Pose& pose)
+{
+    if (knowledgeOf(view) != PoseKnowledge::EXACT)
+        poses_[view] = sixOf(pose);
+}
+
 bool RigProblem::hasUncertainPoses() const
 {
     for (int view = 0; view < viewCount(); view++)

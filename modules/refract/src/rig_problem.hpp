@@ -95,6 +95,7 @@ public:
     Rig rig() const;                    //!< with the current parameters
     Camera camera(int c) const;
     Pose pose(int view) const;
+    void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     PoseKnowledge::Kind knowledgeOf(int view) const { return known_.empty() ? PoseKnowledge::UNKNOWN : known_[view].kind; }
     bool hasUncertainPoses() const;
 

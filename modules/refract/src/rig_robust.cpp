@@ -5,8 +5,9 @@
 /* The joint fit where some points and some images are wrong.
 
 1. Start: poses of random samples drop what is grossly wrong (agreeingViews).
-2. Graduated: every point is weighed by Tukey's biweight with each image's own scale, the median of its errors, so that no
-   image loses more than half of its points while the window is still wrong; the scales fall as the fit improves.
+2. Graduated: every point is weighed by Tukey's biweight with each image's own scale, the median of its errors, so that an
+   image keeps its points while the window is still wrong; the scales fall as the fit improves. An image far worse than
+   the others of its kind has no say.
 3. Images: the view's one pose against a pose of its own for each image. The gain in squared errors is chi^2 with 6 degrees
    of freedom per further image where nothing moved. Views are judged against the median view as well, as a wrong
    constant (thickness, index) moves all of them.
@@ -14,6 +15,7 @@
    same points stay. So clean data lose nothing, and what remains is weighed by maximum likelihood. */
 
 #include "rig_robust.hpp"
+#include <numeric>
 
 namespace cv { namespace refract {
 
@@ -77,11 +79,15 @@ double chiSquareQuantile(double normalQuantile, int freedom)
 class RobustFit
 {
 public:
-    RobustFit(RigProblem& rig, const TermCriteria& criteria)
-        : rig_(rig), criteria_(criteria), status_(rig.images().size(), (uchar)GLASS_IMAGE_USED), scale_(0) {}
+    RobustFit(RigProblem& rig, int seenCount, const TermCriteria& criteria)
+        : rig_(rig), seenCount_(seenCount), criteria_(criteria), status_(rig.images().size(), (uchar)GLASS_IMAGE_USED), scale_(0) {}
 
     RobustOutcome run()
     {
+        int inImages = 0;
+        for (const RigImage& image : images())
+            inImages += (int)image.points.pixel.size();
+        checkMajority(inImages);
         graduate();
         estimateScale();
         dropMovedImages();
@@ -96,22 +102,41 @@ private:
     const double CUT = std::sqrt(-2*std::log(CHANCE));
     const std::vector<RigImage>& images() const { return rig_.images(); }
 
+    std::vector<double> imageScales(const std::vector<std::vector<double> >& errors) const;
     void graduate();
     void estimateScale();
     void dropMovedImages();
     bool decide();
     bool chooseInliers();
 
+    void checkMajority(int count) const;
     double cutSum(const std::vector<double>& errors) const;
     double gainOfOwnPoses(const Rig& rig, const std::vector<int>& ofView, std::vector<Pose>& own) const;
     void dropMinority(const std::vector<int>& ofView, const std::vector<Pose>& own);
     int agreement(const std::vector<int>& ofView, const Pose& pose, std::vector<bool>& agrees) const;
 
     RigProblem& rig_;
+    const int seenCount_;
     const TermCriteria criteria_;
     std::vector<uchar> status_;
     double scale_;
 };
+
+//! Each image's own scale, but no more than a few times that of the median image of its kind.
+std::vector<double> RobustFit::imageScales(const std::vector<std::vector<double> >& errors) const
+{
+    const double MOST = 3;
+    std::vector<double> scales, ofKind[2];
+    for (size_t i = 0; i < errors.size(); i++)
+    {
+        scales.push_back(scaleOf(errors[i]));
+        ofKind[images()[i].refracted].push_back(scales[i]);
+    }
+    const double limits[] = { MOST*median(ofKind[0]), MOST*median(ofKind[1]) };
+    for (size_t i = 0; i < errors.size(); i++)
+        scales[i] = std::min(scales[i], limits[images()[i].refracted]);
+    return scales;
+}
 
 void RobustFit::graduate()
 {
@@ -120,20 +145,21 @@ void RobustFit::graduate()
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < ROUNDS; round++)
     {
-        double sum = 0;
-        for (int i = 0; i < (int)images().size(); i++)
-        {
-            const std::vector<double> errors = rig_.pixelErrors(images()[i], rig_.pose(images()[i].view));
-            const double scale = scaleOf(errors);
-            std::vector<double> rootWeights;
-            for (double r : errors)
-                rootWeights.push_back(std::max(0., 1 - std::pow(r/(TUKEY*scale), 2)));
-            rig_.setRootWeights(i, rootWeights);
-            sum += scale;
-        }
+        std::vector<std::vector<double> > errors;
+        for (const RigImage& image : images())
+            errors.push_back(rig_.pixelErrors(image, rig_.pose(image.view)));
+        const std::vector<double> scales = imageScales(errors);
+        const double sum = std::accumulate(scales.begin(), scales.end(), 0.);
         if (sum > 0.99*last)
             return;
         last = sum;
+        for (int i = 0; i < (int)images().size(); i++)
+        {
+            std::vector<double> rootWeights;
+            for (double r : errors[i])
+                rootWeights.push_back(std::max(0., 1 - std::pow(r/(TUKEY*scales[i]), 2)));
+            rig_.setRootWeights(i, rootWeights);
+        }
         rig_.solve(few);
     }
 }
@@ -228,7 +254,7 @@ int RobustFit::agreement(const std::vector<int>& ofView, const Pose& pose, std::
 tell of it. If no group stands out, the direct images go. */
 void RobustFit::dropMinority(const std::vector<int>& ofView, const std::vector<Pose>& own)
 {
-    std::vector<bool> kept;
+    std::vector<bool> kept(ofView.size(), true);
     double best = 0;
     for (const Pose& pose : own)
     {
@@ -240,6 +266,7 @@ void RobustFit::dropMinority(const std::vector<int>& ofView, const std::vector<P
             continue;
         best = support;
         kept = agrees;
+        rig_.setPose(images()[ofView[0]].view, pose);
     }
     const bool tellsApart = std::count(kept.begin(), kept.end(), true) < (int)ofView.size();
     for (size_t k = 0; k < ofView.size(); k++)
@@ -260,7 +287,7 @@ bool RobustFit::chooseInliers()
             const std::vector<double> errors = rig_.pixelErrors(image, rig_.pose(image.view));
             for (size_t k = 0; k < errors.size(); k++)
                 rootWeights[k] = errors[k] < CUT*scale_;
-            if (2*std::count(rootWeights.begin(), rootWeights.end(), 1.) < (int)errors.size())
+            if ((double)std::count(rootWeights.begin(), rootWeights.end(), 1.) < LEAST_AGREEING*(double)errors.size())
             {
                 status_[i] = GLASS_IMAGE_UNUSABLE;
                 std::fill(rootWeights.begin(), rootWeights.end(), 0.);
@@ -272,18 +299,20 @@ bool RobustFit::chooseInliers()
     return changed;
 }
 
+void RobustFit::checkMajority(int count) const
+{
+    if (2*count < seenCount_)
+        CV_Error_(Error::StsNoConv, ("only %d of %d points fit; are the target's size, its square and the order of its points "
+                                     "right?", count, seenCount_));
+}
+
 bool RobustFit::decide()
 {
     const int ROUNDS = 10;
     bool converged = false;
     for (int round = 0; round < ROUNDS && chooseInliers(); round++)
     {
-        int points = 0;
-        for (const RigImage& image : images())
-            points += (int)image.points.pixel.size();
-        if (2*rig_.pointCount() < points)
-            CV_Error_(Error::StsNoConv, ("only %d of %d points fit; are the target's size, its square and the order of its "
-                                         "points right?", rig_.pointCount(), points));
+        checkMajority(rig_.pointCount());
         converged = rig_.solve(criteria_);
         const double freedom = rig_.equationCount() - rig_.freeCount() - 6*rig_.poseCount();
         if (freedom > 0)
@@ -294,9 +323,9 @@ bool RobustFit::decide()
 
 } // namespace
 
-RobustOutcome solveRobustly(RigProblem& rig, const TermCriteria& criteria)
+RobustOutcome solveRobustly(RigProblem& rig, int seenCount, const TermCriteria& criteria)
 {
-    return RobustFit(rig, criteria).run();
+    return RobustFit(rig, seenCount, criteria).run();
 }
 
 RigViews agreeingViews(const Rig& rig, const RigViews& views)

@@ -18,8 +18,9 @@ struct RobustOutcome
 };
 
 /** Solves with points left out that are wrong, and images whose target was not where the view's other images have it.
-Throws if fewer than half of the points fit. */
-RobustOutcome solveRobustly(RigProblem& rig, const TermCriteria& criteria);
+Throws if fewer than half of the points fit.
+@param seenCount points that the caller gave */
+RobustOutcome solveRobustly(RigProblem& rig, int seenCount, const TermCriteria& criteria);
 
 /** The views without the points that agree with no common pose of their image, to start from. Images without a pose
 become empty. */

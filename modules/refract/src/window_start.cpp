@@ -221,15 +221,17 @@ PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std
 }
 
 //! The normal that the pairs of all cameras behind the window tell best, in the owner's frame; false if none does.
-bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, Vec3d& normal)
+bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, int flags,
+                   Vec3d& normal)
 {
     double least = std::numeric_limits<double>::infinity();
     for (int c = owner; c < rig.count(); c++)
     {
         if (rig.owner[c] != owner || !seesAnything(views.cameras[c].refracted))
             continue;
-        const NormalEstimate estimate = normalFromPairs(rig.cameras[c], withPredicted(rig, c, views, poses),
-                                                        views.cameras[c].refracted);
+        const PixelViews direct = withPredicted(rig, c, views, poses);
+        const NormalEstimate estimate = (flags & GLASS_ROBUST ? normalFromAgreeingPairs : normalFromPairs)(
+            rig.cameras[c], direct, views.cameras[c].refracted);
         if (!estimate.undetermined.empty() || !(estimate.normal[2] > 0))
             continue;
         const double variance = trace(estimate.covariance);     // NaN if two pairs leave no residual to scale it by
@@ -267,7 +269,7 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
                         OtherMinimum& other)
 {
     GlassWindow window = rig.cameras[owner].window();
-    if (normalOfPairs(rig, owner, views, poses, window.normal) || (flags & GLASS_FREE_INTRINSICS))
+    if (normalOfPairs(rig, owner, views, poses, flags, window.normal) || (flags & GLASS_FREE_INTRINSICS))
         return window;
     const int best = bestObserver(rig, owner, views);
     if (best < 0)

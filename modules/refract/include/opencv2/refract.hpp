@@ -82,7 +82,7 @@ enum GlassImageStatus {
     GLASS_IMAGE_USED = 0,           //!< used, but for the points that inliers marks 0
     GLASS_IMAGE_ABSENT = 1,         //!< not taken, or no point seen
     GLASS_IMAGE_MOVED = 2,          //!< left out: its target is not where the view's other images have it
-    GLASS_IMAGE_UNUSABLE = 3        //!< left out: fewer than half of its points, or fewer than 4, fit one pose
+    GLASS_IMAGE_UNUSABLE = 3        //!< left out: fewer than a third of its points, or fewer than 4, fit one pose
 };
 
 /** @brief A flat window: parallel layers that share one normal.
