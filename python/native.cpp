@@ -26,7 +26,9 @@ static bool pyopencv_to(PyObject* o, Mat& m, const ArgInfo& info)
 }
 
 typedef std::vector<Mat> vector_Mat;
+typedef std::vector<vector_Mat> vector_vector_Mat;
 typedef std::vector<double> vector_double;
+typedef std::vector<int> vector_int;
 
 // The generated code fills tables by position and ignores what it does not need.
 #pragma GCC diagnostic ignored "-Wunused-parameter"

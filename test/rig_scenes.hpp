@@ -15,20 +15,20 @@ struct RigTruth
     std::vector<cv::Vec3d> Ts;
 };
 
-/** Cameras on an arc about the target, 120 mm apart, each behind a window of its own tilt; equal numbers in windows share
-that of their first camera. */
-inline RigTruth makeRig(int count, const std::vector<int>& windows, double outerIndex)
+/** Cameras on an arc about the target, so many radians apart, each behind a window of its own tilt; equal numbers in windows
+share that of their first camera. */
+inline RigTruth makeRig(int count, const std::vector<int>& windows, double outerIndex, double apart = 0.2)
 {
     RigTruth rig;
     rig.windows = windows;
     for (int c = 0; c < count; c++)
     {
-        const double turn = 0.2*c;
+        const double turn = apart*c, part = apart*c/0.2;
         cv::Matx33d R;
-        cv::Rodrigues(cv::Vec3d(0.02*c, turn, 0.01*c), R);
+        cv::Rodrigues(cv::Vec3d(0.02*part, turn, 0.01*part), R);
         rig.Rs.push_back(R);
-        rig.Ts.push_back(cv::Vec3d(0, 0, 610) - R*cv::Vec3d(0, 0, 610) + cv::Vec3d(3, -2, 5)*c);
-        GlassWindow window({ -0.2 + 0.08*c, 0.1 - 0.05*c, 1 }, 20, 1.5437, 80 + 10*c, outerIndex);
+        rig.Ts.push_back(cv::Vec3d(0, 0, 610) - R*cv::Vec3d(0, 0, 610) + cv::Vec3d(3, -2, 5)*part);
+        GlassWindow window({ -0.2 + 0.08*part, 0.1 - 0.05*part, 1 }, 20, 1.5437, 80 + 10*part, outerIndex);
         const int owner = (int)(std::find(windows.begin(), windows.end(), windows[c]) - windows.begin());
         if (owner < c)
         {

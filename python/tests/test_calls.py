@@ -162,6 +162,37 @@ def test_calibrate_stereo(rig, board):
     np.testing.assert_allclose(camera2.window().normal, rig.window2.normal, atol=1e-7)
 
 
+def test_calibrate_rig(rig, board):
+    from conftest import rotation
+    start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
+    def call(flags=0, rvecs=(), tvecs=(), **more):
+        cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
+        result = refract.calibrateGlassRig(
+            board.target, [board.glass1, board.glass2], [board.direct1, board.direct2], cameras, [0, 1],
+            [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, flags=flags, **more)
+        for camera, window in zip(cameras, (rig.window1, rig.window2)):
+            np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-6)
+        return result
+
+    rms, Rs, Ts, rvecs, tvecs, deviations, covariance, per_view, status, inliers, minima = call()
+    assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
+    assert deviations.shape == (2*17 + 6, 1) and minima.shape == (2, 4) and np.isnan(minima).all()
+    assert status.shape == (8, 4) and not status.any() and len(inliers) == 32 and all(mask.all() for mask in inliers)
+    np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
+    np.testing.assert_allclose(np.squeeze(call(refract.GLASS_FREE_EXTRINSICS)[2][1]), rig.T, atol=1e-4)
+
+    known = dict(rvecs=board.rvecs, tvecs=board.tvecs, flags=refract.GLASS_USE_POSES)
+    np.testing.assert_array_equal(np.squeeze(call(**known)[4]), board.tvecs)
+    call(**known, poseCovariances=[1e-6*np.eye(6)]*8)
+
+    wrong, _ = np.divmod(np.arange(60.).reshape(30, 1, 2), 7)
+    glass1, board.glass1 = board.glass1, [board.glass1[0] + wrong*(np.arange(30) % 4 == 0)[:, None, None],
+                                          *board.glass1[1:]]
+    result = call(refract.GLASS_ROBUST)
+    board.glass1 = glass1
+    np.testing.assert_array_equal(np.flatnonzero(result[9][0] == 0), np.arange(4, 30, 4))
+
+
 def test_pose(rig, board):
     for camera in (rig.lens1, (rig.camera1,)):
         rms, rvec, tvec = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)

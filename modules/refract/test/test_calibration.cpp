@@ -100,6 +100,50 @@ TEST(Refract_StereoCalibrateGlass, finds_both_windows)
                    "imagePointsRefracted2");
 }
 
+std::vector<std::vector<Mat> > asMats(const PixelViews& first, const PixelViews& second)
+{
+    std::vector<std::vector<Mat> > cameras(2);
+    for (size_t i = 0; i < first.size(); i++)
+    {
+        cameras[0].push_back(Mat(first[i], true));
+        cameras[1].push_back(Mat(second[i], true));
+    }
+    return cameras;
+}
+
+TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
+{
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    cameras.push_back(RefractiveCamera::create(K1(), D1(), straight(window1())));
+    cameras.push_back(RefractiveCamera::create(K2(), D2(), straight(window2())));
+    std::vector<Mat> Rs(2), Ts(2), rvecs, tvecs, inliers;
+    Rs[0] = Mat::eye(3, 3, CV_64F);
+    Rs[1] = Mat(R());
+    Ts[0] = Mat::zeros(3, 1, CV_64F);
+    Ts[1] = Mat(T());
+    std::vector<int> windows(2);
+    windows[1] = 1;
+    PixelViews glass1 = views(camera1());
+    glass1[3][7].x += 5;
+    const std::vector<std::vector<Mat> > glass = asMats(glass1, views(camera2(), true)),
+                                         direct = asMats(views(bare1()), views(bare2(), true));
+    Mat deviations, covariance, perView, status, others;
+    const double rms = calibrateGlassRig(boards(), glass, direct, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
+                                         covariance, perView, status, inliers, others, GLASS_ROBUST);
+    EXPECT_NEAR(0, rms, 1e-6);
+    EXPECT_NEAR(0, angle(cameras[0]->window().normal, window1().normal), 1e-6);
+    EXPECT_NEAR(0, angle(cameras[1]->window().normal, window2().normal), 1e-6);
+    EXPECT_EQ(Size(4, 5), status.size());
+    EXPECT_EQ(0, cv::countNonZero(status));
+    ASSERT_EQ(20u, inliers.size());
+    EXPECT_EQ(29, cv::countNonZero(inliers[4*3]));
+    EXPECT_EQ(0, inliers[4*3].at<uchar>(7));
+
+    windows.pop_back();
+    EXPECT_REFUSED(calibrateGlassRig(boards(), glass, direct, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
+                                     covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");
+}
+
 TEST(Refract_SolvePnP, finds_the_pose)
 {
     const Vec3d rvec(0, 0.2, 0), tvec(10, -5, 620);

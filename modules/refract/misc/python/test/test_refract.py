@@ -252,6 +252,19 @@ class refract_test(NewOpenCVTests):
         self.assertClose(make_window().normal, first.window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, second.window().normal, 1e-6)
 
+    def test_calibrate_rig(self):
+        bare = cv.refract.RefractiveCamera.create(K, D)
+        cameras = [cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
+                   for _ in range(2)]
+        result = cv.refract.calibrateGlassRig(
+            [make_board()]*5, [make_views(self.camera1), make_views(self.camera2, True)],
+            [make_views(bare), make_views(bare, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
+            [], [], flags=cv.refract.GLASS_ROBUST)
+        self.assertEqual(11, len(result))
+        self.assertLess(result[0], 1e-6)
+        self.assertClose(make_window().normal, cameras[0].window().normal, 1e-6)
+        self.assertClose(make_window(0.18).normal, cameras[1].window().normal, 1e-6)
+
     def test_pnp(self):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
         pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
