@@ -67,52 +67,78 @@ private:
     double unit_;
 };
 
-double distanceToSegment(const Vec2d& p, const Vec2d& a, const Vec2d& b)
+//! Square of the distance.
+double distanceToSegment2(const Vec2d& p, const Vec2d& a, const Vec2d& b)
 {
     const Vec2d ab = b - a, ap = p - a;
     const double length2 = ab.dot(ab), t = length2 > 0 ? std::min(1., std::max(0., ap.dot(ab)/length2)) : 0;
-    return cv::norm(ap - t*ab);
+    const Vec2d across = ap - t*ab;
+    return across.dot(across);
+}
+
+/* Whether the curve at the quarters of a segment is within the tolerance of the chord: three points see the largest
+distance to within a few percent. A NaN inside (grazing the edge of visibility) is not. */
+bool isClose(const Vec2d* quarters, const Vec2d& a, const Vec2d& b, double tolerance)
+{
+    const double enough = 0.95*tolerance + 1e-13*cv::norm(b);   // far beyond any sensor, pixels are rounding
+    bool close = true;
+    for (int i = 0; i < 3; ++i)
+        close = close && distanceToSegment2(quarters[i], a, b) <= enough*enough;
+    return close;
+}
+
+void setQuarters(double tA, double tB, double* t)
+{
+    for (int i = 0; i < 3; ++i)
+        t[i] = tA + 0.25*(i + 1)*(tB - tA);
 }
 
 //! Appends the nodes after `a` up to `b`, splitting where the curve leaves the chord by more than the tolerance.
-void appendSegment(const EpipolarCurve& curve, double tA, const Vec2d& a, double tB, const Vec2d& b, double tolerance,
-                   int depth, Polyline& line)
+void appendSegment(const EpipolarCurve& curve, double tA, const Vec2d& a, double tB, const Vec2d& b, const Vec2d* quarters,
+                   double tolerance, int depth, Polyline& line)
 {
-    double t[3];
-    Vec2d p[3];
-    uchar status[3];
-    for (int i = 0; i < 3; ++i)
-        t[i] = tA + 0.25*(i + 1)*(tB - tA);
-    curve.evaluate(3, t, p, status);
-    // Three points see the largest distance to within a few percent.
-    bool close = true;      // a NaN inside (grazing the edge of visibility) compares false and is split as well
-    const double enough = 0.95*tolerance + 1e-13*cv::norm(b);   // far beyond any sensor, pixels are rounding
-    for (int i = 0; i < 3; ++i)
-        close = close && distanceToSegment(p[i], a, b) <= enough;
-    if (close || depth == 0 || std::isnan(p[1][0]))
+    if (depth == 0 || std::isnan(quarters[1][0]) || isClose(quarters, a, b, tolerance))
     {
         line.push_back(b);
         return;
     }
-    appendSegment(curve, tA, a, t[1], p[1], tolerance, depth - 1, line);
-    appendSegment(curve, t[1], p[1], tB, b, tolerance, depth - 1, line);
+    const double tMiddle = 0.5*(tA + tB);
+    double t[6];
+    Vec2d p[6];
+    uchar status[6];
+    setQuarters(tA, tMiddle, t);
+    setQuarters(tMiddle, tB, t + 3);
+    curve.evaluate(6, t, p, status);
+    appendSegment(curve, tA, a, tMiddle, quarters[1], p, tolerance, depth - 1, line);
+    appendSegment(curve, tMiddle, quarters[1], tB, b, p + 3, tolerance, depth - 1, line);
 }
 
-const int SAMPLES = 65;
+const int SAMPLES = 33;
 
-//! Nodes from tA to tB at equal shares of the chord error.
-std::vector<double> placeNodes(const EpipolarCurve& curve, double tA, double tB, double tolerance)
+//! The curve at even steps of t.
+struct Samples
 {
-    double t[SAMPLES], density[SAMPLES], share[SAMPLES];
+    Samples(const EpipolarCurve& curve, double tA, double tB)
+    {
+        for (int i = 0; i < SAMPLES; ++i)
+            t[i] = tA + (tB - tA)*i/(SAMPLES - 1);
+        curve.evaluate(SAMPLES, t, p, status);
+    }
+    double t[SAMPLES];
     Vec2d p[SAMPLES];
     uchar status[SAMPLES];
-    for (int i = 0; i < SAMPLES; ++i)
-        t[i] = tA + (tB - tA)*i/(SAMPLES - 1);
-    curve.evaluate(SAMPLES, t, p, status);
+};
+
+typedef AutoBuffer<double, 64> Nodes;
+
+//! Nodes over the samples at equal shares of the chord error.
+void placeNodes(const Samples& s, double tolerance, Nodes& nodes)
+{
+    double density[SAMPLES], share[SAMPLES];
     for (int i = 0; i < SAMPLES; ++i)
     {
         const int c = std::min(std::max(i, 1), SAMPLES - 2);
-        const Vec2d bend = p[c + 1] - 2*p[c] + p[c - 1], chord = p[c + 1] - p[c - 1];
+        const Vec2d bend = s.p[c + 1] - 2*s.p[c] + s.p[c - 1], chord = s.p[c + 1] - s.p[c - 1];
         const double across = std::abs(bend[0]*chord[1] - bend[1]*chord[0])/std::max(cv::norm(chord), DBL_MIN);
         density[i] = std::isfinite(across) ? std::sqrt(across/8/tolerance) : 0;
     }
@@ -121,17 +147,42 @@ std::vector<double> placeNodes(const EpipolarCurve& curve, double tA, double tB,
         share[i] = share[i - 1] + 0.5*(density[i - 1] + density[i]);
     // A little more than the estimate, so that the check of the finished segments seldom has to split one.
     const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*share[SAMPLES - 1])));
-    std::vector<double> nodes(1, tA);
+    nodes.allocate(segments + 1);
+    nodes[0] = s.t[0];
     for (int j = 1, i = 1; j < segments; ++j)
     {
         const double wanted = share[SAMPLES - 1]*j/segments;
         while (i < SAMPLES - 1 && share[i] < wanted)
             ++i;
         const double part = (wanted - share[i - 1])/std::max(share[i] - share[i - 1], DBL_MIN);
-        nodes.push_back(t[i - 1] + (t[i] - t[i - 1])*std::min(1., part));
+        nodes[j] = s.t[i - 1] + (s.t[i] - s.t[i - 1])*std::min(1., part);
     }
-    nodes.push_back(tB);
-    return nodes;
+    nodes[segments] = s.t[SAMPLES - 1];
+}
+
+//! The polyline through the nodes, checked between them; as many segments as fill a block at a time.
+void joinNodes(const EpipolarCurve& curve, const Nodes& nodes, double tolerance, Polyline& line)
+{
+    const int segments = (int)nodes.size() - 1, MANY = (BLOCK - 1)/4;
+    double t[BLOCK];
+    Vec2d p[BLOCK];
+    uchar status[BLOCK];
+    line.reserve(segments + 1);
+    for (int begin = 0; begin < segments; begin += MANY)
+    {
+        const int count = std::min(MANY, segments - begin);
+        for (int j = 0; j < count; ++j)
+        {
+            t[4*j] = nodes[begin + j];
+            setQuarters(nodes[begin + j], nodes[begin + j + 1], t + 4*j + 1);
+        }
+        t[4*count] = nodes[begin + count];
+        curve.evaluate(4*count + 1, t, p, status);
+        if (begin == 0)
+            line.push_back(p[0]);
+        for (int j = 0; j < count; ++j)
+            appendSegment(curve, t[4*j], p[4*j], t[4*j + 4], p[4*j + 4], p + 4*j + 1, tolerance, 12, line);
+    }
 }
 
 //! The end of visibility between a visible and an invisible t, from the visible side.
@@ -146,27 +197,21 @@ double edgeOfVisibility(const EpipolarCurve& curve, double visible, double invis
     return visible;
 }
 
-/* The visible part of [tNear, tFar]: one interval, because what lies beyond a window and inside a lens' field is
-convex. Returns the status of the far end if nothing is visible. */
-uchar visiblePart(const EpipolarCurve& curve, double& tNear, double& tFar)
+/* The visible part of the samples: one interval, because what lies beyond a window and inside a lens' field is convex.
+Returns the status of the far end if nothing is visible. */
+uchar visiblePart(const EpipolarCurve& curve, const Samples& s, double& tNear, double& tFar)
 {
-    double t[SAMPLES];
-    Vec2d p[SAMPLES];
-    uchar status[SAMPLES];
-    for (int i = 0; i < SAMPLES; ++i)
-        t[i] = tNear + (tFar - tNear)*i/(SAMPLES - 1);
-    curve.evaluate(SAMPLES, t, p, status);
     int first = 0, last = SAMPLES - 1;
-    while (first < SAMPLES && status[first] != REFRACT_OK)
+    while (first < SAMPLES && s.status[first] != REFRACT_OK)
         ++first;
     if (first == SAMPLES)
-        return status[SAMPLES - 1];
-    while (status[last] != REFRACT_OK)
+        return s.status[SAMPLES - 1];
+    while (s.status[last] != REFRACT_OK)
         --last;
     if (first > 0)
-        tNear = edgeOfVisibility(curve, t[first], t[first - 1]);
+        tNear = edgeOfVisibility(curve, s.t[first], s.t[first - 1]);
     if (last < SAMPLES - 1)
-        tFar = edgeOfVisibility(curve, t[last], t[last + 1]);
+        tFar = edgeOfVisibility(curve, s.t[last], s.t[last + 1]);
     return REFRACT_OK;
 }
 
@@ -185,18 +230,16 @@ uchar depthToMu(const Camera& camera, double tau, const Vec3d& d, const Vec2d& d
 
 uchar tracePolyline(const EpipolarCurve& curve, double tNear, double tFar, double tolerance, Polyline& line)
 {
-    const uchar status = visiblePart(curve, tNear, tFar);
+    Samples samples(curve, tNear, tFar);
+    double visibleNear = tNear, visibleFar = tFar;
+    const uchar status = visiblePart(curve, samples, visibleNear, visibleFar);
     if (status != REFRACT_OK)
         return status;
-    const std::vector<double> nodes = placeNodes(curve, tNear, tFar, tolerance);
-    Vec2d a = curve.at(nodes[0]);
-    line.assign(1, a);
-    for (size_t i = 1; i < nodes.size(); ++i)
-    {
-        const Vec2d b = curve.at(nodes[i]);
-        appendSegment(curve, nodes[i - 1], a, nodes[i], b, tolerance, 12, line);
-        a = b;
-    }
+    if (visibleNear != tNear || visibleFar != tFar)
+        samples = Samples(curve, visibleNear, visibleFar);
+    Nodes nodes;
+    placeNodes(samples, tolerance, nodes);
+    joinNodes(curve, nodes, tolerance, line);
     return REFRACT_OK;
 }
 

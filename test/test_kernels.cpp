@@ -1,0 +1,118 @@
+// The inner loops, compiled for every instruction set of this machine, through the inner header.
+#include "layers.hpp"
+#include "scenes.hpp"
+
+#include <array>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+std::vector<const Kernels*> allLevels()
+{
+    std::vector<const Kernels*> levels(1, kernelsBaseline());
+    if (checkHardwareSupport(CV_CPU_AVX2) && checkHardwareSupport(CV_CPU_FMA3) && kernelsAvx2())
+        levels.push_back(kernelsAvx2());
+    if (checkHardwareSupport(CV_CPU_AVX512_SKX) && kernelsAvx512())
+        levels.push_back(kernelsAvx512());
+    return levels;
+}
+
+const int MOST = 40;
+typedef std::array<double, MOST + 1> Array;     // one more, which no kernel may touch
+
+FisheyeModel angles()
+{
+    FisheyeModel m = {};
+    m.fx = m.fy = 1;
+    m.thetaMax = CV_PI;
+    return m;
+}
+
+} // namespace
+
+TEST_CASE("The fastest level of the machine is chosen", "[kernels]")
+{
+    CHECK(&kernels() == allLevels().back());
+}
+
+TEST_CASE("Every level computes the same, and no more points than it is given", "[kernels]")
+{
+    const WindowKind kind = GENERATE(PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, GLASS_ON_LENS, DOUBLE_GLAZING_IN_WATER);
+    CAPTURE(name(kind), seed());
+    Random random(kind);
+    const Layers layers(makeWindow(kind, random));
+    const Stack stack = layers.stack();
+    for (const Kernels* level : allLevels())
+        for (int n = 1; n <= MOST; ++n)
+        {
+            CAPTURE(level->instructions, n);
+            Array x, y, z, dx, dy, dz, tau, ox, oy, oz;
+            for (Array* a : { &dx, &dy, &dz, &tau, &ox, &oy, &oz })
+                a->fill(-7);
+            for (int i = 0; i < n; ++i)
+            {
+                const Vec3d X = 900*stack.normal[2]*layers.normal() + random.vector(150);
+                x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
+            }
+            REQUIRE(level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(), NULL));
+            for (int i = 0; i < n; ++i)
+            {
+                const double length = std::sqrt(dx[i]*dx[i] + dy[i]*dy[i] + dz[i]*dz[i]);
+                dx[i] /= length; dy[i] /= length; dz[i] /= length;
+            }
+            REQUIRE(level->traceOut(stack, n, dx.data(), dy.data(), dz.data(), tau.data(), ox.data(), oy.data(), oz.data()));
+            for (const Array* a : { &dx, &dy, &dz, &tau, &ox, &oy, &oz })
+                REQUIRE((*a)[n] == -7);
+            for (int i = 0; i < n; ++i)     // the ray meets its point
+            {
+                const Vec3d d(ox[i], oy[i], oz[i]), miss = (Vec3d(x[i], y[i], z[i]) - tau[i]*layers.normal()).cross(d);
+                REQUIRE(norm(miss) < 1e-11);
+            }
+        }
+}
+
+TEST_CASE("Angles, sines and cosines of every level against long double", "[kernels]")
+{
+    for (const Kernels* level : allLevels())
+    {
+        CAPTURE(level->instructions);
+        long double worst = 0, worstBack = 0;
+        for (int i = 0; i <= 20000; ++i)
+        {
+            const long double theta = 3.14159265358979323846264L*i/20001;
+            const double X = (double)std::sin(theta), Y = 0, Z = (double)std::cos(theta);
+            double u, v, x, y, z;
+            REQUIRE(level->projectFisheye(angles(), 1, &X, &Y, &Z, &u, &v));
+            const long double expected = std::atan2((long double)X, (long double)Z);
+            worst = std::max(worst, std::abs(u - expected)/std::max(expected, 1e-300L));
+            REQUIRE(level->unprojectFisheye(angles(), 1, &u, &v, &x, &y, &z));
+            worstBack = std::max(worstBack, std::abs(x - std::sin((long double)u)));
+            worstBack = std::max(worstBack, std::abs(z - std::cos((long double)u)));
+        }
+        CHECK(worst < 8e-16);
+        CHECK(worstBack < 4e-16);
+    }
+}
+
+TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[kernels]")
+{
+    Random random;
+    const Layers layers(makeWindow(PANE_IN_AIR, random));
+    for (const Kernels* level : allLevels())
+        for (int bad = 0; bad < 19; ++bad)
+        {
+            Array x, y, z, dx, dy, dz;
+            for (int i = 0; i < 19; ++i)
+            {
+                x[i] = 10*i; y[i] = 5; z[i] = i == bad ? -800 : 800;
+            }
+            CAPTURE(level->instructions, bad);
+            REQUIRE_FALSE(level->solveIn(layers.stack(), 19, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(),
+                                         NULL));
+            for (int i = 0; i < 19; ++i)
+                REQUIRE(std::isnan(dx[i]) == (i == bad));
+        }
+}
