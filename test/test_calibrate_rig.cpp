@@ -156,6 +156,103 @@ TEST_CASE("Poses known with a covariance: between none and exact, and as good as
     CHECK(uncertain < 0.2*unknown);
 }
 
+TEST_CASE("A second minimum of a window seen through only is told, with how much worse it is", "[rig_glass]")
+{
+    int withSecond = 0, ambiguous = 0;
+    for (int run = 0; run < 20; run++)
+    {
+        Random random(3700 + run);
+        CAPTURE(run, seed());
+        RigTruth truth = makeRig(1, { 0 }, 1);
+        truth.cameras[0]->setWindow(makeWindow(PANE_IN_AIR, random));
+        const RigScene scene = makeRigScene(truth, 1, random, 0.1);
+        RigCall call(truth, scene, false), paired(truth, scene, true);
+        call.run(0);
+        paired.run(0);
+        REQUIRE(call.otherMinima.size() == Size(4, 1));
+        CHECK(std::isnan(paired.otherMinima.at<double>(3)));
+        const double excess = call.otherMinima.at<double>(3);
+        const Vec3d other(call.otherMinima.ptr<double>()), found = call.cameras[0]->window().normal;
+        const Vec3d right = truth.cameras[0]->window().normal;
+        if (std::isnan(excess))
+            continue;
+        withSecond++;
+        ambiguous += excess < 3;
+        CHECK(excess >= 0);
+        CHECK(angleBetween(other, found) > 0.5);
+        // Where the second is out of the question the first is the right one.
+        if (excess > 3)
+            CHECK(angleBetween(found, right) < angleBetween(other, right));
+    }
+    CHECK(withSecond > 3);
+    CHECK(ambiguous > 0);
+}
+
+TEST_CASE("A sealed camera: lens and normal from views through the window alone", "[rig_glass]")
+{
+    for (double outerIndex : { 1., 1.333 })
+    {
+        Random random(670);
+        CAPTURE(outerIndex, seed());
+        const RigTruth truth = makeRig(1, { 0 }, outerIndex);
+        RigCall call(truth, makeRigScene(truth, ObjectViews(25, board()), random, 0.1, 520, 720), false);
+        call.cameras[0]->setLensParameters(std::vector<double>{ 2430, 2430, 640, 505, -0.4, 0.4, 0, 0 });
+        if (outerIndex != 1)
+            call.cameras[0]->setWindow(GlassWindow({ 0, 0, 1 }, 20, 1.5437, 80, outerIndex));
+        CHECK(call.run(GLASS_FREE_INTRINSICS) == Approx(0.1*std::sqrt(2.)).epsilon(0.1));
+        const Vec3d n = call.cameras[0]->window().normal - truth.cameras[0]->window().normal;
+        std::vector<double> errors;
+        std::vector<int> rows;
+        const Mat lens = call.cameras[0]->lensParameters() - truth.cameras[0]->lensParameters();
+        for (int i : { 0, 1, 2, 3, 4, 5 })
+        {
+            rows.push_back(i);
+            errors.push_back(lens.at<double>(i));
+        }
+        for (int i = 0; i < 3; i++)
+        {
+            rows.push_back(8 + i);
+            errors.push_back(n[i]);
+        }
+        CHECK(squaredMahalanobis(errors, call.covariance, rows) < 26);      // chi^2 of 8: 1 in 1000
+    }
+}
+
+TEST_CASE("The same input gives the same bytes", "[rig_glass]")
+{
+    Random random(680);
+    const RigTruth truth = makeRig(3, { 0, 1, 1 }, 1.333);
+    RigScene scene = makeRigScene(truth, 6, random, 0.1);
+    displace(scene.refracted[1], 0.2, random);
+    RigCall first(truth, scene, true);
+    const std::vector<std::vector<double> > elsewhere(1000, std::vector<double>(random.below(500)));     // in memory
+    RigCall second(truth, scene, true);
+    const int flags = GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE | GLASS_ROBUST;
+    CHECK(first.run(flags) == second.run(flags));
+    CHECK(largestDifference(first.covariance, second.covariance) == 0);
+    CHECK(largestDifference(first.Ts[2], second.Ts[2]) == 0);
+    CHECK(largestDifference(first.tvecs[5], second.tvecs[5]) == 0);
+}
+
+TEST_CASE("Only the glass was replaced: one pair, everything but the normal known", "[rig_glass]")
+{
+    Random random(690);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(1, { 0 }, 1);
+    const RigScene scene = makeRigScene(truth, 1, random, 0.1);
+    for (int known : { 0, (int)GLASS_USE_POSES })
+    {
+        RigCall call(truth, scene, true);
+        call.rvecs = vectorsOf(scene.rvecs);
+        call.tvecs = vectorsOf(scene.tvecs);
+        call.run(known);
+        const Vec3d right = truth.cameras[0]->window().normal;
+        const double sigma = std::sqrt(trace(call.covariance(Rect(8, 8, 3, 3)))[0])*180/CV_PI;
+        CHECK(sigma < 0.08);
+        CHECK(angleBetween(call.cameras[0]->window().normal, right) < 3.5*sigma);
+    }
+}
+
 TEST_CASE("calibrateGlassRig refuses", "[rig_glass]")
 {
     Random random(660);

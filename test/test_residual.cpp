@@ -207,7 +207,7 @@ TEST_CASE("A window seen from another camera: the same points lie on it", "[resi
 TEST_CASE("The prior of a known pose has the size that its covariance says", "[residual]")
 {
     const std::array<double, 6> known = { { 0.1, 0.2, 0.3, 1, 2, 3 } };
-    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Identity();
+    Matrix6 rows = Matrix6::Identity();
     rows(3, 0) = 0.5;
     const std::unique_ptr<ceres::CostFunction> cost(PosePrior::Create(known, rows, 2));
     std::vector<double> pose(known.begin(), known.end()), residuals(6), jacobian(36);

@@ -154,8 +154,8 @@ std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name
         for (const Point3d& p : readPoints3(a, name))
             vectors.push_back(readVec3(Mat(Vec3d(p)), name));
     if ((int)vectors.size() != count)
-        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, objectPoints %d views; with GLASS_USE_POSES they must agree",
-                                             name, (int)vectors.size(), count));
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, objectPoints %d views; with GLASS_USE_POSES they must "
+                                             "agree", name, (int)vectors.size(), count));
     return vectors;
 }
 

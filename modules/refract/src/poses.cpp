@@ -135,23 +135,43 @@ struct PoseErrors
     {
         const Rotation object(pose);
         Eigen::Map<Eigen::MatrixXd> byPose(jacobian, NumResiduals(), jacobian ? 6 : 0);
-        for (size_t i = 0; i < points.pixel.size(); i++)
+        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], derivatives[6*BLOCK];
+        uchar status[BLOCK];
+        const Columns byPoint = { derivatives, 3, BLOCK }, none = { nullptr, camera.parameterCount(), BLOCK };
+        for (int begin = 0; begin < (int)points.pixel.size(); begin += BLOCK)
         {
-            Vec2d pixel;
-            Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
-            const Vec3d X(points.object[i]);
-            if (camera.projectJacobian(object.R*X + Vec3d(pose + 3), pixel, byPoint.data(), nullptr) != REFRACT_OK)
+            const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
+            for (int k = 0; k < n; k++)
+            {
+                const Vec3d X = object.R*Vec3d(points.object[begin + k]) + Vec3d(pose + 3);
+                x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+                status[k] = REFRACT_OK;
+            }
+            if (jacobian)
+                camera.projectJacobian(n, x, y, z, u, v, byPoint, none, status);
+            else
+                camera.project(n, x, y, z, nullptr, u, v, status);
+            if (std::any_of(status, status + n, [](uchar s) { return s != REFRACT_OK; }))
             {
                 std::fill(errors, errors + NumResiduals(), std::numeric_limits<double>::infinity());
                 return false;
             }
-            errors[2*i] = pixel[0] - points.pixel[i].x;
-            errors[2*i + 1] = pixel[1] - points.pixel[i].y;
-            if (!jacobian)
-                continue;
-            const Matx33d byRvec = object.derivativeOf(X);
-            byPose.block<2, 3>(2*i, 0) = byPoint*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(byRvec.val);
-            byPose.block<2, 3>(2*i, 3) = byPoint;
+            for (int k = 0; k < n; k++)
+            {
+                const int i = begin + k;
+                errors[2*i] = u[k] - points.pixel[i].x;
+                errors[2*i + 1] = v[k] - points.pixel[i].y;
+                if (!jacobian)
+                    continue;
+                const Matx33d byRvec = object.derivativeOf(Vec3d(points.object[i]));
+                for (int r = 0; r < 2; r++)
+                    for (int c = 0; c < 3; c++)
+                    {
+                        byPose(2*i + r, 3 + c) = byPoint.at(r, c)[k];
+                        byPose(2*i + r, c) = byPoint.at(r, 0)[k]*byRvec(0, c) + byPoint.at(r, 1)[k]*byRvec(1, c) +
+                                             byPoint.at(r, 2)[k]*byRvec(2, c);
+                    }
+            }
         }
         return true;
     }

@@ -48,7 +48,7 @@ ceres::CostFunction* ImageResidual::Create(const RigCamera& camera, const ImageP
     return new ImageResidual(camera, points, rootWeights, image);
 }
 
-//! One point on its way, and the derivatives of its pixel.
+//! One point on its way, and the derivatives of its weighted pixel.
 struct ImageResidual::Point
 {
     Vec3d inObject, inCamera1;
@@ -106,60 +106,77 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
     const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes.size(),
                                           [](const double* jacobian) { return jacobian != nullptr; }) ||
                               (rig_.window && jacobians[extrinsics_]);
+    const int SMALL = 32, count = camera.parameterCount();      // so many points' derivatives stay in the cache
+    AutoBuffer<double, 2*32*SMALL> buffer(2*(3 + count)*SMALL);
+    const Columns byPoint = { buffer.data(), 3, SMALL };
+    const Columns byParameter = { byParameters ? buffer.data() + 6*SMALL : nullptr, count, SMALL };
+    double x[SMALL], y[SMALL], z[SMALL], u[SMALL], v[SMALL];
+    uchar status[SMALL];
     Point point;
-    point.byParameters.setZero(2, camera.parameterCount());
-    for (int i = 0; i < (int)points_.pixel.size(); i++)
+    point.byParameters.setZero(2, count);
+    for (int begin = 0; begin < (int)points_.pixel.size(); begin += SMALL)
     {
-        const double w = rootWeights_[i];
-        if (w == 0)
+        const int n = std::min(SMALL, (int)points_.pixel.size() - begin);
+        placePoints(object.R, t, begin, n, x, y, z, status);
+        camera.projectJacobian(n, x, y, z, u, v, byPoint, byParameter, status);
+        for (int k = 0; k < n; k++)
         {
-            residuals[2*i] = residuals[2*i + 1] = 0;
-            for (size_t block = 0; block < sizes.size(); block++)
-                if (jacobians[block])
-                    rowsOf<Eigen::Dynamic>(jacobians[block], i, sizes[block]).setZero();
-            continue;
+            const int i = begin + k;
+            if (!writeResidual(i, u[k], v[k], status[k], residuals))
+                return false;
+            const double w = rootWeights_[i];
+            point.inObject = points_.object[i];
+            point.inCamera1 = object.R*point.inObject + t;
+            for (int r = 0; r < 2; r++)
+            {
+                for (int c = 0; c < 3; c++)
+                    point.byPoint(r, c) = w == 0 ? 0 : w*byPoint.at(r, c)[k];
+                for (int c = 0; c < count && byParameters; c++)
+                    point.byParameters(r, c) = w == 0 ? 0 : w*byParameter.at(r, c)[k];
+            }
+            writeJacobians(object, point, i, jacobians);
         }
-        point.inObject = points_.object[i];
-        point.inCamera1 = object.R*point.inObject + t;
-        Vec2d pixel;
-        if (camera.projectJacobian(rig_.extrinsics.rotation.R*point.inCamera1 + rig_.extrinsics.T, pixel,
-                                   point.byPoint.data(), byParameters ? point.byParameters.data() : nullptr) != REFRACT_OK)
-            return false;
-        residuals[2*i] = w*(pixel[0] - points_.pixel[i].x);
-        residuals[2*i + 1] = w*(pixel[1] - points_.pixel[i].y);
-        point.byPoint *= w;
-        point.byParameters *= w;
-        writeJacobians(object, point, i, jacobians);
     }
     return true;
 }
 
-//! Residuals only, in blocks.
-bool ImageResidual::project(const Camera& camera, const double* pose, double* residuals) const
+//! Points begin ... begin + n - 1 in the camera's frame.
+void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
+                                uchar* status) const
 {
     const Extrinsics& toCamera = rig_.extrinsics;
-    const Matx33d R = toCamera.rotation.R*Rotation(pose).R;
-    const Vec3d t = toCamera.rotation.R*Vec3d(pose + 3) + toCamera.T;
+    const Matx33d R = toCamera.rotation.R*R1;
+    const Vec3d t = toCamera.rotation.R*t1 + toCamera.T;
+    for (int k = 0; k < n; k++)
+    {
+        const Vec3d X = R*Vec3d(points_.object[begin + k]) + t;
+        x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+        status[k] = REFRACT_OK;
+    }
+}
+
+//! False if the point has a weight and no image.
+bool ImageResidual::writeResidual(int i, double u, double v, uchar status, double* residuals) const
+{
+    const double w = rootWeights_[i];
+    residuals[2*i] = w == 0 ? 0 : w*(u - points_.pixel[i].x);
+    residuals[2*i + 1] = w == 0 ? 0 : w*(v - points_.pixel[i].y);
+    return w == 0 || status == REFRACT_OK;
+}
+
+bool ImageResidual::project(const Camera& camera, const double* pose, double* residuals) const
+{
+    const Matx33d R = Rotation(pose).R;
     double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
     uchar status[BLOCK];
     for (int begin = 0; begin < (int)points_.pixel.size(); begin += BLOCK)
     {
         const int n = std::min(BLOCK, (int)points_.pixel.size() - begin);
-        for (int i = 0; i < n; i++)
-        {
-            const Vec3d X = R*Vec3d(points_.object[begin + i]) + t;
-            x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
-            status[i] = REFRACT_OK;
-        }
+        placePoints(R, Vec3d(pose + 3), begin, n, x, y, z, status);
         camera.project(n, x, y, z, nullptr, u, v, status);
-        for (int i = 0; i < n; i++)
-        {
-            const double w = rootWeights_[begin + i];
-            if (w != 0 && status[i] != REFRACT_OK)
+        for (int k = 0; k < n; k++)
+            if (!writeResidual(begin + k, u[k], v[k], status[k], residuals))
                 return false;
-            residuals[2*(begin + i)] = w == 0 ? 0 : w*(u[i] - points_.pixel[begin + i].x);
-            residuals[2*(begin + i) + 1] = w == 0 ? 0 : w*(v[i] - points_.pixel[begin + i].y);
-        }
     }
     return true;
 }
@@ -173,15 +190,14 @@ bool ImageResidual::Evaluate(double const* const* parameters, double* residuals,
                      : project(*camera, parameters[0], residuals);
 }
 
-PosePrior::PosePrior(const std::array<double, 6>& known, const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& rows)
+PosePrior::PosePrior(const std::array<double, 6>& known, const Matrix6& rows)
     : known_(known), rows_(rows)
 {
     set_num_residuals(6);
     mutable_parameter_block_sizes()->push_back(6);
 }
 
-ceres::CostFunction* PosePrior::Create(const std::array<double, 6>& known,
-                                       const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& inverseRoot, double scale)
+ceres::CostFunction* PosePrior::Create(const std::array<double, 6>& known, const Matrix6& inverseRoot, double scale)
 {
     return new PosePrior(known, scale*inverseRoot);
 }

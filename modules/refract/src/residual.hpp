@@ -44,6 +44,9 @@ private:
     struct Point;
     bool project(const Camera& camera, const double* pose, double* residuals) const;
     bool linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const;
+    void placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
+                     uchar* status) const;
+    bool writeResidual(int i, double u, double v, uchar status, double* residuals) const;
     void writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const;
 
     const RigCamera& rig_;
@@ -57,15 +60,14 @@ private:
 class PosePrior : public ceres::CostFunction
 {
 public:
-    //! Both must outlive the cost. scale: of the rows.
-    static ceres::CostFunction* Create(const std::array<double, 6>& known,
-                                       const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& inverseRoot, double scale);
+    //! known must outlive the cost. scale: of the rows.
+    static ceres::CostFunction* Create(const std::array<double, 6>& known, const Matrix6& inverseRoot, double scale);
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
 private:
-    PosePrior(const std::array<double, 6>& known, const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>& rows);
+    PosePrior(const std::array<double, 6>& known, const Matrix6& rows);
     const std::array<double, 6>& known_;
-    const Eigen::Matrix<double, 6, 6, Eigen::RowMajor> rows_;
+    const Matrix6 rows_;
 };
 
 }} // namespace

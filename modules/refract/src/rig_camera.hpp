@@ -11,6 +11,11 @@
 
 namespace cv { namespace refract {
 
+// Not aligned: they are members of what std::vector and plain new hold.
+template<int Rows, int Columns>
+using PlainMatrix = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor | Eigen::DontAlign>;
+typedef PlainMatrix<6, 6> Matrix6;
+
 //! A rotation vector's matrix and the derivatives of the matrix.
 struct Rotation
 {
@@ -41,8 +46,8 @@ struct WindowTransfer
     Vec3d normal;
     double distance;
     // Rows: normal (3), distance.
-    Eigen::Matrix<double, 4, 4, Eigen::RowMajor> byWindow;              //!< by the owner's normal and distance
-    Eigen::Matrix<double, 4, 6, Eigen::RowMajor> byOwner, byCamera;     //!< by rvec and T of the two
+    PlainMatrix<4, 4> byWindow;             //!< by the owner's normal and distance
+    PlainMatrix<4, 6> byOwner, byCamera;    //!< by rvec and T of the two
 };
 
 /** One camera of the rig at one set of parameter values: what all its images share. */

@@ -28,15 +28,9 @@ TermCriteria checkedCriteria(TermCriteria criteria)
     return criteria;
 }
 
-//! Equations beyond the unknowns.
-int freedomOf(const RigProblem& rig)
-{
-    return rig.equationCount() - rig.freeCount() - 6*rig.poseCount();
-}
-
 void checkFreedom(const RigProblem& rig)
 {
-    if (freedomOf(rig) <= 0)
+    if (rig.freedom() <= 0)
         CV_Error_(Error::StsBadArg, ("%d points were observed, which give %d equations for %d unknowns; take more views",
                                      rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
 }
@@ -59,7 +53,7 @@ RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const T
         if (!rig.hasUncertainPoses() || !outcome.converged)
             break;
         const double before = rig.pixelSigma();
-        rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(freedomOf(rig), 1)));
+        rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(rig.freedom(), 1)));
         if (std::abs(rig.pixelSigma() - before) < 1e-4*before)
             break;
     }
@@ -158,7 +152,7 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     checkFreedom(problem);
 
     // First, as what is undetermined is also what does not converge.
-    const double variance = outcome.varianceFactor*problem.squaredError()/freedomOf(problem);
+    const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
     eigen2cv(rigCovariance(problem, variance), fit.covariance);
     if (!outcome.converged)
         CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "

@@ -11,7 +11,6 @@
 namespace cv { namespace refract {
 
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
-typedef Eigen::Matrix<double, 6, 6, Eigen::RowMajor> Matrix6;
 
 //! The cameras: lens and window of each, and where they are.
 struct Rig
@@ -103,6 +102,7 @@ public:
     int freeCount() const;              //!< without the poses
     int poseCount() const;              //!< of those that are adjusted
     int equationCount() const;
+    int freedom() const { return equationCount() - freeCount() - 6*poseCount(); }
     //! Weighted residuals of one image: u, v of each point.
     Eigen::VectorXd residuals(const RigImage& image) const;
     double squaredError() const;        //!< of all images, and of the poses known with a covariance

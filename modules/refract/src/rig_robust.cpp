@@ -23,6 +23,7 @@ namespace {
 
 const double MEDIAN_OF_RAYLEIGH = 1.17741, TUKEY = 4.685;
 const double CHANCE = 1e-4;         // that a good point, or view, is left out
+const double CUT = std::sqrt(-2*std::log(CHANCE));      // that quantile of the Rayleigh distribution
 const double LEAST_SCALE = 1e-7;    // pixels: errors of perfect data are rounding
 
 double median(std::vector<double> values)
@@ -80,7 +81,8 @@ class RobustFit
 {
 public:
     RobustFit(RigProblem& rig, int seenCount, const TermCriteria& criteria)
-        : rig_(rig), seenCount_(seenCount), criteria_(criteria), status_(rig.images().size(), (uchar)GLASS_IMAGE_USED), scale_(0) {}
+        : rig_(rig), seenCount_(seenCount), criteria_(criteria),
+          status_(rig.images().size(), (uchar)GLASS_IMAGE_USED), scale_(0) {}
 
     RobustOutcome run()
     {
@@ -99,7 +101,6 @@ public:
     }
 
 private:
-    const double CUT = std::sqrt(-2*std::log(CHANCE));
     const std::vector<RigImage>& images() const { return rig_.images(); }
 
     std::vector<double> imageScales(const std::vector<std::vector<double> >& errors) const;
@@ -174,8 +175,8 @@ void RobustFit::estimateScale()
         scales.push_back(scaleOf(errors));
         all.insert(all.end(), errors.begin(), errors.end());
     }
-    const double freedom = rig_.equationCount() - rig_.freeCount() - 6*rig_.poseCount();
-    scale_ = truncatedScale(all, median(scales), 3)*std::sqrt(rig_.equationCount()/std::max(freedom, 1.));
+    const double inflation = std::sqrt(rig_.equationCount()/std::max((double)rig_.freedom(), 1.));
+    scale_ = truncatedScale(all, median(scales), 3)*inflation;
 }
 
 //! Sum of squares, each cut off.
@@ -287,7 +288,8 @@ bool RobustFit::chooseInliers()
             const std::vector<double> errors = rig_.pixelErrors(image, rig_.pose(image.view));
             for (size_t k = 0; k < errors.size(); k++)
                 rootWeights[k] = errors[k] < CUT*scale_;
-            if ((double)std::count(rootWeights.begin(), rootWeights.end(), 1.) < LEAST_AGREEING*(double)errors.size())
+            const double kept = (double)std::count(rootWeights.begin(), rootWeights.end(), 1.);
+            if (kept < LEAST_AGREEING*(double)errors.size())
             {
                 status_[i] = GLASS_IMAGE_UNUSABLE;
                 std::fill(rootWeights.begin(), rootWeights.end(), 0.);
@@ -314,9 +316,8 @@ bool RobustFit::decide()
     {
         checkMajority(rig_.pointCount());
         converged = rig_.solve(criteria_);
-        const double freedom = rig_.equationCount() - rig_.freeCount() - 6*rig_.poseCount();
-        if (freedom > 0)
-            scale_ = std::max(std::sqrt(rig_.squaredError()/(freedom*truncationFactor(CUT))), LEAST_SCALE);
+        if (rig_.freedom() > 0)
+            scale_ = std::max(std::sqrt(rig_.squaredError()/(rig_.freedom()*truncationFactor(CUT))), LEAST_SCALE);
     }
     return converged;
 }
