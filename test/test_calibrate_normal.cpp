@@ -51,6 +51,20 @@ TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_nor
     CHECK(angleBetween(normal, window.normal) < 1e-6);
 }
 
+TEST_CASE("A pair with a point next to the distortion centre has an answer", "[calibrate_normal]")
+{
+    GlassWindow window = paperWindow();
+    window.normal = normalize(Vec3d(0.05, -0.03, 1));
+    const Ptr<RefractiveCamera> camera = paperCamera(window);
+    for (int run = 0; run < 6000; run++)      // one in some thousands converges slowly
+    {
+        Random random(3000 + run);
+        CAPTURE(run, seed());
+        const CalibrationScene scene = makeScene(camera, 1, random, 0.166);
+        REQUIRE(angleBetween(normalOf(scene, camera), window.normal) < 2);     // degrees
+    }
+}
+
 TEST_CASE("The RMS of the lines is the pixel noise, the covariance is the sampled one", "[calibrate_normal]")
 {
     const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
