@@ -56,8 +56,8 @@ FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs
     double* k = m_.k;
     std::fill(k, k + 4, 0.);
     std::copy(distCoeffs.begin(), distCoeffs.end(), k);
-    const double slope[] = { 1, 3*k[0], 5*k[1], 7*k[2], 9*k[3] };
-    m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slope, slope + 5))));
+    const double slopeTerms[] = { 1, 3*k[0], 5*k[1], 7*k[2], 9*k[3] };
+    m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slopeTerms, slopeTerms + 5))));
     // As for OpenCV's model.
     const auto bendFunction = [this](double theta, double& slope) { return bend(theta, slope); };
     const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
