@@ -6,12 +6,18 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
 
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
 and extension) the target must not have moved between them: such pairs determine the window best. All direct images serve
-the lens, unless --camera gives it; with pairs it is refined together with the window. With --direct2 and --glass2 the same name means the same moment in both cameras.
+the lens, unless --camera gives it; with pairs it is refined together with the window. With --direct2 and --glass2 the same
+name means the same moment in both cameras.
 
 Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
 
-Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but --max-rms or
---max-normal-std is not met.)";
+Judge the result by the held-out boards (calibrated on the others in turn), not by the residuals of the fit: the table,
+--summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
+values would do, and what the next images should show.
+
+Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
+--max-normal-std, --max-error-at) is not met. The same input gives the same bytes: outputs carry the time of the newest image
+(or that of SOURCE_DATE_EPOCH).)";
 
 #include "cli.hpp"
 #include "file_output.hpp"
@@ -20,6 +26,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "progress.hpp"
 #include "report.hpp"
 #include "summary.hpp"
+#include "summary_json.hpp"
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -34,11 +41,13 @@ struct Options
 {
     TargetOptions target;
     std::string direct[2], glass[2], camera[2];
-    std::string thickness, index, imageSize, out, report, pinholeOut, lens = "opencv5";
+    std::string thickness, index, imageSize, out, summary, report, pinholeOut, lens = "opencv5";
     double innerIndex = 1., outerIndex = 1., distance = 0.;
     std::vector<std::string> free;
-    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false;
-    double maxRms = 0., maxNormalStd = 0.;
+    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false, crossValidation = true;
+    Limits limits;
+    Label label;
+    std::string unit = "mm";
 };
 
 const std::map<std::string, int> FREE = {
@@ -56,9 +65,20 @@ std::vector<std::string> namesOf(const std::map<std::string, int>& map)
     return names;
 }
 
+ErrorLimit parseErrorLimit(const std::string& text)
+{
+    const std::vector<std::string> parts = CLI::detail::split(text, ':');
+    ErrorLimit limit;
+    if (parts.size() != 2 || !CLI::detail::lexical_cast(parts[0], limit.range) || !(limit.range > 0) ||
+        !CLI::detail::lexical_cast(parts[1], limit.error) || !(limit.error > 0))
+        throw Failure("--max-error-at=" + text + ": give RANGE:ERROR, two numbers more than 0, as in --max-error-at=600:0.05");
+    return limit;
+}
+
 Options parseOptions(Command& command)
 {
     Options o;
+    std::vector<std::string> maxErrors, notes;
     CLI::App& app = command.app;
     o.target.addTo(app, true);
     app.add_option("--direct", o.direct[0], "Images without the window: glob or corners.vnl");
@@ -84,13 +104,25 @@ Options parseOptions(Command& command)
         ->needs(unpaired)->excludes(glass2);
     app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
     app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
-    app.add_option("--report", o.report, "HTML page to judge the calibration by (needs gnuplot)");
+    app.add_option("--summary", o.summary, "JSON file with everything that the table and the report say");
+    app.add_option("--report", o.report, "HTML page to judge the calibration by, and to keep (needs gnuplot)");
     app.add_option("--pinhole-out", o.pinholeOut, "Also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
         "the images through the window, to compare with (refract_measure --compare-with)");
-    app.add_option("--max-rms", o.maxRms, "Limit: RMS over all corners, px")->check(moreThanZero());
-    app.add_option("--max-normal-std", o.maxNormalStd, "Limit: uncertainty of the normal (larger principal one), degrees")
-        ->check(moreThanZero());
+    app.add_option("--max-rms", o.limits.rms, "Limit: RMS over all corners, px")->check(moreThanZero());
+    app.add_option("--max-normal-std", o.limits.normalStdDeg, "Limit: uncertainty of the normal (larger principal one), "
+        "degrees")->check(moreThanZero());
+    app.add_option("--max-error-at", maxErrors, "Limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
+        "3-D) of the worst point of the image at z = RANGE from camera 1")->allow_extra_args(false);
+    app.add_flag("!--no-cross-validation", o.crossValidation, "Do not calibrate again on parts of the views");
+    app.add_option("--unit", o.unit, "Unit of --square and all lengths")->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+        ->capture_default_str();
+    app.add_option("--serial", o.label.serial, "Serial number of the window, carried into all outputs");
+    app.add_option("--note", notes, "Repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
     command.parse();
+    for (const std::string& text : maxErrors)
+        o.limits.errors.push_back(parseErrorLimit(text));
+    for (const std::string& text : notes)
+        o.label.notes.push_back(parseNote(text));
     o.distanceGiven = distance->count() > 0;
     o.stereo = glass2->count() > 0;
     if (!o.stereo && !(o.direct[1].empty() && o.camera[1].empty()))
@@ -131,24 +163,25 @@ void readWindow(const Options& o, double square, RigOptions& rig)
     window.check();
 }
 
-RigData readImages(const Options& o, const Target& target, bool quiet, std::vector<std::string>& withoutTarget)
+void readImages(const Options& o, const Target& target, bool quiet, RigCalibration& c)
 {
     const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
     ViewSet sets[2][2];
     const ViewSet* direct[2] = {};
     const ViewSet* glass[2] = {};
-    for (int c = 0; c < 2; c++)
+    for (int k = 0; k < 2; k++)
         for (bool through : {false, true})
         {
-            const std::string& source = through ? o.glass[c] : o.direct[c];
+            const std::string& source = through ? o.glass[k] : o.direct[k];
             if (source.empty())
                 continue;
-            ViewSet& set = sets[c][through];
+            ViewSet& set = sets[k][through];
             set = readViews(source, target, size, quiet);
-            (through ? glass : direct)[c] = &set;
-            withoutTarget.insert(withoutTarget.end(), set.withoutTarget.begin(), set.withoutTarget.end());
+            (through ? glass : direct)[k] = &set;
+            c.withoutTarget.insert(c.withoutTarget.end(), set.withoutTarget.begin(), set.withoutTarget.end());
+            c.inputs.insert(c.inputs.end(), set.files.begin(), set.files.end());
         }
-    return pairViews(target, direct, glass, o.unpaired);
+    c.data = pairViews(target, direct, glass, o.unpaired);
 }
 
 RigCalibration calibrate(const Options& o, bool quiet)
@@ -157,25 +190,31 @@ RigCalibration calibrate(const Options& o, bool quiet)
     const Target target(o.target);
     readWindow(o, target.square(), c.options);
     c.options.lensCoefficients = LENSES.at(o.lens);
-    c.maxRms = o.maxRms;
-    c.maxNormalStdDeg = o.maxNormalStd;
+    c.limits = o.limits;
+    c.label = o.label;
+    c.unit = o.unit;
     for (int k = 0; k < 2; k++)
         if (!o.camera[k].empty())
+        {
             // A rig's file may serve for both cameras.
             c.options.known[k] = k == 1 && o.camera[1] == o.camera[0] ? RefractiveCamera::read(o.camera[k], "camera2")
                                                                       : RefractiveCamera::read(o.camera[k]);
-    c.data = readImages(o, target, quiet, c.withoutTarget);
-    {
-        Progress progress("calibrating", 4, quiet);
-        c.start = startRig(c.data, c.options, c.lensSources);
-        progress.step();
-        c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
-        c.residuals = residualsOf(c.data, c.fit);
-        progress.step();
-        c.baselines = computeBaselines(c.data, c.start, c.lensSources);
-        progress.step();
-        c.nearFar = crossValidate(c.data, c.start, c.fit, c.options.flags, c.lensSources);
-    }
+            c.inputs.push_back(o.camera[k]);
+        }
+    readImages(o, target, quiet, c);
+    Progress progress("calibrating", 5, quiet);
+    c.start = startRig(c.data, c.options, c.lensSources);
+    progress.step();
+    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    c.residuals = residualsOf(c.data, c.fit);
+    progress.step();
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    progress.step();
+    if (!o.crossValidation)
+        return c;
+    c.heldOut = holdOut(c.data, c.fit, c.options.flags);
+    progress.step();
+    c.nearFar = nearAgainstFar(c.data, c.fit, c.options.flags);
     if (!o.report.empty())
         c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
     return c;
@@ -186,12 +225,21 @@ void checkOutputs(const Options& o)
 {
     if (!o.report.empty())
         Plot::checkAvailable();
-    for (const std::string& path : {o.out, o.report})
+    for (const std::string& path : {o.out, o.summary, o.report, o.pinholeOut})
     {
         const std::filesystem::path folder = std::filesystem::path(path).parent_path();
         if (!folder.empty() && !std::filesystem::is_directory(folder))
             throw Failure("cannot write '" + path + "': there is no folder '" + folder.string() + "'; make it first");
     }
+}
+
+void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)
+{
+    Calibration pinhole = calibratePinholeRig(calibration.data, allMoments(calibration.data),
+                                              calibration.options.lensCoefficients);
+    pinhole.command = command;
+    pinhole.time = timeOfFiles(calibration.inputs);
+    writeCalibration(path, pinhole);
 }
 
 } // namespace
@@ -202,20 +250,20 @@ int main(int argc, char** argv)
         const Options options = parseOptions(command);
         checkOutputs(options);
         const RigCalibration calibration = calibrate(options, command.quiet());
-        const Findings findings = judge(calibration);
+        const Assessment assessment = assess(calibration, command.quiet());
+        const Findings findings = judge(calibration, assessment);
         if (!options.pinholeOut.empty())
-        {
-            Calibration pinhole = calibratePinholeRig(calibration.data, calibration.options.lensCoefficients);
-            pinhole.command = command.line();
-            writeCalibration(options.pinholeOut, pinhole);
-        }
+            writePinhole(options.pinholeOut, calibration, command.line());
+        if (!options.summary.empty())
+            writeText(options.summary, summaryJson(calibration, assessment, findings, command.line()));
         if (!options.report.empty())
-            writeText(options.report, makeReport(calibration, findings, command.line(), command.quiet()));
+            writeText(options.report, makeReport(calibration, assessment, findings, command.line(), command.quiet()));
         writeCalibration(options.out, toFile(calibration, command.line()));
         if (!command.quiet())
-            printSummary(std::cout, calibration, findings);
-        for (const std::string& limit : findings.limitsNotMet)
-            std::cerr << "refract_calib: limit not met: " << limit << ".\n";
-        return findings.limitsNotMet.empty() ? DONE : LIMIT_NOT_MET;
+            printSummary(std::cout, calibration, assessment, findings);
+        for (const LimitCheck& limit : findings.limits)
+            if (!limit.met())
+                std::cerr << "refract_calib: limit not met: " << limit.sentence() << ".\n";
+        return findings.pass() ? DONE : LIMIT_NOT_MET;
     });
 }

@@ -17,8 +17,8 @@ static const char MANUAL[] = R"(Measures the points of a target, in the frame of
 
 IMAGE may be a quoted glob ('measure1/*.png') or a corners.vnl; images of two cameras belong together when their file
 stems are equal. points.csv: id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point of the target (id counts on from view
-to view); s* is one standard deviation, from the pixel noise that the calibration found and, with two cameras, from the
-calibration's own covariance; nan where there is no answer, and status says why (0: fine; RefractiveStatus).
+to view); s* is one standard deviation, from the pixel noise that the calibration found and from the calibration's own
+covariance, which calib.yml holds; nan where there is no answer, and status says why (0: fine; RefractiveStatus).
 The table compares the distances between neighbouring points with --square.)";
 
 namespace {
@@ -75,10 +75,9 @@ Measurement measure(const Options& options, const Calibration& calibration, cons
     const double sigma = options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
     if (!sight.pixels2.empty())
         return measureStereo(calibration, sight.pixels1, sight.pixels2, sigma);
-    const auto& camera = calibration.cameras[0].camera;
     if (options.plane.empty())
-        return measureTarget(camera, target, sight.pixels1, sigma);
-    return measureOnPlane(camera, sight.pixels1, parsePlane(options.plane), sigma);
+        return measureTarget(calibration, target, sight.pixels1, sigma);
+    return measureOnPlane(calibration, sight.pixels1, parsePlane(options.plane), sigma);
 }
 
 std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const Target& target,
@@ -176,8 +175,8 @@ void addOptions(CLI::App& app, Options& options)
     options.target.addTo(app, true);
     app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
     app.add_option("--out", options.out, "points.csv to write");
-    app.add_option("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: the "
-                   "calibration's rms / sqrt 2)")->check(CLI::PositiveNumber);
+    app.add_option("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: that "
+                   "of the calibration's residuals)")->check(CLI::PositiveNumber);
     app.add_flag("--compare", options.compare, "show also what comes out if the glass is ignored");
     app.add_option("--compare-with", options.compareWith, "show also what another calibration gives");
 }

@@ -2,10 +2,13 @@
 #include "cli.hpp"
 #include "file_output.hpp"
 
+#include <sys/stat.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <regex>
 
 namespace tools {
 
@@ -81,23 +84,60 @@ void readRigid(const FileStorage& fs, const std::string& filename, Calibration& 
         throw Failure("'" + filename + "': R is not a rotation");
 }
 
-std::tm utc()
+std::time_t newestOf(const std::vector<std::string>& files)
 {
-    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-    const std::time_t now = epoch && *epoch ? (std::time_t)std::strtoll(epoch, nullptr, 10) : std::time(nullptr);
-    std::tm parts = {};
-    gmtime_r(&now, &parts);
-    return parts;
+    std::time_t newest = 0;
+    struct stat status;
+    for (const std::string& file : files)
+        if (stat(file.c_str(), &status) == 0)
+            newest = std::max(newest, status.st_mtime);
+    return newest;
+}
+
+Label readLabel(const FileStorage& fs)
+{
+    Label label;
+    if (fs["window_serial"].isString())
+        fs["window_serial"] >> label.serial;
+    for (const FileNode& note : fs["notes"])
+        if (note.isString())
+            label.notes.push_back({note.name(), (std::string)note});
+    return label;
+}
+
+void writeLabel(FileStorage& fs, const Label& label)
+{
+    if (!label.serial.empty())
+        fs << "window_serial" << label.serial;
+    if (label.notes.empty())
+        return;
+    fs << "notes" << "{";
+    for (const auto& note : label.notes)
+        fs << note.first << note.second;
+    fs << "}";
 }
 
 } // namespace
 
-std::string timeStamp()
+std::string timeOfFiles(const std::vector<std::string>& inputs)
 {
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    const std::time_t time = epoch && *epoch ? (std::time_t)std::strtoll(epoch, nullptr, 10) : newestOf(inputs);
+    std::tm parts = {};
+    gmtime_r(&time, &parts);
     char text[32];
-    const std::tm parts = utc();
     std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
     return text;
+}
+
+std::pair<std::string, std::string> parseNote(const std::string& text)
+{
+    static const std::regex NOTE("([A-Za-z_][A-Za-z0-9_-]*)=([^]*)");
+    std::smatch parts;
+    if (!std::regex_match(text, parts, NOTE))
+        throw Failure("--note=" + text + ": give KEY=TEXT with a KEY of letters, digits, _ and -, as in "
+                      "--note=customer='Tunnel Ltd'");
+    return {parts[1], parts[2]};
 }
 
 Calibration readCalibration(const std::string& filename)
@@ -137,6 +177,11 @@ Calibration readCalibration(const std::string& filename)
     }
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.covariance = readMatrix(fs["covariance"]);
+    calibration.sigma = readNumber(fs["residual_sigma"], -1.);
+    calibration.freedom = readNumber(fs["degrees_of_freedom"], 0.);
+    calibration.label = readLabel(fs);
+    if (fs["calibration_time"].isString())
+        fs["calibration_time"] >> calibration.time;
     if (fs["command"].isString())
         fs["command"] >> calibration.command;
     return calibration;
@@ -149,7 +194,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
     if (!fs.open(file.temporary(), FileStorage::WRITE))
         throw Failure("cannot write '" + filename + "'");
     fs << "command" << calibration.command << "refract_version" << REFRACT_VERSION << "opencv_version" << CV_VERSION
-       << "calibration_time" << timeStamp();
+       << "calibration_time" << calibration.time;
+    writeLabel(fs, calibration.label);
     if (calibration.stereo())
     {
         for (int i = 0; i < 2; ++i)
@@ -164,6 +210,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
     }
     else
         writeCamera(fs, calibration.cameras.at(0));
+    if (calibration.freedom > 0)
+        fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;
     if (!calibration.covariance.empty())
         fs << "covariance" << calibration.covariance;
     fs.release();

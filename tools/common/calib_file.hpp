@@ -3,14 +3,15 @@
 
 #include <opencv2/refract.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 /* calib.yml: one camera at top level, two under `camera1`, `camera2` with `R`, `T` beside them.
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
 thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
-rms. At top level also rms (over all cameras), covariance, and command, refract_version, opencv_version,
-calibration_time. */
+rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom,
+window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 //! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
@@ -29,6 +30,13 @@ struct CameraCalibration
     double rms = -1.;                   //!< px; negative where unknown
 };
 
+//! What people call the thing that was calibrated.
+struct Label
+{
+    std::string serial;                                         //!< of the window; may be empty
+    std::vector<std::pair<std::string, std::string>> notes;     //!< key and free text
+};
+
 struct Calibration
 {
     std::vector<CameraCalibration> cameras;     //!< one or two
@@ -36,7 +44,11 @@ struct Calibration
     cv::Vec3d T;
     double rms = -1.;                           //!< px, over all cameras; negative where unknown
     cv::Mat covariance;     //!< of calibrateGlass or stereoCalibrateGlass, in their order; empty where unknown
+    double sigma = -1.;     //!< standard deviation of a pixel coordinate, from the residuals; negative where unknown
+    double freedom = 0.;    //!< degrees of freedom of those residuals; 0 where unknown
+    Label label;
     std::string command;    //!< the command line that made it
+    std::string time;       //!< of its data, see timeOfFiles()
 
     bool stereo() const { return cameras.size() == 2; }
 };
@@ -44,11 +56,15 @@ struct Calibration
 //! Throws cv::Exception or Failure that names the file.
 Calibration readCalibration(const std::string& filename);
 
-//! Complete or not at all. Adds versions and the time (that of SOURCE_DATE_EPOCH, if set).
+//! Complete or not at all. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);
 
-//! The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, for reproducible files.
-std::string timeStamp();
+/** The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, else of the newest input, so that the same
+input gives the same bytes. */
+std::string timeOfFiles(const std::vector<std::string>& inputs);
+
+//! "key=text" -> a note; the key becomes a name in YAML and JSON.
+std::pair<std::string, std::string> parseNote(const std::string& text);
 
 } // namespace tools
 

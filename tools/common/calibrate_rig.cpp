@@ -65,6 +65,10 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
         fit.rms = stereoCalibrateGlass(object, glass[0], direct[0], glass[1], direct[1], cameras[0], cameras[1],
                                        fit.rig.R, fit.rig.T, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance,
                                        fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS, criteria);
+    const int points = (int)residualsOf(data, fit).size();
+    const size_t free = freeWindowParameters(fit, flags).size() + freeRigParameters(fit).size();
+    fit.freedom = 2. * points - (double)free - 6. * (double)moments.size();
+    fit.sigma = fit.rms * std::sqrt(points / fit.freedom);
     return fit;
 }
 
@@ -90,16 +94,21 @@ Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>&
     }
 }
 
-void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)
+void poseInCamera(const Rig& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
-    rvec = fit.rvecs[k];
-    tvec = fit.tvecs[k];
     if (camera == 0)
         return;
     Matx33d R;
     Rodrigues(rvec, R);
-    Rodrigues(fit.rig.R * R, rvec);
-    tvec = fit.rig.R * tvec + fit.rig.T;
+    Rodrigues(rig.R * R, rvec);
+    tvec = rig.R * tvec + rig.T;
+}
+
+void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)
+{
+    rvec = fit.rvecs[k];
+    tvec = fit.tvecs[k];
+    poseInCamera(fit.rig, camera, rvec, tvec);
 }
 
 std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
@@ -127,46 +136,6 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
         }
     }
     return residuals;
-}
-
-ParameterColumns columnsOf(const Rig& rig, int camera)
-{
-    ParameterColumns columns = {};
-    for (int c = 0; c <= camera; c++)
-    {
-        const RefractiveCamera& cam = *rig.cameras[c];
-        columns.lensCount = cam.lensParameters().rows;
-        columns.layers = (int)cam.window().thickness.size();
-        columns.lens = columns.end;
-        columns.normal = columns.lens + columns.lensCount;
-        columns.distance = columns.normal + 3;
-        columns.thickness = columns.distance + 1;
-        columns.index = columns.thickness + columns.layers;
-        columns.innerIndex = columns.index + columns.layers;
-        columns.outerIndex = columns.innerIndex + 1;
-        columns.end = columns.outerIndex + 1;
-    }
-    return columns;
-}
-
-WindowStd windowStd(const Fit& fit, int camera)
-{
-    const ParameterColumns at = columnsOf(fit.rig, camera);
-    auto std = [&fit](int column) { return fit.stdDeviations.at<double>(column); };
-    WindowStd result;
-    // Rank 2: the third eigenvalue, along the normal itself, is zero.
-    Mat eigenvalues;
-    eigen(fit.covariance(Rect(at.normal, at.normal, 3, 3)), eigenvalues);
-    for (int i = 0; i < 2; i++)
-        result.normalDeg.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i))) * 180. / CV_PI);
-    result.distance = std(at.distance);
-    for (int i = 0; i < at.layers; i++)
-    {
-        result.thickness.push_back(std(at.thickness + i));
-        result.index.push_back(std(at.index + i));
-    }
-    result.outerIndex = std(at.outerIndex);
-    return result;
 }
 
 } // namespace tools

@@ -43,6 +43,8 @@ struct Fit
     cv::Mat perViewErrors;                      //!< one row each: glass 1, direct 1 (, glass 2, direct 2), px, NaN: none
     cv::Mat stdDeviations, covariance;
     double rms = 0.;
+    double freedom = 0.;                        //!< degrees of freedom: coordinates - free parameters - 6 for each board
+    double sigma = 0.;                          //!< of a pixel coordinate, from the residuals
 };
 
 //! One observed corner: where it was seen, and seen minus modelled.
@@ -79,6 +81,9 @@ Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>&
 //! All corners of the moments that took part.
 std::vector<Residual> residualsOf(const RigData& data, const Fit& fit);
 
+//! Board -> a camera of the rig, from board -> camera 1.
+void poseInCamera(const Rig& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
+
 //! Board -> camera `camera` of the k-th moment of a fit.
 void poseInCamera(const Fit& fit, size_t k, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
 
@@ -89,6 +94,27 @@ struct ParameterColumns
     int lensCount, layers;
 };
 ParameterColumns columnsOf(const Rig& rig, int camera);
+
+//! Two principal standard deviations of the normal of a camera, larger first.
+std::vector<double> normalStdDeg(const cv::Mat& covariance, const Rig& rig, int camera);
+
+//! As a file of it would be, without what the estimate is worth.
+Calibration calibrationOf(const Rig& rig);
+
+//! A number that was estimated.
+struct FreeParameter
+{
+    std::string name;
+    int column;                 //!< of Fit::covariance
+    double value, std;
+    bool isNormal;
+};
+
+//! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
+std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags);
+
+//! Lens parameters and R (rotation vector), T that were free.
+std::vector<FreeParameter> freeRigParameters(const Fit& fit);
 
 //! One standard deviation of what was free in the window of a camera.
 WindowStd windowStd(const Fit& fit, int camera);

@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_FIGURES_HPP
 #define REFRACT_TOOLS_FIGURES_HPP
 
-#include "rig_calibration.hpp"
+#include "assessment.hpp"
 
 /* The report's pictures, one function each, as SVG text. A picture whose scale needs words returns them beside it. */
 namespace tools {
@@ -35,6 +35,12 @@ Figure drawCoverage(const RigCalibration& calibration, int camera);
 
 //! How far the normal turns without each view.
 Figure drawInfluence(const RigCalibration& calibration, int camera);
+
+//! Expected error of a measured point over the image of camera 1.
+Figure drawErrorMap(const RigCalibration& calibration, const ErrorMap& map);
+
+//! The same over the range: worst, typical, of pixel noise alone, and the limits.
+Figure drawErrorOverRange(const RigCalibration& calibration, const Assessment& assessment);
 
 } // namespace tools
 

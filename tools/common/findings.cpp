@@ -36,16 +36,20 @@ bool ownsWindow(const RigCalibration& c, int camera)
     return camera == 0 || !(c.options.flags & GLASS_SHARED_WINDOW);
 }
 
-void judgeLimits(const RigCalibration& c, Findings& f)
+void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
 {
-    if (c.maxRms > 0 && !(c.fit.rms <= c.maxRms))
-        f.limitsNotMet.push_back(format("RMS %.3f px is above --max-rms=%g px", c.fit.rms, c.maxRms));
-    for (int k = 0; k < c.data.cameraCount && c.maxNormalStdDeg > 0; k++)
+    const Limits& limits = c.limits;
+    if (limits.rms > 0)
+        f.limits.push_back({format("--max-rms=%g", limits.rms), "RMS over all corners", limits.rms, c.fit.rms, "px"});
+    for (int k = 0; k < c.data.cameraCount && limits.normalStdDeg > 0; k++)
+        f.limits.push_back({format("--max-normal-std=%g", limits.normalStdDeg), of(c, k) + "standard deviation of the normal",
+                            limits.normalStdDeg, windowStd(c.fit, k).normalDeg[0], "deg"});
+    for (size_t i = 0; i < limits.errors.size(); i++)
     {
-        const double std = windowStd(c.fit, k).normalDeg[0];
-        if (!(std <= c.maxNormalStdDeg))
-            f.limitsNotMet.push_back(of(c, k) + format("the normal is uncertain by %.3f deg, above --max-normal-std=%g deg",
-                                                       std, c.maxNormalStdDeg));
+        const ErrorLimit& limit = limits.errors[i];
+        f.limits.push_back({format("--max-error-at=%g:%g", limit.range, limit.error),
+                            format("expected error of the worst point at z = %g", limit.range), limit.error,
+                            a.limits[i].worst(), c.unit});
     }
 }
 
@@ -83,6 +87,24 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
                                "than such glass-only views");
 }
 
+//! Thickness and index of a single layer: what shows at small angles, and how well it is known.
+std::string opticalPath(const RigCalibration& c, int camera)
+{
+    const GlassWindow w = c.fit.rig.cameras[camera]->window();
+    const ParameterColumns at = columnsOf(c.fit.rig, camera);
+    const double d = w.thickness[0], n = w.index[0], byThickness = 1. - w.outerIndex / n, byIndex = d * w.outerIndex / (n * n);
+    const auto cov = [&](int i, int j) { return c.fit.covariance.at<double>(i, j); };
+    const double variance = byThickness * byThickness * cov(at.thickness, at.thickness)
+        + 2. * byThickness * byIndex * cov(at.thickness, at.index) + byIndex * byIndex * cov(at.index, at.index);
+    return of(c, camera) + format("thickness and index apart: only thickness x (1 - %s/index) = ",
+                                  w.outerIndex == 1. ? "1" : format("%.4g", w.outerIndex).c_str())
+        + plusMinus(d * byThickness, std::sqrt(std::max(0., variance))) + " is determined (thickness alone +- "
+        + format("%.2g, index alone +- %.2g); fixing one of them makes the other far better",
+                 std::sqrt(cov(at.thickness, at.thickness)), std::sqrt(cov(at.index, at.index)));
+}
+
+bool isOneOf(const FreeParameter& p, int first, int second) { return p.column == first || p.column == second; }
+
 void judgeCorrelations(const RigCalibration& c, Findings& f)
 {
     const std::vector<FreeParameter> free = freeWindowParameters(c.fit, c.options.flags);
@@ -91,14 +113,28 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
         {
             if (free[i].isNormal && free[j].isNormal)       // told by the two principal deviations
                 continue;
-            const double r = c.fit.covariance.at<double>(free[i].column, free[j].column) / (free[i].std * free[j].std);
-            if (std::abs(r) > TIED)
-                f.cannotTell.push_back(format("%s and %s apart: their correlation is %.4f, a change of one is nearly made up "
-                                              "by the other", free[i].name.c_str(), free[j].name.c_str(), r));
+            const double covariance = c.fit.covariance.at<double>(free[i].column, free[j].column);
+            const double r = covariance / (free[i].std * free[j].std);
+            if (std::abs(r) <= TIED)
+                continue;
+            bool told = false;
+            for (int k = 0; k < c.data.cameraCount && !told; k++)
+            {
+                const ParameterColumns at = columnsOf(c.fit.rig, k);
+                told = at.layers == 1 && isOneOf(free[i], at.thickness, at.index) && isOneOf(free[j], at.thickness, at.index);
+                if (told)
+                    f.cannotTell.push_back(opticalPath(c, k));
+            }
+            if (told)
+                continue;
+            // The combination of both that is known best.
+            const double k = -covariance / (free[j].std * free[j].std);
+            f.cannotTell.push_back(format("%s and %s apart (correlation %.4f): only %s %c %.4g x %s = ", free[i].name.c_str(),
+                                          free[j].name.c_str(), r, free[i].name.c_str(), k < 0 ? '-' : '+', std::abs(k),
+                                          free[j].name.c_str())
+                                   + plusMinus(free[i].value + k * free[j].value, free[i].std * std::sqrt(std::max(0., 1. - r * r)))
+                                   + format(" is determined (each alone +- %.2g, +- %.2g)", free[i].std, free[j].std));
         }
-    if ((c.options.flags & GLASS_FREE_THICKNESS) && (c.options.flags & GLASS_FREE_INDEX))
-        f.cannotTell.push_back("thickness and index well apart: at small angles only thickness x (1 - 1/index) shows; fixing "
-                               "one of them makes the other far better");
 }
 
 void judgeFit(const RigCalibration& c, int camera, Findings& f)
@@ -200,10 +236,29 @@ void mergeCameras(std::vector<std::string>& sentences)
 
 } // namespace
 
-Findings judge(const RigCalibration& calibration)
+std::string LimitCheck::sentence() const
+{
+    if (std::isnan(value))
+        return what + " is not known there (nothing is seen), so " + option + " is not met";
+    return what + format(" is %.3g %s, ", value, unit.c_str()) + (met() ? "within " : "above ") + option;
+}
+
+bool Findings::pass() const
+{
+    return std::all_of(limits.begin(), limits.end(), [](const LimitCheck& limit) { return limit.met(); });
+}
+
+std::string Findings::verdict() const
+{
+    if (!limits.empty())
+        return pass() ? "PASS" : "FAIL";
+    return weak.empty() ? "Good" : "Look at the weak points";
+}
+
+Findings judge(const RigCalibration& calibration, const Assessment& assessment)
 {
     Findings findings;
-    judgeLimits(calibration, findings);
+    judgeLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {
         if (ownsWindow(calibration, c))

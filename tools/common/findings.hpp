@@ -1,20 +1,34 @@
 #ifndef REFRACT_TOOLS_FINDINGS_HPP
 #define REFRACT_TOOLS_FINDINGS_HPP
 
-#include "rig_calibration.hpp"
+#include "assessment.hpp"
 
 namespace tools {
+
+//! A limit that the caller set, and what there is instead.
+struct LimitCheck
+{
+    std::string option, what;       //!< "--max-rms=0.3", "RMS over all corners"
+    double limit, value;            //!< value NaN: there is none, which does not meet the limit
+    std::string unit;
+
+    bool met() const { return value <= limit; }
+    std::string sentence() const;
+};
 
 //! What a technician must know, in sentences.
 struct Findings
 {
-    std::vector<std::string> limitsNotMet;
+    std::vector<LimitCheck> limits;
     std::vector<std::string> weak;          //!< to be mended, and how
     std::vector<std::string> cannotTell;    //!< what these data do not say
     std::vector<std::string> assumed;       //!< taken as given
+
+    bool pass() const;              //!< all limits are met
+    std::string verdict() const;    //!< PASS or FAIL where there are limits, otherwise in words
 };
 
-Findings judge(const RigCalibration& calibration);
+Findings judge(const RigCalibration& calibration, const Assessment& assessment);
 
 } // namespace tools
 

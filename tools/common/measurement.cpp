@@ -1,7 +1,9 @@
 #include "measurement.hpp"
-#include "calibrate_rig.hpp"
+#include "view_derivatives.hpp"
 
 #include <opencv2/calib3d.hpp>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,10 +15,38 @@ using cv::Point2d;
 using cv::Point3d;
 using cv::Vec3d;
 using cv::refract::RefractiveCamera;
+using Eigen::MatrixXd;
 
 namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
+
+struct Derivatives
+{
+    MatrixXd byPose, byParameters;      //!< of u, v of each point; parameters: lens and window
+};
+
+Derivatives differentiate(const cv::Ptr<RefractiveCamera>& camera, const std::vector<Point3d>& points, const Vec3d& rvec,
+                          const Vec3d& tvec)
+{
+    Mat ignored, jacobian;
+    cv::refract::refractiveProjectPoints(points, rvec, tvec, camera, ignored, cv::noArray(), jacobian);
+    const MatrixXd J = toEigen(jacobian);
+    return {J.leftCols(6), J.rightCols(J.cols() - 6)};
+}
+
+//! Of lens and window of camera 1, also out of that of a rig; zero where the file has none.
+MatrixXd covarianceOfCamera1(const Calibration& calibration, Eigen::Index parameters)
+{
+    if (calibration.covariance.empty())
+        return MatrixXd::Zero(parameters, parameters);
+    return toEigen(calibration.covariance).topLeftCorner(parameters, parameters);
+}
+
+Vec3d deviations(const MatrixXd& covariance)
+{
+    return Vec3d(std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2)));
+}
 
 } // namespace
 
@@ -45,69 +75,62 @@ Measurement measureStereo(const Calibration& calibration, const std::vector<Poin
     return result;
 }
 
-Measurement measureOnPlane(const cv::Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels,
-                           const cv::Vec4d& plane, double pixelSigma)
+/* A point on a plane, X = X0 + B s with a 2-column basis B, is where its projection is the pixel:
+    ds = (P B)^-1 (du - A dp)      P: pixel by point, A: pixel by lens and window */
+Measurement measureOnPlane(const Calibration& calibration, const std::vector<Point2d>& pixels, const cv::Vec4d& plane,
+                           double pixelSigma)
 {
-    const auto meet = [&](const Point2d& shift, std::vector<uchar>& status) {
-        std::vector<Point2d> shifted;
-        for (const Point2d& p : pixels)
-            shifted.push_back(p + shift);
-        std::vector<Point3d> points;
-        cv::refract::refractivePointsOnPlane(shifted, points, camera, plane, status);
-        return points;
-    };
+    const auto& camera = calibration.cameras[0].camera;
     Measurement result;
     result.pixels1 = pixels;
-    result.points = meet(Point2d(0, 0), result.status);
-
-    // Where the point goes as the pixel moves by half a pixel to each side.
-    std::vector<uchar> ignored;
-    const std::vector<Point3d> right = meet(Point2d(0.5, 0), ignored), left = meet(Point2d(-0.5, 0), ignored),
-                               down = meet(Point2d(0, 0.5), ignored), up = meet(Point2d(0, -0.5), ignored);
+    cv::refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
+    const Derivatives d = differentiate(camera, result.points, Vec3d(), Vec3d());
+    const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
+    const MatrixXd B = Eigen::JacobiSVD<MatrixXd>(Eigen::RowVector3d(plane[0], plane[1], plane[2]),
+                                                  Eigen::ComputeFullV).matrixV().rightCols(2);
     for (size_t i = 0; i < pixels.size(); ++i)
     {
-        const Vec3d du = right[i] - left[i], dv = down[i] - up[i];
-        Vec3d sigma;
-        for (int k = 0; k < 3; ++k)
-            sigma[k] = pixelSigma * std::hypot(du[k], dv[k]);
-        result.sigma.push_back(sigma);
+        const MatrixXd A = d.byParameters.middleRows(2 * i, 2);
+        const MatrixXd byPixel = B * (d.byPose.block(2 * i, 3, 2, 3) * B).inverse();
+        const MatrixXd ofPixel = pixelSigma * pixelSigma * MatrixXd::Identity(2, 2) + A * C * A.transpose();
+        result.sigma.push_back(deviations(byPixel * ofPixel * byPixel.transpose()));
     }
     return result;
 }
 
-Measurement measureTarget(const cv::Ptr<RefractiveCamera>& camera, const Target& target,
-                          const std::vector<Point2d>& pixels, double pixelSigma)
+/* The pose of least squares: dpose = K^+ (du - A dp), K: pixels by pose. */
+Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<Point2d>& pixels,
+                          double pixelSigma)
 {
+    const auto& camera = calibration.cameras[0].camera;
     Vec3d rvec, tvec;
     if (!(cv::refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec) >= 0))
         throw Failure("no pose of the target explains its points: check --size and --square");
-    Mat ignored, jacobian, dRotation;
-    cv::refract::refractiveProjectPoints(target.objectPoints(), rvec, tvec, camera, ignored, cv::noArray(), jacobian);
-    Mat seenRows;
+    std::vector<Point3d> seenPoints;
     for (size_t i = 0; i < pixels.size(); ++i)
         if (seen(pixels[i]))
-            seenRows.push_back(jacobian(cv::Range(2 * (int)i, 2 * (int)i + 2), cv::Range(0, 6)));
-    const Mat poseCovariance = pixelSigma * pixelSigma * (seenRows.t() * seenRows).inv(cv::DECOMP_SVD);
-    cv::Matx33d R;
-    cv::Rodrigues(rvec, R, dRotation);          // 3x9: by rvec, of R row by row
+            seenPoints.push_back(target.objectPoints()[i]);
+    const Derivatives d = differentiate(camera, seenPoints, rvec, tvec);
+    const MatrixXd inverse = (d.byPose.transpose() * d.byPose).inverse();
+    const MatrixXd byParameters = inverse * d.byPose.transpose() * d.byParameters;
+    const MatrixXd ofPose = pixelSigma * pixelSigma * inverse
+        + byParameters * covarianceOfCamera1(calibration, byParameters.cols()) * byParameters.transpose();
 
+    cv::Matx33d R;
+    Mat jacobian;                               // 3x9: by rvec, of R row by row
+    cv::Rodrigues(rvec, R, jacobian);
+    const MatrixXd dR = toEigen(jacobian);
     Measurement result;
     result.pixels1 = pixels;
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (const Point3d& point : target.objectPoints())
     {
-        const Vec3d X(target.objectPoints()[i]);
+        const Vec3d X(point);
         result.points.push_back(Point3d(R * X + tvec));
-        Mat dPoint = Mat::zeros(3, 6, CV_64F);
+        MatrixXd byPose(3, 6);
+        byPose.rightCols(3).setIdentity();
         for (int row = 0; row < 3; ++row)
-        {
-            dPoint.at<double>(row, 3 + row) = 1.;
-            for (int column = 0; column < 3; ++column)
-                for (int k = 0; k < 3; ++k)
-                    dPoint.at<double>(row, column) += dRotation.at<double>(column, 3 * row + k) * X[k];
-        }
-        const Mat covariance = dPoint * poseCovariance * dPoint.t();
-        result.sigma.push_back(Vec3d(std::sqrt(covariance.at<double>(0, 0)), std::sqrt(covariance.at<double>(1, 1)),
-                                     std::sqrt(covariance.at<double>(2, 2))));
+            byPose.block(row, 0, 1, 3) = (dR.middleCols(3 * row, 3) * Eigen::Vector3d(X[0], X[1], X[2])).transpose();
+        result.sigma.push_back(deviations(byPose * ofPose * byPose.transpose()));
         result.status.push_back(cv::refract::REFRACT_OK);
     }
     return result;
@@ -124,6 +147,8 @@ Calibration withoutWindows(const Calibration& calibration)
 
 double pixelSigmaOf(const Calibration& calibration)
 {
+    if (calibration.sigma >= 0)
+        return calibration.sigma;
     const double rms = calibration.rms >= 0 ? calibration.rms : calibration.cameras[0].rms;
     return rms >= 0 ? rms / std::sqrt(2.) : NOT_KNOWN;
 }

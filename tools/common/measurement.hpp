@@ -17,22 +17,25 @@ struct Measurement
     int answers() const;
 };
 
-//! Maximum-likelihood triangulation. The calibration's covariance is carried to sigma if the file has one.
+/* The uncertainty has two parts: pixelSigma, one standard deviation of each pixel coordinate, and the calibration's own
+covariance if the file has one. Unknown pixelSigma (NaN): unknown uncertainty. */
+
+//! Maximum-likelihood triangulation.
 Measurement measureStereo(const Calibration& calibration, const std::vector<cv::Point2d>& pixels1,
                           const std::vector<cv::Point2d>& pixels2, double pixelSigma);
 
-//! Where the rays meet a plane (a, b, c, d); sigma from pixel noise alone.
-Measurement measureOnPlane(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
-                           const std::vector<cv::Point2d>& pixels, const cv::Vec4d& plane, double pixelSigma);
+//! Where the rays of camera 1 meet a plane (a, b, c, d) of its frame.
+Measurement measureOnPlane(const Calibration& calibration, const std::vector<cv::Point2d>& pixels, const cv::Vec4d& plane,
+                           double pixelSigma);
 
-//! The points of a target of known shape, from its pose; sigma from pixel noise alone.
-Measurement measureTarget(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const Target& target,
-                          const std::vector<cv::Point2d>& pixels, double pixelSigma);
+//! The points of a target of known shape, from its pose to camera 1.
+Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<cv::Point2d>& pixels,
+                          double pixelSigma);
 
 //! The same rig with the windows left out.
 Calibration withoutWindows(const Calibration& calibration);
 
-//! Standard deviation of a pixel coordinate, from the calibration's rms; NaN where unknown.
+//! Standard deviation of a pixel coordinate, from the calibration's residuals; NaN where unknown.
 double pixelSigmaOf(const Calibration& calibration);
 
 //! Distances between neighbouring points, measured minus true.

@@ -10,26 +10,13 @@ namespace {
 
 const size_t MIN_VIEWS = 3;         // of a flat board, to determine a lens
 
-CameraCalibration pinholeOf(const RigData& data, int camera, int coefficients)
-{
-    std::vector<std::vector<Point2d>> views;
-    for (const Moment& m : data.moments)
-        if (m.hasGlass(camera))
-            views.push_back(m.glass[camera]);
-    if (views.size() < MIN_VIEWS)
-        throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
-    CameraCalibration result;
-    result.camera = calibratePinhole(data.objectPoints, views, data.imageSize[camera], coefficients, result.rms);
-    result.camera->setImageSize(data.imageSize[camera]);
-    return result;
-}
-
 //! Corners that both cameras saw through their windows, moment by moment.
-void commonCorners(const RigData& data, std::vector<std::vector<Point3f>>& object,
+void commonCorners(const RigData& data, const std::vector<int>& moments, std::vector<std::vector<Point3f>>& object,
                    std::vector<std::vector<Point2f>> image[2])
 {
-    for (const Moment& m : data.moments)
+    for (int moment : moments)
     {
+        const Moment& m = data.moments[moment];
         if (!m.hasGlass(0) || !m.hasGlass(1))
             continue;
         object.emplace_back();
@@ -48,18 +35,39 @@ void commonCorners(const RigData& data, std::vector<std::vector<Point3f>>& objec
 
 } // namespace
 
-Calibration calibratePinholeRig(const RigData& data, int coefficients)
+int pinholeCoefficients(const refract::RefractiveCamera& camera)
+{
+    if (camera.lensModel() == "fisheye")
+        throw Failure("cv::calibrateCamera knows no fisheye lens");
+    return camera.lensParameters().rows - 4;
+}
+
+CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
+                                               int coefficients)
+{
+    std::vector<std::vector<Point2d>> views;
+    for (int i : moments)
+        if (data.moments[i].hasGlass(camera))
+            views.push_back(data.moments[i].glass[camera]);
+    if (views.size() < MIN_VIEWS)
+        throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
+    CameraCalibration result;
+    result.camera = calibratePinhole(data.objectPoints, views, data.imageSize[camera], coefficients, result.rms);
+    return result;
+}
+
+Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients)
 {
     Calibration rig;
     for (int c = 0; c < data.cameraCount; c++)
-        rig.cameras.push_back(pinholeOf(data, c, coefficients));
+        rig.cameras.push_back(calibratePinholeThroughGlass(data, c, moments, coefficients));
     rig.rms = rig.cameras[0].rms;
     if (!rig.stereo())
         return rig;
 
     std::vector<std::vector<Point3f>> object;
     std::vector<std::vector<Point2f>> image[2];
-    commonCorners(data, object, image);
+    commonCorners(data, moments, object, image);
     if (object.empty())
         throw Failure("--pinhole-out needs a moment that both cameras see through their windows");
     Mat K[2], D[2], E, F;

@@ -35,22 +35,58 @@ data rowsOf(const std::vector<SummaryRow>& rows)
     return list;
 }
 
-std::string cellPx(double value) { return std::isnan(value) ? "–" : format("%.3f", value); }
+//! What the calibration is worth, on boards that it has not seen.
+std::string headline(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    if (!h.folds)
+        return format("All %zu corners fit within %.3f px RMS; that is no proof, as nothing was held out.", c.residuals.size(),
+                      c.fit.rms);
+    std::string text = format("Boards that took no part in it are seen within %.3f px RMS", h.px);
+    if (!std::isnan(h.lengthRms))
+        text += format("; the distances between their corners, measured in 3-D, are right within %.3g %s RMS", h.lengthRms,
+                       c.unit.c_str());
+    if (c.nearFar.done)
+        text += format(". Calibrated on the near boards alone it predicts the far ones within %.3f px, a pinhole calibrated "
+                       "through the glass within %.3f px", c.nearFar.windowNearToFar, c.nearFar.pinholeNearToFar);
+    return text + ".";
+}
 
 //! Verdict in plain words: the class colours the card.
 void setVerdict(data& page, const RigCalibration& c, const Findings& f)
 {
-    const char* verdict = !f.limitsNotMet.empty() ? "Limits not met" : !f.weak.empty() ? "Look at the weak points" : "Good";
-    page.set("verdict", verdict);
-    page.set("verdict_class", !f.limitsNotMet.empty() ? "bad" : !f.weak.empty() ? "weak" : "good");
-    std::string sentence = format("All %zu corners fit within %.3f px RMS.", c.residuals.size(), c.fit.rms);
+    page.set("verdict", f.verdict());
+    page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || f.weak.empty() ? "good" : "weak");
+    std::string windows;
     for (int k = 0; k < c.data.cameraCount; k++)
     {
         const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2])) * 180. / CV_PI;
-        sentence += c.data.cameraCount == 1 ? " The window" : format(" The window of camera %d", k + 1);
-        sentence += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+        windows += c.data.cameraCount == 1 ? "The window" : format("%sThe window of camera %d", k ? " " : "", k + 1);
+        windows += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
     }
-    page.set("verdict_sentence", sentence);
+    page.set("headline", headline(c));
+    page.set("windows", windows);
+    data limits{data::type::list};
+    for (const LimitCheck& limit : f.limits)
+    {
+        data entry;
+        entry.set("mark", limit.met() ? "✓" : "✗");
+        entry.set("class", limit.met() ? "met" : "missed");
+        entry.set("text", limit.sentence());
+        limits << entry;
+    }
+    page.set("limits", limits);
+    page.set("serial", c.label.serial);
+    page.set("has_serial", !c.label.serial.empty());
+    data notes{data::type::list};
+    for (const auto& note : c.label.notes)
+    {
+        data entry;
+        entry.set("key", note.first);
+        entry.set("text", note.second);
+        notes << entry;
+    }
+    page.set("notes", notes);
 }
 
 data figure(const Figure& picture, const std::string& title, const std::string& reading)
@@ -129,27 +165,39 @@ void setParameters(data& page, const Fit& fit, int flags)
     page.set("correlation_heads", heads);
 }
 
-void setNearFar(data& page, const NearFar& n)
+void setTable(data& page, const std::string& name, const std::vector<SummaryRow>& rows)
 {
-    if (!n.done)
-        return;
-    data table;
-    table.set("near_range", format("%.4g – %.4g", n.nearRange[0], n.nearRange[1]));
-    table.set("far_range", format("%.4g – %.4g", n.farRange[0], n.farRange[1]));
-    table.set("window_near_to_far", cellPx(n.windowNearToFar));
-    table.set("window_far_to_near", cellPx(n.windowFarToNear));
-    table.set("pinhole_near_to_far", cellPx(n.pinholeNearToFar));
-    table.set("pinhole_far_to_near", cellPx(n.pinholeFarToNear));
-    page.set("near_far", table);
+    page.set(name, rowsOf(rows));
+    page.set("has_" + name, !rows.empty());
+}
+
+//! How well it measures: pictures of the expected error, over the range and over the image.
+data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    data list{data::type::list};
+    list << figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
+                   "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
+                   "where they meet, only a better image would");
+    progress.step();
+    for (const ErrorMap& map : a.errors)
+    {
+        if (map.seen())
+            list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g", map.range),
+                           c.data.cameraCount == 2 ? "Over the image of camera 1; white parts are not seen by both cameras, "
+                                                     "each picture has its own colour scale"
+                                                   : "Over the image, for points on a plane square to the camera; each picture "
+                                                     "has its own colour scale");
+        progress.step();
+    }
+    return list;
 }
 
 } // namespace
 
-std::string makeReport(const RigCalibration& c, const Findings& findings, const std::string& commandLine, bool quiet)
+std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings, const std::string& commandLine, bool quiet)
 {
     data page;
     setVerdict(page, c, findings);
-    page.set("limits", listOf(findings.limitsNotMet));
     page.set("weak", listOf(findings.weak));
     page.set("has_weak", !findings.weak.empty());
     page.set("cannot_tell", listOf(findings.cannotTell));
@@ -161,10 +209,16 @@ std::string makeReport(const RigCalibration& c, const Findings& findings, const 
     page.set("stereo", c.data.cameraCount == 2);
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
-    setNearFar(page, c.nearFar);
+    setTable(page, "held_out", heldOutRows(c));
+    setTable(page, "point_errors", pointErrorRows(assessment));
+    setTable(page, "tolerances", toleranceRows(assessment));
+    setTable(page, "advice", assessment.advice.pairs.empty() ? std::vector<SummaryRow>() : adviceRows(assessment.advice));
+    page.set("unit", c.unit);
     setParameters(page, c.fit, c.options.flags);
 
-    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount, quiet);
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount
+                                             + (int)assessment.errors.size() + 1, quiet);
+    page.set("error_figures", errorFigures(c, assessment, progress));
     data cameras{data::type::list}, heads{data::type::list};
     for (int k = 0; k < c.data.cameraCount; k++)
     {
@@ -181,7 +235,7 @@ std::string makeReport(const RigCalibration& c, const Findings& findings, const 
     page.set("command", commandLine);
     page.set("version", REFRACT_VERSION);
     page.set("opencv_version", CV_VERSION);
-    page.set("time", timeStamp());
+    page.set("time", timeOfFiles(c.inputs));
 
     mustache page_template(REPORT_TEMPLATE);
     const std::string html = page_template.render(page);

@@ -6,8 +6,8 @@
 namespace tools {
 
 //! One self-contained HTML page that a technician can judge the calibration by.
-std::string makeReport(const RigCalibration& calibration, const Findings& findings, const std::string& commandLine,
-                       bool quiet);
+std::string makeReport(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
+                       const std::string& commandLine, bool quiet);
 
 } // namespace tools
 

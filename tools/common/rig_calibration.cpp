@@ -10,14 +10,6 @@ using namespace cv::refract;
 
 namespace tools {
 
-static void append(std::vector<FreeParameter>& list, const Fit& fit, const std::string& name, int column, double value,
-            bool isNormal = false)
-{
-    const double std = fit.stdDeviations.at<double>(column);
-    if (std > 0)
-        list.push_back({name, column, value, std, isNormal});
-}
-
 Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment)
 {
     Rms rms;
@@ -49,56 +41,6 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
     if (both.points)
         both.px = std::sqrt(sum / both.points);
     return both;
-}
-
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags)
-{
-    std::vector<FreeParameter> list;
-    const bool shared = flags & GLASS_SHARED_WINDOW;
-    for (int c = 0; c < (shared ? 1 : (int)fit.rig.cameras.size()); c++)
-    {
-        const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
-        const GlassWindow window = fit.rig.cameras[c]->window();
-        const ParameterColumns at = columnsOf(fit.rig, c);
-        append(list, fit, prefix + "normal x", at.normal, window.normal[0], true);
-        append(list, fit, prefix + "normal y", at.normal + 1, window.normal[1], true);
-        append(list, fit, prefix + "distance", at.distance, window.distance);
-        for (int i = 0; i < at.layers; i++)
-        {
-            const std::string layer = at.layers == 1 ? "" : format(" %d", i + 1);
-            append(list, fit, prefix + "thickness" + layer, at.thickness + i, window.thickness[i]);
-            append(list, fit, prefix + "index" + layer, at.index + i, window.index[i]);
-        }
-        append(list, fit, prefix + "outer index", at.outerIndex, window.outerIndex);
-    }
-    return list;
-}
-
-std::vector<FreeParameter> freeRigParameters(const Fit& fit)
-{
-    static const char* const LENS[] = {"fx", "fy", "cx", "cy"};
-    std::vector<FreeParameter> list;
-    int end = 0;
-    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
-    {
-        const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
-        const Mat lens = fit.rig.cameras[c]->lensParameters();
-        const ParameterColumns at = columnsOf(fit.rig, c);
-        for (int i = 0; i < at.lensCount; i++)
-            append(list, fit, prefix + (i < 4 ? std::string(LENS[i]) : format("lens coefficient %d", i - 3)), at.lens + i,
-                   lens.at<double>(i));
-        end = at.end;
-    }
-    if (fit.rig.cameras.size() == 2)
-    {
-        Vec3d rvec;
-        Rodrigues(fit.rig.R, rvec);
-        for (int i = 0; i < 3; i++)
-            append(list, fit, std::string("R rotation vector ") + "xyz"[i], end + i, rvec[i]);
-        for (int i = 0; i < 3; i++)
-            append(list, fit, std::string("T ") + "xyz"[i], end + 3 + i, fit.rig.T[i]);
-    }
-    return list;
 }
 
 double coverage(const RigCalibration& calibration, int camera)

@@ -1,12 +1,25 @@
 #ifndef REFRACT_TOOLS_RIG_CALIBRATION_HPP
 #define REFRACT_TOOLS_RIG_CALIBRATION_HPP
 
-#include "rig_checks.hpp"
+#include "cross_validation.hpp"
 
 /* The whole of a calibration, and the numbers that describe it. */
 namespace tools {
 
-//! Everything that the table and the report speak of.
+//! The expected error of a measured point that the caller allows at a range.
+struct ErrorLimit
+{
+    double range, error;
+};
+
+//! What the caller asks for; 0 or empty: nothing.
+struct Limits
+{
+    double rms = 0., normalStdDeg = 0.;
+    std::vector<ErrorLimit> errors;
+};
+
+//! Everything that the table, the JSON summary and the report speak of; what is derived from it is in assessment.hpp.
 struct RigCalibration
 {
     RigData data;
@@ -16,10 +29,14 @@ struct RigCalibration
     Fit fit;
     std::vector<Residual> residuals;
     Baselines baselines;
+    HeldOut heldOut;
     NearFar nearFar;
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
-    double maxRms = 0., maxNormalStdDeg = 0.;   //!< the caller's limits; 0: none
+    std::vector<std::string> inputs;            //!< files that it was made from
+    Limits limits;
+    Label label;
+    std::string unit = "mm";                    //!< of length
 };
 
 struct Rms
@@ -33,21 +50,6 @@ Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment 
 
 //! Both states together.
 Rms rmsOfCamera(const RigCalibration& calibration, int camera);
-
-//! A number that was estimated.
-struct FreeParameter
-{
-    std::string name;
-    int column;                 //!< of Fit::covariance
-    double value, std;
-    bool isNormal;
-};
-
-//! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags);
-
-//! Lens parameters and R (rotation vector), T that were free.
-std::vector<FreeParameter> freeRigParameters(const Fit& fit);
 
 //! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
 double coverage(const RigCalibration& calibration, int camera);

@@ -2,13 +2,26 @@
 #define REFRACT_TOOLS_RIG_CHECKS_HPP
 
 #include "calibrate_rig.hpp"
+#include <cmath>
 #include <limits>
 
-/* What a user would do instead, on the same images, and what the fit predicts of images that it has not seen. In all of
-these every board pose is fitted to its single image again (refractiveSolvePnP), so that the numbers compare. */
+/* What a user would do instead, on the same images (every board pose is fitted to its single image again, so that the numbers
+compare), and which views the result hangs on. */
 namespace tools {
 
 const double NONE = std::numeric_limits<double>::quiet_NaN();
+
+//! RMS px with the pose of each board fitted to its one image.
+class PooledRms
+{
+public:
+    void add(const std::vector<cv::Point3d>& object, const std::vector<cv::Point2d>& pixels,
+             const cv::Ptr<cv::refract::RefractiveCamera>& camera);
+    double value() const { return count_ ? std::sqrt(sum_ / count_) : NONE; }
+private:
+    double sum_ = 0.;
+    int count_ = 0;
+};
 
 //! RMS px of the images through the window, all cameras; NaN where it could not be computed.
 struct Baselines
@@ -19,19 +32,6 @@ struct Baselines
 };
 
 Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources);
-
-/** Calibrated on the boards of one half of the range, tested on the other. A central camera fitted through the glass
-absorbs the window at the range it was calibrated at, and nowhere else. */
-struct NearFar
-{
-    bool done = false;              //!< false: too few images through the window
-    double nearRange[2], farRange[2];                       //!< board distance from camera 1, from - to
-    double windowNearToFar = NONE, windowFarToNear = NONE;  //!< RMS px on the half not used
-    double pinholeNearToFar = NONE, pinholeFarToNear = NONE;
-};
-
-NearFar crossValidate(const RigData& data, const Rig& start, const Fit& fit, int flags,
-                      const std::vector<LensSource>& lensSources);
 
 //! How far the normal of each camera turns (degrees) if one moment is left out.
 struct Influence

@@ -2,6 +2,7 @@
 #include "table.hpp"
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 using namespace cv;
 
@@ -24,11 +25,19 @@ int RigData::countPairs(int camera) const
     return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.isPair(camera); });
 }
 
+std::vector<int> allMoments(const RigData& data)
+{
+    std::vector<int> all(data.moments.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+}
+
 RigData pairViews(const Target& target, const ViewSet* const direct[2], const ViewSet* const glass[2], bool unpaired)
 {
     RigData data;
     data.cameraCount = glass[1] ? 2 : 1;
     data.objectPoints = target.objectPoints();
+    data.neighbours = target.neighbours();
     std::map<std::pair<std::string, bool>, Moment> moments;
     for (int c = 0; c < data.cameraCount; c++)
         for (bool through : {false, true})

@@ -22,6 +22,7 @@ struct RigData
 {
     int cameraCount = 1;
     std::vector<cv::Point3d> objectPoints;      //!< of the target, the same at every moment
+    std::vector<std::pair<int, int>> neighbours;        //!< points next to each other, as Target::neighbours()
     std::vector<Moment> moments;
     cv::Size imageSize[2];
 
@@ -29,6 +30,9 @@ struct RigData
     int countDirect(int camera) const;
     int countPairs(int camera) const;
 };
+
+//! 0, 1, 2, ...
+std::vector<int> allMoments(const RigData& data);
 
 /** Sorts views into moments. Equal stems are one moment; with `unpaired` a direct and a glass image never are, while
 the two cameras of a rig still are. Points are renumbered where the target's symmetry makes two images of a moment

@@ -28,6 +28,12 @@ void seenPoints(const std::vector<Point3d>& object, const std::vector<Point2d>& 
         }
 }
 
+void roundTo(double step, Mat& numbers)
+{
+    for (auto it = numbers.begin<double>(); it != numbers.end<double>(); ++it)
+        *it = std::round(*it / step) * step;
+}
+
 int calibrateCameraFlags(int coefficients)
 {
     switch (coefficients)
@@ -208,8 +214,11 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<Point3d>& objectPoints,
     }
     Mat cameraMatrix, distCoeffs, rvecs, tvecs;
     rms = calibrateCamera(object, image, imageSize, cameraMatrix, distCoeffs, rvecs, tvecs,
-                          calibrateCameraFlags(coefficients));
+                          calibrateCameraFlags(coefficients), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13));
     distCoeffs = distCoeffs.reshape(1, 1).colRange(0, coefficients).clone();
+    // LAPACK need not sum in the same order twice; its last digits, far below what images tell, would show in all that follows.
+    roundTo(1e-5, cameraMatrix);
+    roundTo(1e-6, distCoeffs);
     Ptr<RefractiveCamera> camera = RefractiveCamera::create(cameraMatrix, distCoeffs);
     camera->setImageSize(imageSize);
     return camera;

@@ -12,13 +12,6 @@ namespace tools {
 
 namespace {
 
-std::string plusMinus(double value, double std)
-{
-    // Two digits of the standard deviation, and the value as far.
-    const int decimals = std::max(0, 1 - (int)std::floor(std::log10(std)));
-    return format("%.*f +- %.*f", decimals, value, decimals, std);
-}
-
 std::string estimateOr(double value, double std, const char* otherwise)
 {
     return std > 0 ? plusMinus(value, std) : format("%.6g (%s)", value, otherwise);
@@ -68,6 +61,23 @@ void printSentences(std::ostream& out, const char* heading, const std::vector<st
     out << '\n' << heading << '\n';
     for (const std::string& sentence : sentences)
         out << "  - " << sentence << '\n';
+}
+
+void printRows(std::ostream& out, const std::string& title, const std::vector<std::string>& heading,
+               const std::vector<SummaryRow>& rows)
+{
+    if (rows.empty())
+        return;
+    if (!title.empty())
+        out << '\n' << title << '\n';
+    Table table(heading);
+    for (const SummaryRow& row : rows)
+    {
+        std::vector<std::string> cells{row.name};
+        cells.insert(cells.end(), row.cells.begin(), row.cells.end());
+        table.add(cells);
+    }
+    table.print(out);
 }
 
 } // namespace
@@ -121,29 +131,92 @@ std::vector<SummaryRow> fitRows(const RigCalibration& c)
     return rows;
 }
 
-void printSummary(std::ostream& out, const RigCalibration& c, const Findings& findings)
+std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
 {
-    Table table(c.data.cameraCount == 1 ? std::vector<std::string>{"", "camera"}
-                                        : std::vector<std::string>{"", "camera 1", "camera 2"});
-    for (const std::vector<SummaryRow>& rows : {windowRows(c), fitRows(c)})
-        for (const SummaryRow& r : rows)
-        {
-            std::vector<std::string> cells{r.name};
-            cells.insert(cells.end(), r.cells.begin(), r.cells.end());
-            table.add(cells);
-        }
-    table.print(out);
-    if (c.nearFar.done)
+    const HeldOut& h = c.heldOut;
+    const NearFar& n = c.nearFar;
+    std::vector<SummaryRow> rows;
+    const auto add = [&rows](const std::string& name, const std::string& window, const std::string& pinhole) {
+        rows.push_back({name, {window, pinhole}});
+    };
+    if (h.folds)
+        add("RMS through the window, px", px(h.px), px(h.pinholePx));
+    if (n.done)
     {
-        out << "\nCalibrated on one half of the boards, tested on the other (RMS px):\n";
-        Table halves({"", "near -> far", "far -> near"});
-        halves.add({"lens and window", px(c.nearFar.windowNearToFar), px(c.nearFar.windowFarToNear)});
-        halves.add({"pinhole through glass", px(c.nearFar.pinholeNearToFar), px(c.nearFar.pinholeFarToNear)});
-        halves.print(out);
+        add("  calibrated near, tested far, px", px(n.windowNearToFar), px(n.pinholeNearToFar));
+        add("  calibrated far, tested near, px", px(n.windowFarToNear), px(n.pinholeFarToNear));
     }
-    out << format("\nRMS over all corners %.4f px.\n", c.fit.rms);
+    if (!std::isnan(h.transferPx))
+        add("  board where its direct image is, px", px(h.transferPx), "-");
+    if (!std::isnan(h.lengthRms))
+        add("lengths between corners, RMS, " + c.unit, format("%.4g", h.lengthRms),
+            std::isnan(h.pinholeLengthRms) ? "-" : format("%.4g", h.pinholeLengthRms));
+    return rows;
+}
+
+std::vector<SummaryRow> pointErrorRows(const Assessment& a)
+{
+    std::vector<SummaryRow> rows;
+    for (const ErrorMap& map : a.errors)
+        rows.push_back({format("z = %.4g", map.range),
+                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.worst()),
+                                                              format("%.3g", map.worstOfPixels())}
+                                   : std::vector<std::string>{"not seen", "-", "-"}});
+    return rows;
+}
+
+std::vector<SummaryRow> toleranceRows(const Assessment& a)
+{
+    std::vector<SummaryRow> rows;
+    for (const Tolerance& t : a.tolerances)
+        rows.push_back({t.what, t.done ? std::vector<std::string>{format("%.3g", t.rms), format("%.3g", t.worst),
+                                                                  format("%.3g", 1000. * t.lengths)}
+                                       : std::vector<std::string>{"no fit", "-", "-"}});
+    return rows;
+}
+
+std::vector<SummaryRow> adviceRows(const Advice& advice)
+{
+    std::vector<SummaryRow> rows;
+    const auto add = [&rows](const std::string& name, const Worth& worth) {
+        std::string normals;
+        for (double std : worth.normalStdDeg)
+            normals += (normals.empty() ? "" : ", ") + format("%.2g", std);
+        rows.push_back({name, {normals, format("%.3g", worth.worstPoint), format("%.3g", worth.calibrationPart)}});
+    };
+    add("now", advice.now);
+    for (size_t i = 0; i < advice.pairs.size(); i++)
+        add(format("pair %zu: ", i + 1) + advice.pairs[i].words, advice.pairs[i].worth);
+    for (const Shot& shot : advice.instead)
+        add("instead: " + shot.words, shot.worth);
+    return rows;
+}
+
+void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& assessment, const Findings& findings)
+{
+    std::vector<std::string> limits;
+    for (const LimitCheck& limit : findings.limits)
+        limits.push_back(limit.sentence());
+    out << findings.verdict() << '\n';
+    printSentences(out, "Limits:", limits);
+    out << '\n';
+    const std::vector<std::string> cameras = c.data.cameraCount == 1 ? std::vector<std::string>{"", "camera"}
+                                                                     : std::vector<std::string>{"", "camera 1", "camera 2"};
+    std::vector<SummaryRow> rows = windowRows(c);
+    const std::vector<SummaryRow> fit = fitRows(c);
+    rows.insert(rows.end(), fit.begin(), fit.end());
+    printRows(out, "", cameras, rows);
+    printRows(out, "On boards that took no part (held out in turn):", {"", "lens and window", "pinhole through glass"},
+              heldOutRows(c));
+    printRows(out, "Expected error of a measured point, " + c.unit + " (one standard deviation, 3-D):",
+              {"", "typical", "worst", "of pixel noise"}, pointErrorRows(assessment));
+    printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
+              {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
+    if (!assessment.advice.pairs.empty())
+        printRows(out, "What the next images would bring:", {"", "normal +- deg", "worst point", "calibration's part"},
+                  adviceRows(assessment.advice));
+    out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);
-    printSentences(out, "Limits not met:", findings.limitsNotMet);
     printSentences(out, "Weak:", findings.weak);
     printSentences(out, "The data cannot tell:", findings.cannotTell);
     printSentences(out, "Taken as given:", findings.assumed);
@@ -151,14 +224,19 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Findings& fi
 
 Calibration toFile(const RigCalibration& c, const std::string& command)
 {
-    Calibration file;
+    Calibration file = calibrationOf(c.fit.rig);
     for (int k = 0; k < c.data.cameraCount; k++)
-        file.cameras.push_back({c.fit.rig.cameras[k], windowStd(c.fit, k), rmsOfCamera(c, k).px});
-    file.R = c.fit.rig.R;
-    file.T = c.fit.rig.T;
+    {
+        file.cameras[k].windowStd = windowStd(c.fit, k);
+        file.cameras[k].rms = rmsOfCamera(c, k).px;
+    }
     file.rms = c.fit.rms;
+    file.sigma = c.fit.sigma;
+    file.freedom = c.fit.freedom;
     file.covariance = c.fit.covariance;
+    file.label = c.label;
     file.command = command;
+    file.time = timeOfFiles(c.inputs);
     return file;
 }
 

@@ -17,8 +17,21 @@ struct SummaryRow
 std::vector<SummaryRow> windowRows(const RigCalibration& calibration);
 std::vector<SummaryRow> fitRows(const RigCalibration& calibration);
 
-//! The summary table and the findings, for a terminal.
-void printSummary(std::ostream& out, const RigCalibration& calibration, const Findings& findings);
+//! On boards that the calibration has not seen; cells: lens and window, a pinhole calibrated through the glass.
+std::vector<SummaryRow> heldOutRows(const RigCalibration& calibration);
+
+//! Expected error of a measured point; cells: typical, worst, worst of the pixel noise alone.
+std::vector<SummaryRow> pointErrorRows(const Assessment& assessment);
+
+//! Cells: points RMS, worst point, lengths in parts of a thousand.
+std::vector<SummaryRow> toleranceRows(const Assessment& assessment);
+
+//! Cells: std of the normals, worst point, the calibration's part.
+std::vector<SummaryRow> adviceRows(const Advice& advice);
+
+//! Verdict, tables and findings, for a terminal.
+void printSummary(std::ostream& out, const RigCalibration& calibration, const Assessment& assessment,
+                  const Findings& findings);
 
 //! For the file.
 Calibration toFile(const RigCalibration& calibration, const std::string& command);

@@ -1,6 +1,7 @@
 #include "table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 
 namespace tools {
@@ -14,6 +15,12 @@ size_t width(const std::string& cell)
 }
 
 } // namespace
+
+std::string plusMinus(double value, double std)
+{
+    const int decimals = std > 0 ? std::max(0, 1 - (int)std::floor(std::log10(std))) : 6;
+    return format("%.*f +- %.*f", decimals, value, decimals, std);
+}
 
 Table::Table(const std::vector<std::string>& heading) : rows_(1, heading) {}
 

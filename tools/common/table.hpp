@@ -21,6 +21,9 @@ private:
 
 using cv::format;   //!< printf for a cell
 
+//! "7.040 +- 0.020": two digits of the standard deviation, and the value as far.
+std::string plusMinus(double value, double std);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_TABLE_HPP

@@ -61,6 +61,7 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
     }, count);
 
     ViewSet set;
+    set.files = paths;
     set.imageSize = imageSize;
     for (int i = 0; i < count; ++i)
     {
@@ -81,6 +82,7 @@ ViewSet viewsOfVnl(const std::string& path, const Target& target, cv::Size image
     if (imageSize.empty())
         throw Failure("'" + path + "' does not say how large the images are: add --image-size=WIDTHxHEIGHT");
     ViewSet set;
+    set.files = {path};
     set.imageSize = imageSize;
     for (const auto& image : readCornersVnl(path, target.count()))
         addView(set, image.first, image.second);

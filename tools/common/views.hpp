@@ -20,6 +20,7 @@ struct ViewSet
 {
     std::vector<View> views;
     std::vector<std::string> withoutTarget;     //!< paths of images in which the target was not found
+    std::vector<std::string> files;             //!< that were read
     cv::Size imageSize;
 
     const View* find(const std::string& stem) const;    //!< null if there is none

@@ -124,10 +124,11 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
     problemOptions.evaluation_callback = this;
     ceres::Problem problem(problemOptions);
     const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    int group = 1;      // one for each block: inside a group, Ceres orders by address, which differs from run to run
     for (RigBlock& block : blocks_)
     {
         addToProblem(problem, block);
-        ordering->AddElementToGroup(block.values.data(), 1);
+        ordering->AddElementToGroup(block.values.data(), group++);
     }
     for (const RigImage& image : images_)
     {

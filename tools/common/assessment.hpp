@@ -1,0 +1,26 @@
+#ifndef REFRACT_TOOLS_ASSESSMENT_HPP
+#define REFRACT_TOOLS_ASSESSMENT_HPP
+
+#include "advice.hpp"
+#include "point_error.hpp"
+#include "tolerance.hpp"
+
+/* What a calibration is good for: how well it measures, what wrong values would do to it, what the next images would bring. */
+namespace tools {
+
+struct Assessment
+{
+    std::vector<ErrorMap> errors;           //!< from half the nearest to twice the farthest board
+    std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
+    std::vector<Tolerance> tolerances;
+    Advice advice;
+};
+
+Assessment assess(const RigCalibration& calibration, bool quiet);
+
+//! Millimetres in a unit of length: "mm", "cm", "m", "inch".
+double millimetresIn(const std::string& unit);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_ASSESSMENT_HPP
