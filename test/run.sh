@@ -46,6 +46,7 @@ suite() {   # suite EXECUTABLE [FILTER]: all cases of a Catch2 program, counted 
 mkdir -p build
 build build/release
 suite build/release/bin/refract_tests
+suite build/release/bin/refract_tools_tests
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 run "Debian package: unpacked, its tools run" test/package.sh build/release
@@ -67,6 +68,7 @@ if [ $fast = no ]; then
   build build/sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_BENCH=OFF
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
   ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tests '~[slow]'
+  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tools_tests
 fi
 
 echo "$passed passed, $failed failed, $skipped skipped"

@@ -1,0 +1,99 @@
+// refract_check as a user runs it: on the bundled images, whose truth is known.
+#include "run_tool.hpp"
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/refract.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string TARGET = " --size=6x5 --square=39 --pixel-sigma=0.015";
+
+std::string pair(const std::string& name, bool second = true)
+{
+    return " --direct=" + STEREO + "/direct1/" + name + " --glass=" + STEREO + "/glass1/" + name
+        + (second ? " --direct2=" + STEREO + "/direct2/" + name + " --glass2=" + STEREO + "/glass2/" + name : "");
+}
+
+//! The truth as a calibration file, the window of camera 2 turned.
+void writeCalibration(const std::string& path, double degrees)
+{
+    const cv::FileStorage in(STEREO + "/truth.yml", cv::FileStorage::READ);
+    cv::FileStorage out(path, cv::FileStorage::WRITE);
+    for (const std::string name : {"camera1", "camera2"})
+    {
+        const auto camera = cv::refract::RefractiveCamera::read(STEREO + "/truth.yml", name);
+        cv::refract::GlassWindow window = camera->window();
+        if (name == "camera2")
+            window.normal = cv::normalize(window.normal + std::tan(degrees * CV_PI / 180)
+                                          * cv::normalize(window.normal.cross(cv::Vec3d(0, 1, 0))));
+        camera->setWindow(window);
+        out << name << "{";
+        camera->write(out);
+        out << "}";
+    }
+    cv::Mat R, T;
+    in["R"] >> R;
+    in["T"] >> T;
+    out << "R" << R << "T" << T;
+}
+
+} // namespace
+
+TEST_CASE("refract_check finds the window that moved, and no other", "[tools][check]")
+{
+    const TemporaryFolder folder;
+    writeCalibration(folder / "same.yml", 0.);
+    writeCalibration(folder / "moved.yml", 0.1);
+    const ToolResult same = runTool("refract_check " + folder / "same.yml" + TARGET + pair("pair3.jpg"));
+    INFO(same.out << same.err);
+    CHECK(same.code == 0);
+    CHECK(same.out.compare(0, 9, "unchanged") == 0);
+    CHECK(same.err.empty());
+
+    const ToolResult moved = runTool("refract_check " + folder / "moved.yml" + TARGET + pair("pair3.jpg") + " --summary="
+                                     + folder / "check.json");
+    INFO(moved.out << moved.err);
+    CHECK(moved.code == 2);
+    CHECK(moved.out.compare(0, 5, "moved") == 0);
+    const nlohmann::json json = nlohmann::json::parse(readFile(folder / "check.json"));
+    CHECK(json["verdict"] == "moved");
+    REQUIRE(json["windows"].size() == 2);
+    CHECK(json["windows"][0]["moved"] == false);
+    CHECK(json["windows"][1]["moved"] == true);
+    CHECK(json["windows"][1]["tilt_deg"].get<double>() == Approx(0.1).margin(5 * json["windows"][1]["tilt_std_deg"][0].get<double>()));
+
+    // One camera, and a rig's glass images alone.
+    CHECK(runTool("refract_check " + folder / "same.yml" + TARGET + pair("pair[1-3].jpg", false)).code == 0);
+    const ToolResult glass = runTool("refract_check " + folder / "moved.yml" + TARGET + " --glass='" + STEREO
+        + "/glass1/*' --glass2='" + STEREO + "/glass2/*'");
+    INFO(glass.out << glass.err);
+    CHECK(glass.code == 2);
+}
+
+TEST_CASE("refract_check says when it cannot tell, and why", "[tools][check]")
+{
+    const TemporaryFolder folder;
+    writeCalibration(folder / "same.yml", 0.);
+    const std::string check = "refract_check " + folder / "same.yml";
+    const struct { std::string command, says; } cases[] = {
+        {check + TARGET + pair("pair3.jpg", false) + " --detect=0.001", "--detect"},
+        {check + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg", "with a probability"},
+        {check + " --size=6x5 --square=39.2 --pixel-sigma=0.015" + pair("pair3.jpg"), "do not fit"},
+        {check + " --size=6x5 --square=39" + pair("pair3.jpg"), "--pixel-sigma"},
+        {check + TARGET + " --glass=" + folder / "none.png", "none.png"},
+        {"refract_check " + folder / "none.yml" + TARGET + pair("pair3.jpg"), "none.yml"},
+        {check + TARGET, "--glass"},
+        {check + TARGET + pair("pair3.jpg") + " --false-alarm=2", "--false-alarm"},
+    };
+    for (const auto& c : cases)
+    {
+        const ToolResult r = runTool(c.command);
+        INFO(c.command << "\n" << r.out << r.err);
+        CHECK(r.code == 1);
+        CHECK(r.err.find(c.says) != std::string::npos);
+        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+    }
+}

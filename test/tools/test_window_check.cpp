@@ -1,0 +1,156 @@
+#include "paper_rig.hpp"
+#include "table.hpp"
+#include "window_check.hpp"
+#include <Eigen/Eigenvalues>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+const double SIGMA = 0.1, FREEDOM = 500., FALSE_ALARM = 0.01;
+
+//! A calibration from ten pairs at 0.1 px: its covariance for sigma = 0.1.
+Mat calibratedCovariance(const Rig& rig, const std::vector<Point3d>& object, scenes::Random& random)
+{
+    std::vector<std::vector<Point3d>> objects;
+    std::vector<std::vector<Point2d>> direct, glass;
+    double rms = 0.;
+    Mat covariance;
+    for (int i = 0; i < 10; i++)
+    {
+        const Moment m = observe(rig, object, random.vector(0.4), Vec3d(random.uniform(-30, 30), random.uniform(-20, 20),
+                                                                        random.uniform(560, 660)), true, SIGMA, random);
+        objects.push_back(object);
+        direct.push_back(m.direct[0]);
+        glass.push_back(m.glass[0]);
+    }
+    Rig found = rig.clone();
+    rms = calibrateGlass(objects, glass, direct, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
+                         noArray());
+    return covariance * (2. * SIGMA * SIGMA / (rms * rms));
+}
+
+//! A rig as a calibration would have found it: its normal off by a draw from the covariance.
+Rig drawn(const Rig& truth, const Mat& covariance, scenes::Random& random)
+{
+    const int at = columnsOf(truth, 0).normal;
+    const Eigen::MatrixXd C = toEigen(covariance(Rect(at, at, 3, 3)));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(C);
+    Rig rig = truth.clone();
+    GlassWindow window = rig.cameras[0]->window();
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++)
+            window.normal[axis] += eigen.eigenvectors()(axis, k) * random.normal(std::sqrt(std::max(0., eigen.eigenvalues()[k])));
+    window.normal = normalize(window.normal);
+    rig.cameras[0]->setWindow(window);
+    return rig;
+}
+
+Rig tilted(const Rig& rig, double degrees, double azimuth)
+{
+    Rig result = rig.clone();
+    GlassWindow window = result.cameras[0]->window();
+    const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
+    window.normal = normalize(window.normal + std::tan(degrees * CV_PI / 180)
+                              * (std::cos(azimuth) * across + std::sin(azimuth) * window.normal.cross(across)));
+    result.cameras[0]->setWindow(window);
+    return result;
+}
+
+struct Rates { double falseAlarms, found, predicted, inTwoSigma; };
+
+//! Trials of one pair each, in a random place; calibration and noise level drawn anew.
+Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int trials, unsigned salt)
+{
+    scenes::Random random(salt);
+    const Rig truth = paperRig(1);
+    const Mat covariance = calibratedCovariance(truth, board(6, 5), random);
+    Rates result = {};
+    for (int i = 0; i < trials; i++)
+    {
+        double chi = 0.;
+        for (int k = 0; k < FREEDOM; k++)
+            chi += std::pow(random.normal(1), 2);
+        const double scale = chi / FREEDOM;
+        const CheckBasis basis{drawn(truth, covariance, random), covariance * scale, SIGMA * std::sqrt(scale), FREEDOM};
+        const Vec3d rvec = random.vector(0.3), tvec(random.uniform(-20, 20), random.uniform(-20, 20), z);
+        const auto check = [&](const Rig& now) {
+            return checkWindows(basis, object, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
+        };
+        const Rig away = tilted(truth, tiltDeg, random.uniform(0, 2 * CV_PI));
+        const WindowCheck same = check(truth), other = check(away);
+        result.falseAlarms += same.moved / (double)trials;
+        result.found += other.moved / (double)trials;
+        result.predicted += powerOf(other, 1, FREEDOM, FALSE_ALARM, tiltDeg) / trials;
+        const double off = std::acos(std::min(1., other.normal.dot(away.cameras[0]->window().normal))) * 180 / CV_PI;
+        result.inTwoSigma += (off < 2 * other.stdDeg[0]) / (double)trials;
+    }
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("A window that moved is found as often as predicted, and one that did not seldom", "[window_check]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    const int trials = 150;
+    const Rates r = rates(board(9, 6, 30.), 0.2, 600, trials, 3010);
+    CHECK(r.falseAlarms <= 0.05);                       // 1 %: more than 7 in 150 happens once in 1e4
+    CHECK(r.found > 0.85);
+    CHECK(r.found == Approx(r.predicted).margin(0.1));
+    CHECK(r.inTwoSigma > 0.8);                          // 0.865 where both principal deviations are equal
+}
+
+TEST_CASE("A large tilt of both windows is measured, and the camera named", "[window_check]")
+{
+    scenes::Random random(3011);
+    std::cout << "seed " << scenes::seed() << '\n';
+    const std::vector<Point3d> object = board(6, 5);
+    const Rig rig = paperRig(2), now = tilted(rig, 5., 1.);
+    const CheckBasis basis{rig, Mat(), 0.02, FREEDOM};
+    for (bool direct : {true, false})       // two cameras that see the same board need no image without the window
+    {
+        const CheckResult result = checkWindows(basis, object, {observe(now, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620),
+                                                                        direct, 0.02, random)}, FALSE_ALARM);
+        REQUIRE(result.windows.size() == 2);
+        CHECK(result.windows[0].moved);
+        CHECK(result.windows[0].tiltDeg == Approx(5.).margin(5 * result.windows[0].stdDeg[0]));
+        CHECK_FALSE(result.windows[1].moved);
+        CHECK(result.misfitProbability > 1e-4);
+        CHECK(result.sigmaSeen == Approx(0.02).epsilon(0.3));
+    }
+}
+
+TEST_CASE("A board that moved within its pair is no tilt of the window", "[window_check]")
+{
+    scenes::Random random(3012);
+    std::cout << "seed " << scenes::seed() << '\n';
+    const std::vector<Point3d> object = board(6, 5);
+    const Rig rig = paperRig(1);
+    Moment m = observe(rig, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620), true, 0.02, random);
+    m.glass[0] = observe(rig, object, Vec3d(0.2, 0.3, 0.02), Vec3d(-20, 0, 620), true, 0.02, random).glass[0];
+    CHECK(checkWindows({rig, Mat(), 0.02, FREEDOM}, object, {m}, FALSE_ALARM).misfitProbability < 1e-4);
+
+    Moment without = m;
+    without.glass[0].clear();
+    CHECK_THROWS_AS(checkWindows({rig, Mat(), 0.02, FREEDOM}, object, {without}, FALSE_ALARM), Failure);
+}
+
+TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-carlo]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    const struct { const char* name; std::vector<Point3d> object; double z; } cases[] = {
+        {"6x5 corners at 600 mm", board(6, 5), 600}, {"6x5 corners at 300 mm", board(6, 5, 20.), 300},
+        {"11x8 corners at 600 mm", board(11, 8, 24.), 600}, {"14x10 corners at 600 mm", board(14, 10, 18.), 600},
+        {"14x10 corners at 450 mm", board(14, 10, 14.), 450}};
+    for (const auto& c : cases)
+    {
+        const Rates r = rates(c.object, 0.1, c.z, 1000, 3013);
+        std::cout << format("[numbers] refract_check, one pair, %s: found %.1f %% (predicted %.1f %%), false alarms %.1f %%\n", c.name,
+                            100 * r.found, 100 * r.predicted, 100 * r.falseAlarms);
+        CHECK(r.falseAlarms < 0.02);
+        CHECK(r.found == Approx(r.predicted).margin(0.04));
+    }
+}

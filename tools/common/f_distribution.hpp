@@ -1,0 +1,22 @@
+#ifndef REFRACT_TOOLS_F_DISTRIBUTION_HPP
+#define REFRACT_TOOLS_F_DISTRIBUTION_HPP
+
+/* The F distribution with an even number of numerator degrees of freedom, where its tail is a finite sum:
+
+    P(F > x) = w^(v/2) sum over j < m of (v/2)_j / j! (1 - w)^j,     w = 1 / (1 + 2 m x / v)
+
+for 2m and v degrees of freedom; for m = 1 it is (1 + 2 x / v)^(-v/2). */
+namespace tools {
+
+//! P(F > x) with 2m and v degrees of freedom.
+double upperTailF(int m, double v, double x);
+
+//! The x that F with 2 and v degrees of freedom exceeds with this probability.
+double quantileF2(double v, double probability);
+
+//! The same as upperTailF(1, v, x) where the numerator has the noncentrality lambda.
+double upperTailNoncentralF2(double v, double lambda, double x);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_F_DISTRIBUTION_HPP

@@ -1,0 +1,199 @@
+// The manual: what --help prints first.
+static const char MANUAL[] = R"(Checks whether the window has moved since the calibration, from one new pair or a few images through it.
+
+  refract_check calib.yml --size=6x5 --square=39 --direct=new/direct.png --glass=new/glass.png
+  refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
+  refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct2='d2/*' --glass2='g2/*'      a stereo rig
+
+Images with the same name are a pair: the target must not have moved between them, not even by a tenth of a pixel, as such a
+shift looks like a tilt of the window. The test compares the tilt since the calibration with its uncertainty, which comes from
+the noise of the calibration's residuals, from the covariance in calib.yml and from where the target is in the new images.
+If nothing moved, it says "moved" with the probability --false-alarm.
+
+Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
+not show a tilt of --detect degrees with a probability of 95 %.)";
+
+#include "file_output.hpp"
+#include "measurement.hpp"
+#include "table.hpp"
+#include "window_check.hpp"
+#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <iostream>
+
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+const double CERTAIN = 0.95;            // probability with which --detect degrees must show
+const double NO_TILT_EXPLAINS = 1e-4;   // probability of the residuals below which the images do not fit
+const double EXACT = 1e8;               // degrees of freedom of a noise level that is given
+
+struct Options
+{
+    std::string calibration, direct[2], glass[2], imageSize, summary;
+    TargetOptions target;
+    double falseAlarm = 0.01, detect = 0.1, sigma = 0.;
+};
+
+void addOptions(CLI::App& app, Options& o)
+{
+    app.add_option("calib.yml", o.calibration, "What refract_calib wrote")->required();
+    o.target.addTo(app, true);
+    app.add_option("--glass", o.glass[0], "New images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct", o.direct[0], "New images without the window");
+    CLI::Option* glass2 = app.add_option("--glass2", o.glass[1], "The same of camera 2");
+    app.add_option("--direct2", o.direct[1], "The same of camera 2")->needs(glass2);
+    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
+    app.add_option("--false-alarm", o.falseAlarm, "Probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
+        ->capture_default_str();
+    app.add_option("--detect", o.detect, "Tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
+    app.add_option("--pixel-sigma", o.sigma, "Standard deviation of a pixel coordinate (default: that of the calibration's "
+        "residuals)")->check(moreThanZero());
+    app.add_option("--summary", o.summary, "JSON file with the result");
+}
+
+CheckBasis basisOf(const Options& o, const Calibration& calibration)
+{
+    CheckBasis basis;
+    for (const CameraCalibration& camera : calibration.cameras)
+        basis.rig.cameras.push_back(camera.camera);
+    basis.rig.R = calibration.R;
+    basis.rig.T = calibration.T;
+    basis.covariance = calibration.covariance;
+    basis.sigma = o.sigma > 0 ? o.sigma : pixelSigmaOf(calibration);
+    basis.freedom = o.sigma > 0 || !(calibration.freedom > 0) ? EXACT : calibration.freedom;
+    if (!(basis.sigma > 0))
+        throw Failure("'" + o.calibration + "' does not say how large the noise of a pixel is: calibrate with refract_calib, or "
+                      "give --pixel-sigma");
+    if (basis.covariance.empty() && !(o.sigma > 0))
+        throw Failure("'" + o.calibration + "' has no covariance: calibrate with refract_calib, or give --pixel-sigma to take "
+                      "the file as exact");
+    return basis;
+}
+
+std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, bool quiet)
+{
+    if (!o.glass[1].empty() && !calibration.stereo())
+        throw Failure("'" + o.calibration + "' has one camera: leave --glass2 out");
+    const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
+    ViewSet sets[2][2];
+    const ViewSet* direct[2] = {};
+    const ViewSet* glass[2] = {};
+    for (int c = 0; c < 2; c++)
+        for (bool through : {false, true})
+        {
+            const std::string& source = through ? o.glass[c] : o.direct[c];
+            if (source.empty())
+                continue;
+            const cv::Size known = calibration.cameras[c].camera->imageSize();
+            sets[c][through] = readViews(source, target, size.empty() ? known : size, quiet);
+            (through ? glass : direct)[c] = &sets[c][through];
+        }
+    std::vector<Moment> moments;
+    for (const Moment& m : pairViews(target, direct, glass, false).moments)
+        if (m.hasGlass())
+            moments.push_back(m);
+    return moments;
+}
+
+bool anyMoved(const CheckResult& result)
+{
+    return std::any_of(result.windows.begin(), result.windows.end(), [](const WindowCheck& w) { return w.moved; });
+}
+
+//! How many times as many images would show the tilt, or 0 if no number would.
+int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, double freedom)
+{
+    for (int n = 2; n <= 10000; n++)
+        if (powerOf(window, count, freedom, o.falseAlarm, o.detect, 1. / n) >= CERTAIN)
+            return n;
+    return 0;
+}
+
+//! Empty, or why the images do not tell.
+std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis& basis)
+{
+    if (result.misfitProbability < NO_TILT_EXPLAINS)
+        return format("the new images do not fit the calibration with any tilt of the window: noise %.3f px per coordinate, the "
+                      "calibration had %.3f px; did the target move between the images of a pair, or did lens, focus, glass or "
+                      "target change?", result.sigmaSeen, basis.sigma);
+    if (anyMoved(result))
+        return "";
+    for (const WindowCheck& window : result.windows)
+    {
+        const double power = powerOf(window, result.windows.size(), basis.freedom, o.falseAlarm, o.detect);
+        if (power >= CERTAIN)
+            continue;
+        const int times = imagesNeeded(window, result.windows.size(), o, basis.freedom);
+        return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
+                      "cannot be said; ", window.camera + 1, o.detect, 100. * power)
+            + (times ? format("take about %d times as many pairs (a nearer board or one with more corners also helps), or ask for "
+                              "less by --detect", times) : std::string("ask for less by --detect"));
+    }
+    return "";
+}
+
+const char* verdictOf(bool moved, const std::string& why)
+{
+    return !why.empty() ? "cannot tell" : moved ? "moved" : "unchanged";
+}
+
+std::string jsonOf(const CheckResult& result, const Options& o, const CheckBasis& basis, const std::string& verdict,
+                   const std::string& why)
+{
+    nlohmann::ordered_json windows = nlohmann::ordered_json::array();
+    for (const WindowCheck& w : result.windows)
+        windows.push_back({{"camera", w.camera + 1}, {"moved", w.moved}, {"tilt_deg", w.tiltDeg},
+                           {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}}, {"probability_if_unchanged", w.probability},
+                           {"normal", {w.normal[0], w.normal[1], w.normal[2]}},
+                           {"detection_probability",
+                            powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)}});
+    const nlohmann::ordered_json json = {
+        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect},
+        {"sigma_px", basis.sigma}, {"sigma_seen_px", result.sigmaSeen}};
+    return json.dump(1) + '\n';
+}
+
+void print(const CheckResult& result, const Options& o, const CheckBasis& basis)
+{
+    Table table({"", "tilt since then, deg", "+- (two principal)", "chance if unchanged",
+                 format("would show %g deg", o.detect), ""});
+    for (const WindowCheck& w : result.windows)
+        table.add({format("window of camera %d", w.camera + 1), format("%.4f", w.tiltDeg),
+                   format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
+                   format("%.1f %%", 100. * powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)),
+                   w.moved ? "moved" : "no sign of it"});
+    table.print(std::cout);
+    std::cout << format("\nNoise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.\n",
+                        result.sigmaSeen, basis.sigma, o.falseAlarm);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        Options options;
+        addOptions(command.app, options);
+        command.parse();
+        const Target target(options.target);
+        const Calibration calibration = readCalibration(options.calibration);
+        const CheckBasis basis = basisOf(options, calibration);
+        const std::vector<Moment> moments = readMoments(options, calibration, target, command.quiet());
+        const CheckResult result = checkWindows(basis, target.objectPoints(), moments, options.falseAlarm);
+        const bool moved = anyMoved(result);
+        const std::string why = whyNot(result, options, basis), verdict = verdictOf(moved, why);
+        if (!options.summary.empty())
+            writeText(options.summary, jsonOf(result, options, basis, verdict, why));
+        if (!command.quiet())
+        {
+            std::cout << verdict << "\n\n";
+            print(result, options, basis);
+        }
+        if (!why.empty())
+            throw Failure(why);
+        return moved ? LIMIT_NOT_MET : DONE;
+    });
+}
