@@ -127,10 +127,11 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis
         if (power >= CERTAIN)
             continue;
         const int times = imagesNeeded(window, result.windows.size(), o, basis.freedom);
+        const bool pairs = !o.direct[0].empty() || !o.direct[1].empty();
+        const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
+            pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
-                      "cannot be said; ", window.camera + 1, o.detect, 100. * power)
-            + (times ? format("take about %d times as many pairs (a nearer board or one with more corners also helps), or ask for "
-                              "less by --detect", times) : std::string("ask for less by --detect"));
+                      "cannot be said; ", window.camera + 1, o.detect, 100. * power) + more + "ask for a larger --detect";
     }
     return "";
 }

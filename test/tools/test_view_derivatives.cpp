@@ -1,5 +1,5 @@
 #include "paper_rig.hpp"
-#include <Eigen/SVD>
+#include <Eigen/LU>
 
 using namespace cv;
 using namespace cv::refract;
