@@ -99,7 +99,7 @@ TEST_CASE("A window that moved is found as often as predicted, and one that did 
     const Rates r = rates(board(9, 6, 30.), 0.2, 600, trials, 3010);
     CHECK(r.falseAlarms <= 0.05);                       // 1 %: more than 7 in 150 happens once in 1e4
     CHECK(r.found > 0.85);
-    CHECK(r.found == Approx(r.predicted).margin(0.1));
+    CHECK(r.found > r.predicted - 0.06);                // predicted is for the direction in which a tilt shows least
     CHECK(r.inTwoSigma > 0.8);                          // 0.865 where both principal deviations are equal
 }
 
@@ -151,6 +151,6 @@ TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-c
         std::cout << format("[numbers] refract_check, one pair, %s: found %.1f %% (predicted %.1f %%), false alarms %.1f %%\n", c.name,
                             100 * r.found, 100 * r.predicted, 100 * r.falseAlarms);
         CHECK(r.falseAlarms < 0.02);
-        CHECK(r.found == Approx(r.predicted).margin(0.04));
+        CHECK(r.found > r.predicted - 0.04);
     }
 }
