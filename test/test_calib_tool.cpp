@@ -33,6 +33,7 @@ struct SceneOptions
     int moments = 10;
     bool direct = true, stereo = false;
     double missing = 0.;                            // share of corners that are not seen
+    double wrong = 0.;                              // share of corners that are 5 to 20 px off
     std::function<GlassWindow(int)> window;         // default: the rig's
 };
 
@@ -69,7 +70,9 @@ void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsi
                 for (const Point2d& p : pixels)
                 {
                     file << (through ? "glass" : "direct") << c + 1 << "/view" << std::setfill('0') << std::setw(2) << m << ".png ";
-                    const Point2d seen(p.x + random.normal(SIGMA), p.y + random.normal(SIGMA));
+                    Point2d seen(p.x + random.normal(SIGMA), p.y + random.normal(SIGMA));
+                    if (options.wrong > 0 && random.uniform(0, 1) < options.wrong)
+                        seen.x += random.uniform(5, 20);
                     if (random.uniform(0, 1) < options.missing || !Rect2d(0, 0, IMAGE.width, IMAGE.height).contains(seen))
                         file << "- - -\n";
                     else
@@ -443,6 +446,29 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
         CHECK(refused.code == 1);
         CHECK(mentions(refused.err, std::string(wrong).substr(1, 6)));
     }
+}
+
+TEST_CASE("refract_calib leaves wrong points and moved boards out, and names them", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 12;
+    options.wrong = 0.1;
+    writeScene(f, options, 116);
+    const ToolResult robust = runTool(inputs(f, PANE + lens(f) + " --no-cross-validation --summary=" + f / "summary.json"));
+    INFO(robust.out << robust.err);
+    REQUIRE(robust.code == 0);
+    CHECK(degreesBetween(RefractiveCamera::read(f / "calib.yml")->window().normal, PaperRig().normal[0]) < 0.06);
+    CHECK(mentions(robust.out, "Left out:"));
+    const nlohmann::json json = nlohmann::json::parse(readFile(f / "summary.json"));
+    CHECK(json["left_out"].size() > 10);
+    CHECK(json["fit"]["sigma_px"].get<double>() == Approx(SIGMA).epsilon(0.15));
+
+    const ToolResult plain = runTool(inputs(f, PANE + lens(f) + " --no-cross-validation --no-robust"));
+    INFO(plain.out << plain.err);
+    CHECK(plain.code == 0);
+    CHECK_FALSE(mentions(plain.out, "Left out:"));
+    CHECK(degreesBetween(RefractiveCamera::read(f / "calib.yml")->window().normal, PaperRig().normal[0]) > 0.06);
 }
 
 TEST_CASE("refract_calib writes the same bytes for the same input", "[calib_tool]")

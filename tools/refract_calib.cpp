@@ -44,7 +44,7 @@ struct Options
     std::string thickness, index, imageSize, out, summary, report, pinholeOut, lens = "opencv5";
     double innerIndex = 1., outerIndex = 1., distance = 0.;
     std::vector<std::string> free;
-    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false, crossValidation = true;
+    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false, crossValidation = true, robust = true;
     Limits limits;
     Label label;
     std::string unit = "mm";
@@ -114,6 +114,8 @@ Options parseOptions(Command& command)
     app.add_option("--max-error-at", maxErrors, "Limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
         "3-D) of the worst point of the image at z = RANGE from camera 1")->allow_extra_args(false);
     app.add_flag("!--no-cross-validation", o.crossValidation, "Do not calibrate again on parts of the views");
+    app.add_flag("!--no-robust", o.robust, "Use all points as they are; by default wrong points and images (dirt, wrong detections, "
+        "a board that moved within its pair) are left out, and named");
     app.add_option("--unit", o.unit, "Unit of --square and all lengths")->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
         ->capture_default_str();
     app.add_option("--serial", o.label.serial, "Serial number of the window, carried into all outputs");
@@ -204,6 +206,10 @@ RigCalibration calibrate(const Options& o, bool quiet)
     readImages(o, target, quiet, c);
     Progress progress("calibrating", 5, quiet);
     c.start = startRig(c.data, c.options, c.lensSources);
+    if (o.robust)
+        c.dropped = dropWrongPoints(c.data, c.start, c.options.flags);
+    if (!c.dropped.empty())     // they have been in the lens and in the start of R and T
+        c.start = startRig(c.data, c.options, c.lensSources);
     progress.step();
     c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
     c.residuals = residualsOf(c.data, c.fit);

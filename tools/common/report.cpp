@@ -206,6 +206,11 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("without_target", listOf(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
 
+    std::vector<std::string> dropped;
+    for (const Dropped& d : c.dropped)
+        dropped.push_back(d.sentence());
+    page.set("dropped", listOf(dropped));
+    page.set("has_dropped", !dropped.empty());
     page.set("stereo", c.data.cameraCount == 2);
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));

@@ -99,6 +99,15 @@ Json viewsJson(const RigCalibration& c)
     return views;
 }
 
+Json droppedJson(const RigCalibration& c)
+{
+    Json list = Json::array();
+    for (const Dropped& d : c.dropped)
+        list.push_back({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
+                        {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
+    return list;
+}
+
 Json heldOutJson(const HeldOut& h)
 {
     if (!h.folds)
@@ -179,6 +188,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
     addAssessment(json, assessment);
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;
+    json["left_out"] = droppedJson(c);
     json["findings"] = {{"weak", findings.weak}, {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
     json["made_by"] = {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
                        {"time", timeOfFiles(c.inputs)}};

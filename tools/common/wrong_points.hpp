@@ -1,0 +1,28 @@
+#ifndef REFRACT_TOOLS_WRONG_POINTS_HPP
+#define REFRACT_TOOLS_WRONG_POINTS_HPP
+
+#include "calibrate_rig.hpp"
+
+/* Dirty glass: hidden, smeared or wrongly detected points, and images whose target was moved. They are found by a robust fit
+of everything (GLASS_ROBUST) and taken out of the data before the calibration itself, which then knows nothing of them. */
+namespace tools {
+
+//! What was left out of one image.
+struct Dropped
+{
+    std::string view;
+    int camera;
+    bool glass;
+    int points;                 //!< of those seen
+    bool image;                 //!< the whole image
+    std::string why;
+
+    std::string sentence() const;
+};
+
+//! Takes wrong points and images out of the data. Leaves them as they are where the robust fit is not possible.
+std::vector<Dropped> dropWrongPoints(RigData& data, const Rig& start, int flags);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_WRONG_POINTS_HPP
