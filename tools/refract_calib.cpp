@@ -207,8 +207,8 @@ RigCalibration calibrate(const Options& o, bool quiet)
     Progress progress("calibrating", 5, quiet);
     c.start = startRig(c.data, c.options, c.lensSources);
     if (o.robust)
-        c.dropped = dropWrongPoints(c.data, c.start, c.options.flags);
-    if (!c.dropped.empty())     // they have been in the lens and in the start of R and T
+        c.wrong = dropWrongPoints(c.data, c.start, c.options.flags);
+    if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
         c.start = startRig(c.data, c.options, c.lensSources);
     progress.step();
     c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);

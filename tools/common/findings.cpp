@@ -214,6 +214,8 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
         f.assumed.push_back("index as given");
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
         f.assumed.push_back("distance as given");
+    if (!c.wrong.fault.empty())
+        f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
     f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
 }
 

@@ -34,7 +34,7 @@ struct RigCalibration
     NearFar nearFar;
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
-    std::vector<Dropped> dropped;               //!< wrong points and images, already taken out of data
+    WrongPoints wrong;                          //!< points and images, already taken out of data
     std::vector<std::string> inputs;            //!< files that it was made from
     Limits limits;
     Label label;

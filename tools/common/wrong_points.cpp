@@ -55,7 +55,7 @@ std::string Dropped::sentence() const
                   image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
 }
 
-std::vector<Dropped> dropWrongPoints(RigData& data, const Rig& start, int flags)
+WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
 {
     const Rig rig = start.clone();
     const int cameras = data.cameraCount, stereo = cameras == 2 ? GLASS_FREE_EXTRINSICS : 0;
@@ -74,11 +74,11 @@ std::vector<Dropped> dropWrongPoints(RigData& data, const Rig& start, int flags)
                           imagesOf(data, false), rig.cameras, windows, Rs, Ts, rvecs, tvecs, noArray(), noArray(), noArray(),
                           status, inliers, noArray(), (flags & ~GLASS_SHARED_WINDOW) | GLASS_ROBUST | stereo);
     }
-    catch (const cv::Exception&)
+    catch (const cv::Exception& e)
     {
-        return {};      // the calibration itself says what is wrong with the data
+        return {{}, e.err};
     }
-    std::vector<Dropped> list;
+    WrongPoints wrong;
     for (int i = 0; i < (int)data.moments.size(); i++)
         for (int c = 0; c < cameras; c++)
             for (bool glass : {true, false})
@@ -87,9 +87,9 @@ std::vector<Dropped> dropWrongPoints(RigData& data, const Rig& start, int flags)
                 const int column = 2 * c + !glass;
                 Dropped dropped{m.stem, c, glass, 0, false, ""};
                 if (clean(glass ? m.glass[c] : m.direct[c], status.at<uchar>(i, column), inliers[2 * cameras * i + column], dropped))
-                    list.push_back(dropped);
+                    wrong.dropped.push_back(dropped);
             }
-    return list;
+    return wrong;
 }
 
 } // namespace tools

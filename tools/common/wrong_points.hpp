@@ -20,8 +20,14 @@ struct Dropped
     std::string sentence() const;
 };
 
-//! Takes wrong points and images out of the data. Leaves them as they are where the robust fit is not possible.
-std::vector<Dropped> dropWrongPoints(RigData& data, const Rig& start, int flags);
+struct WrongPoints
+{
+    std::vector<Dropped> dropped;
+    std::string fault;          //!< why wrong points could not be looked for; empty if they were
+};
+
+//! Takes wrong points and images out of the data. Leaves all of them where the robust fit is not possible.
+WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags);
 
 } // namespace tools
 
