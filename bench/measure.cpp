@@ -63,6 +63,15 @@ static double median(std::vector<double> v)
     return v.size() % 2 ? v[v.size()/2] : 0.5*(v[v.size()/2 - 1] + v[v.size()/2]);
 }
 
+double medianSeconds(const Work& work, int rounds)
+{
+    std::vector<double> times;
+    work();
+    for (int round = 0; round < rounds; ++round)
+        times.push_back(seconds(work, CLOCK_THREAD_CPUTIME_ID));
+    return median(times);
+}
+
 //! Reading and writing as many bytes as the row does, and nothing else.
 static Work memoryWork(double bytes)
 {

@@ -34,6 +34,9 @@ struct Times { double ours, peer, scalar, mrcal, memory, ratio; };     //!< ns p
 ratios; a round runs ours, peer, scalar, mrcal, memory one after the other. */
 Times measure(const Row& row, int rounds);
 
+//! Processor time of one run after the first, median of rounds.
+double medianSeconds(const Work& work, int rounds);
+
 //! Keeps the process on the given number of processors.
 void pin(int processors);
 

@@ -115,7 +115,7 @@ struct Camera
         return { { tau*normal[0], tau*normal[1], tau*normal[2] }, d };
     }
 
-    //! Bisection's safety is not needed: Newton on p, the sine that Snell's law keeps, in its tangent.
+    //! Newton on the tangent in the rarest medium, from below the root of a concave function: it cannot overshoot.
     Vec2<T> project(const Vec3<T>& X) const
     {
         T total = 0, rarest = index[0];

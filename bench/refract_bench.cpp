@@ -1,5 +1,6 @@
 // refract_bench: ours and its peers run alternately in one process, on one pinned thread; one table of ns per point, ratio
 // to the named call, error against the long double reference, number of answers. doc/performance.md explains the result.
+#include "growth.hpp"
 #include "rows.hpp"
 
 #include <CLI/CLI.hpp>
@@ -27,17 +28,17 @@ std::string instructions()
     return cv::checkHardwareSupport(CV_CPU_AVX512_SKX) ? "AVX-512" : cv::checkHardwareSupport(CV_CPU_AVX2) ? "AVX2" : "baseline";
 }
 
-void print(double v, const char* format) { std::isnan(v) ? std::printf("%9s", "-") : std::printf(format, v); }
+void print(double v, const char* format) { std::isnan(v) ? std::printf("%10s", "-") : std::printf(format, v); }
 
 //! True if every answer is there and right.
 bool printRow(const Row& row, const Times& t, bool avx512)
 {
-    std::printf("%-34s %-30s", row.work.c_str(), row.peerName.c_str());
+    std::printf("%-39s %-30s", row.work.c_str(), row.peerName.c_str());
     for (double ns : { t.ours, t.peer, t.scalar, t.mrcal, t.memory })
-        print(ns, "%9.2f");
-    print(t.ratio, "%9.3f");
+        print(ns, "%10.2f");
+    print(t.ratio, "%10.3f");
     const double target = row.target[avx512 ? 0 : 1];
-    print(target > 0 ? target : NAN, "%9.3f");
+    print(target > 0 ? target : NAN, "%10.3f");
     row.ours();     // what the peers left behind must not be taken for it
     const int answers = row.successes ? row.successes() : row.count;
     const double error = row.error ? row.error() : NAN, peerError = row.peerError ? row.peerError() : NAN;
@@ -54,10 +55,11 @@ int main(int argc, char** argv)
 {
     CLI::App app("Speed and accuracy of refract beside OpenCV, mrcal and the straightforward scalar program.\n"
                  "Exit code 2: an answer was missing or wrong. Times never change the exit code.");
-    bool quick = false;
+    bool quick = false, growth = false;
     std::string only, isa = "avx512";
     int count = 100000, rounds = 15;
     app.add_flag("--quick", quick, "few points, one round: a check of the answers only");
+    app.add_flag("--growth", growth, "time against points, layers, incidence and views instead of the table");
     app.add_option("--only", only, "rows whose key begins with this");
     app.add_option("--isa", isa, "the highest instruction set to use")->check(CLI::IsMember({ "baseline", "avx2", "avx512" }));
     app.add_option("--points", count, "points in an array")->check(CLI::PositiveNumber);
@@ -71,12 +73,19 @@ int main(int argc, char** argv)
     pin(1);
     cv::setNumThreads(1);
 
+    if (growth)
+    {
+        std::printf("instructions: %s, processor time of one thread\n", instructions().c_str());
+        printGrowth();
+        return 0;
+    }
     std::vector<Row> rows;
     addPointRows(rows, count);
     addPairRows(rows, count);
     addCallRows(rows, count);
+    addCalibrationRows(rows);
     std::printf("instructions: %s, points: %d, rounds: %d, ns per point\n", instructions().c_str(), count, rounds);
-    std::printf("%-34s %-30s%9s%9s%9s%9s%9s%9s%9s%10s%10s %-12s answers\n", "work", "peer (without window)", "ours", "peer",
+    std::printf("%-39s %-30s%10s%10s%10s%10s%10s%10s%10s%10s%10s %-12s answers\n", "work", "peer (without window)", "ours", "peer",
                 "scalar", "mrcal", "memory", "ratio", "target", "error", "peer's", "unit");
     bool right = true;
     for (const Row& row : rows)
