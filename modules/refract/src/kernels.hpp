@@ -81,6 +81,9 @@ struct FisheyeModel
     double inverse[TERMS];      //!< of theta in theta_d, as above
 };
 
+//! Nodes of a tile of a map, in each direction.
+enum { NODES = 8 };
+
 struct Kernels
 {
     const char* instructions;
@@ -108,6 +111,8 @@ struct Kernels
     //! Two rows by the point -> the one column of each by the parameter of A, whose point moves by A X.
     void (*chainLinear)(const double* A, int n, const double* x, const double* y, const double* z, const Columns& byPoint,
                         const Columns& out);
+    //! out[i] = sum over r, c of row[r] values[NODES r + c] columns[n c + i]
+    void (*interpolate)(const double* values, const double* row, const double* columns, int n, double* out);
     /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in two images.
     @param R rotation of camera 2
     @param observed, predicted 4x1: u1, v1, u2, v2

@@ -8,7 +8,7 @@
 #include "kernels.hpp"
 #include "lanes.hpp"
 
-/* Interleaved points <-> arrays, and the linear maps between frames. */
+/* Interleaved points <-> arrays, the linear maps between frames, interpolation. */
 
 namespace cv { namespace refract { namespace {
 
@@ -97,6 +97,25 @@ bool pinhole(const double* H, const double* axis, int n, const double* x, const 
         store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, i, n);
     }
     return answers.complete();
+}
+
+void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
+{
+    double along[NODES];
+    for (int c = 0; c < NODES; c += LANES)
+    {
+        Lanes sum = all(0);
+        for (int r = 0; r < NODES; ++r)
+            sum += row[r]*load(values + NODES*r, c, NODES);
+        store(sum, along, c, NODES);
+    }
+    for (int i = 0; i < n; i += LANES)
+    {
+        Lanes sum = all(0);
+        for (int c = 0; c < NODES; ++c)
+            sum += along[c]*load(columns + n*c, i, n);
+        store(sum, out, i, n);
+    }
 }
 
 }}} // namespace

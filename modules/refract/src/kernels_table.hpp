@@ -22,7 +22,8 @@ const Kernels table = {
 #else
     "baseline",
 #endif
-    loadPoints, storePoints, transform, pinhole, meetPlane, traceOut, solveIn, chainWindow, chainLinear, gaussNewton,
+    loadPoints, storePoints, transform, pinhole, meetPlane, traceOut, solveIn, chainWindow, chainLinear,
+    interpolate, gaussNewton,
     projectOpenCV, unprojectOpenCV, projectJacobianOpenCV, projectFisheye, unprojectFisheye, projectJacobianFisheye
 };
 

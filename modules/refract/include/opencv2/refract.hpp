@@ -285,7 +285,7 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
-@param map1 first map; pixels with no answer map to (-1, -1).
+@param map1 first map, right to 1e-6 px before rounding to its type; pixels with no answer map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
 CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
