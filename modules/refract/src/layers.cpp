@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "layers.hpp"
-#include <map>
 
 namespace cv { namespace refract {
 
@@ -11,25 +10,27 @@ namespace cv { namespace refract {
 static std::vector<Medium> mediaOf(const std::vector<double>& height, const std::vector<double>& index, double outer,
                                    double rarest)
 {
-    std::map<double, Medium> media;
+    std::vector<Medium> media;
+    media.reserve(height.size() + 1);
     const auto medium = [&](double n) -> Medium&
     {
         const Medium empty = { 0, false, n > rarest ? rarest : 1, n*n, 1/n, 1/std::sqrt((n - rarest)*(n + rarest)) };
-        return media.insert(std::make_pair(n, empty)).first->second;
+        const auto at = std::lower_bound(media.begin(), media.end(), empty,
+                                         [](const Medium& a, const Medium& b) { return a.index2 < b.index2; });
+        return at != media.end() && at->index2 == empty.index2 ? *at : *media.insert(at, empty);
     };
     for (size_t k = 0; k < height.size(); ++k)
         medium(index[k]).height += height[k]*medium(index[k]).scale;
     medium(outer).isScene = true;
-    std::vector<Medium> list;
-    for (const auto& m : media)
-        list.push_back(m.second);
-    return list;
+    return media;
 }
 
 Layers::Layers(const GlassWindow& window)
 {
     window.check();
     normal_ = window.normal / cv::norm(window.normal);
+    height_.reserve(1 + window.thickness.size());
+    index_.reserve(1 + window.index.size());
     height_.assign(1, window.distance);
     index_.assign(1, window.innerIndex);
     height_.insert(height_.end(), window.thickness.begin(), window.thickness.end());

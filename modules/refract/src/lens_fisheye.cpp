@@ -5,6 +5,7 @@
 #include "fisheye_bend.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
+#include <mutex>
 
 /* cv::fisheye's model (Kannala and Brandt), theta = angle to the z axis:
 
@@ -40,11 +41,13 @@ public:
 
 private:
     double bend(double theta, double& slope) const;     //!< theta -> theta_d
+    void fitStart() const;
     //! One lane that the kernel left without an answer: the answer, or why there is none.
     uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
 
     Matx33d K_;
-    FisheyeModel m_;
+    mutable FisheyeModel m_;            //!< without m_.inverse until something is unprojected
+    mutable std::once_flag startFitted_;
 };
 
 FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs) : K_(K)
@@ -58,6 +61,10 @@ FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs
     std::copy(distCoeffs.begin(), distCoeffs.end(), k);
     const double slopeTerms[] = { 1, 3*k[0], 5*k[1], 7*k[2], 9*k[3] };
     m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slopeTerms, slopeTerms + 5))));
+}
+
+void FisheyeLens::fitStart() const
+{
     // As for OpenCV's model.
     const auto bendFunction = [this](double theta, double& slope) { return bend(theta, slope); };
     const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
@@ -85,6 +92,7 @@ void FisheyeLens::project(int n, const double* x, const double* y, const double*
 void FisheyeLens::unproject(int n, const double* u, const double* v,
                             double* x, double* y, double* z, uchar* status) const
 {
+    std::call_once(startFitted_, [this] { fitStart(); });
     if (kernels().unprojectFisheye(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)

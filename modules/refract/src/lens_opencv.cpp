@@ -5,6 +5,7 @@
 #include "distortion.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
+#include <mutex>
 
 /* OpenCV's lens model (calib3d's documentation), x = X/Z, y = Y/Z, s = r^2 = x^2 + y^2:
 
@@ -46,10 +47,12 @@ private:
     uchar projectOne(double x, double y, double z, double& u, double& v) const;
     uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
     double radial(double r, double& slope) const;
+    void fitStart() const;
     bool inside(double x, double y, const Distorted<double>& d) const { return x*x + y*y < m_.sMax && d.determinant() > 0; }
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
-    OpenCVModel m_;
+    mutable OpenCVModel m_;             //!< without m_.inverse, which takes its time, until something is unprojected
+    mutable std::once_flag startFitted_;
     bool radialOnly_;
     String model_;
 };
@@ -108,6 +111,10 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     tiltDerivatives(k[TAUX], k[TAUY], dTilt);
     for (int i = 0; i < 2; ++i)
         std::copy(dTilt[i].val, dTilt[i].val + 9, m_.dTilt[i]);
+}
+
+void OpenCVLens::fitStart() const
+{
     // Exact over the image, whose corner lies about as far from the principal point as the origin does.
     const auto radialFunction = [this](double r, double& slope) { return radial(r, slope); };
     const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
@@ -183,6 +190,7 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 void OpenCVLens::unproject(int n, const double* u, const double* v,
                            double* x, double* y, double* z, uchar* status) const
 {
+    std::call_once(startFitted_, [this] { fitStart(); });
     if (kernels().unprojectOpenCV(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)

@@ -17,11 +17,13 @@ double firstPositiveRoot(std::vector<double> c)
         return first;
     // In 1/s the leading coefficient is c[0] = 1, however small the highest one is: eigenvalues of the companion
     // matrix, of which the largest positive real one is wanted.
-    Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(degree, degree);
+    typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> Companion;   // not on the heap
+    CV_Assert(degree <= Companion::MaxRowsAtCompileTime);
+    Companion companion = Companion::Zero(degree, degree);
     for (int i = 0; i < degree; ++i)
         companion(0, i) = -c[i + 1]/c[0];
     companion.diagonal(-1).setOnes();
-    const Eigen::VectorXcd roots = companion.eigenvalues();
+    const auto roots = companion.eigenvalues();
     for (int i = 0; i < degree; ++i)
         if (roots[i].real() > 0 && std::abs(roots[i].imag()) <= 1e-7*std::abs(roots[i]))
             first = std::min(first, 1/roots[i].real());
