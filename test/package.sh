@@ -42,12 +42,12 @@ else
     { tail -5 "$work/root.log"; exit 1; }
   cp /etc/resolv.conf "$root/etc/"
   cp -r /etc/apt/sources.list* /etc/apt/apt.conf.d "$root/etc/apt/"
-  home=$root/root
+  home=$root/srv
   cp "$package" "$home/package.deb"
   cp -r samples/data/stereo "$home/data"
   chroot "$root" sh -ec 'export DEBIAN_FRONTEND=noninteractive
-    apt-get update -qq && apt-get install -y -qq --no-install-recommends /root/package.deb' >"$work/install.log" 2>&1 ||
+    apt-get update -qq && apt-get install -y -qq --no-install-recommends /srv/package.deb' >"$work/install.log" 2>&1 ||
     { tail -20 "$work/install.log"; exit 1; }
-  main_job chroot "$root" env -C /root
+  main_job chroot "$root" env -C /srv
 fi
 ls -l "$home/calib.yml" "$home/points.csv" "$home/report.html"
