@@ -14,10 +14,6 @@ naming the direction, if the data do not determine what is free.
 @param variance of a pixel coordinate */
 Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance);
 
-/** Derivatives of all residuals, 2M x (P + 6 V): image by image in the order of images(); columns: the public parameters,
-then the pose of each view; 0 where fixed. One camera. */
-Eigen::MatrixXd rigJacobian(const RigProblem& rig);
-
 }} // namespace
 
 #endif // OPENCV_REFRACT_COVARIANCE_HPP

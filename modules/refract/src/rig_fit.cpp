@@ -4,6 +4,7 @@
 
 #include "rig_fit.hpp"
 #include "covariance.hpp"
+#include "information.hpp"
 #include "rig_robust.hpp"
 #include "rig_start.hpp"
 #include <opencv2/core/eigen.hpp>
