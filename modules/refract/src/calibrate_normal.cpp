@@ -19,6 +19,7 @@ A pair next to the centre moves little and its direction is all noise; e gives i
 
 #include "calibrate_normal.hpp"
 #include "arrays.hpp"
+#include "robust_scale.hpp"
 
 namespace cv { namespace refract {
 
@@ -215,14 +216,7 @@ double medianError(const std::vector<Pair>& pairs, const Vec3d& n)
     std::vector<double> errors;
     for (const Pair& pair : pairs)
         errors.push_back(std::abs(n.dot(pair.a))/std::sqrt(n.dot(pair.S*n)));
-    std::nth_element(errors.begin(), errors.begin() + errors.size()/2, errors.end());
-    return errors[errors.size()/2];
-}
-
-double medianOf(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
+    return median(errors);
 }
 
 } // namespace
@@ -252,10 +246,10 @@ NormalEstimate normalFromAgreeingPairs(const Camera& camera, const PixelViews& d
         std::vector<double> errors;
         for (const std::vector<Pair>& view : views)
             errors.push_back(medianError(view, candidate.normal));
-        const double median = medianOf(errors);
-        if (!(median < least))
+        const double usual = median(errors);
+        if (!(usual < least))
             continue;
-        least = median;
+        least = usual;
         bestErrors = errors;
     }
     PixelViews agreeing(direct.size());
