@@ -28,10 +28,7 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
     task.wantsJacobian = jacobian.needed();
     const RigFit fit = fitRig(rig, task);
     cameraOf(camera) = rig.cameras[0];
-    writePoses(fit, rvecs, tvecs);
-    writeMat(fit.stdDeviations, stdDeviations);
-    writeMat(fit.covariance, covariance);
-    writeMat(fit.perViewErrors, perViewErrors);
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.jacobian, jacobian);
     return fit.rms;
 }

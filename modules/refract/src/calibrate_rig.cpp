@@ -265,10 +265,7 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     setCameras(rig, cameras);
     if (flags & GLASS_FREE_EXTRINSICS)
         writeExtrinsics(rig, Rs, Ts);
-    writePoses(fit, rvecs, tvecs);
-    writeMat(fit.stdDeviations, stdDeviations);
-    writeMat(fit.covariance, covariance);
-    writeMat(fit.perViewErrors, perViewErrors);
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
     writeMat(fit.otherMinima, otherMinima);
@@ -307,10 +304,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         Mat(rotationMatrix(rig.extrinsics[1].rvec)).copyTo(R);
         Mat(rig.extrinsics[1].tvec).copyTo(T);
     }
-    writePoses(fit, rvecs, tvecs);
-    writeMat(fit.stdDeviations, stdDeviations);
-    writeMat(fit.covariance, covariance);
-    writeMat(fit.perViewErrors, perViewErrors);
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     return fit.rms;
 }
 

@@ -135,14 +135,6 @@ private:
     int used_;
 };
 
-std::vector<std::vector<const RigImage*> > imagesByView(const RigProblem& rig)
-{
-    std::vector<std::vector<const RigImage*> > images(rig.viewCount());
-    for (const RigImage& image : rig.images())
-        images[image.view].push_back(&image);
-    return images;
-}
-
 } // namespace
 
 Information rigInformation(const RigProblem& rig)
@@ -151,13 +143,12 @@ Information rigInformation(const RigProblem& rig)
     Information information;
     SquareRoot root(space.count);
     VectorXd squares = VectorXd::Zero(space.count);
-    const std::vector<std::vector<const RigImage*> > images = imagesByView(rig);
     for (int view = 0; view < rig.viewCount(); view++)
     {
         MatrixXd J(0, space.count), K(0, 6);
-        for (const RigImage* image : images[view])
+        for (int i : rig.imagesOf(view))
         {
-            ImageRows own(space, rig.derivatives(*image));
+            ImageRows own(space, rig.derivatives(rig.images()[i]));
             own.reduce();
             J = stacked(J, own.spread(space.count));
             K = stacked(K, own.rows.leftCols<6>());

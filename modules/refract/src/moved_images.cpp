@@ -25,9 +25,8 @@ double chiSquareQuantile(double normalQuantile, int freedom)
 //! The pose, object -> camera 1, that one image alone tells.
 Pose ownPose(const Rig& rig, const RigImage& image)
 {
-    Camera camera(rig.cameras[image.camera]);
-    if (!image.refracted)
-        camera.setWindow(GlassWindow());
+    const Camera& behindWindow = rig.cameras[image.camera];
+    const Camera camera = image.refracted ? behindWindow : withWindow(behindWindow);
     double rms;
     const std::vector<Point2d> agreeing = pointsOfOnePose(camera, image.points.object, image.points.pixel);
     const Pose pose = solvePose(camera, image.points.object, agreeing, Pose(), rms);
@@ -87,15 +86,16 @@ double MovedImages::gainOfOwnPoses(const View& view) const
 
 std::vector<MovedImages::View> MovedImages::viewsOfSeveral() const
 {
-    std::vector<View> views(problem_.viewCount());
-    for (int i = 0; i < (int)problem_.images().size(); i++)
-        views[image(i).view].images.push_back(i);
-    views.erase(std::remove_if(views.begin(), views.end(), [](const View& v) { return v.images.size() < 2; }), views.end());
-    for (View& view : views)
+    std::vector<View> views;
+    for (int v = 0; v < problem_.viewCount(); v++)
     {
+        View view = { problem_.imagesOf(v), std::vector<Pose>(), 0 };
+        if (view.images.size() < 2)
+            continue;
         for (int i : view.images)
             view.own.push_back(ownPose(rig_, image(i)));
         view.gain = gainOfOwnPoses(view);
+        views.push_back(view);
     }
     return views;
 }

@@ -146,7 +146,7 @@ void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, i
 {
     const Extrinsics& toCamera = rig_.extrinsics;
     const Matx33d R = toCamera.rotation.R*R1;
-    const Vec3d t = toCamera.rotation.R*t1 + toCamera.T;
+    const Vec3d t = toCamera.apply(t1);
     for (int k = 0; k < n; k++)
     {
         const Vec3d X = R*Vec3d(points_.object[begin + k]) + t;

@@ -57,15 +57,15 @@ WindowTransfer::WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, c
     byCamera.bottomRightCorner<1, 3>() = Map3(normal.val).transpose();
 }
 
-static Camera withoutWindow(const Camera& camera)
+Camera withWindow(const Camera& camera, const GlassWindow& window)
 {
-    Camera bare(camera);
-    bare.setWindow(GlassWindow());
-    return bare;
+    Camera other(camera);
+    other.setWindow(window);
+    return other;
 }
 
 RigCamera::RigCamera(const Camera& camera)
-    : behindWindow_(camera), bare_(withoutWindow(camera)), isLensPossible_(true), isWindowPossible_(true) {}
+    : behindWindow_(camera), bare_(withWindow(camera)), isLensPossible_(true), isWindowPossible_(true) {}
 
 void RigCamera::set(const Parameters& parameters)
 {

@@ -32,6 +32,7 @@ struct Extrinsics
     //! rvec and T; null: camera 1.
     explicit Extrinsics(const double* six = nullptr);
     explicit Extrinsics(const Pose& pose);
+    Vec3d apply(const Vec3d& X) const { return rotation.R*X + T; }
     Rotation rotation;
     Vec3d T;
 };
@@ -49,6 +50,9 @@ struct WindowTransfer
     PlainMatrix<4, 4> byWindow;             //!< by the owner's normal and distance
     PlainMatrix<4, 6> byOwner, byCamera;    //!< by rvec and T of the two
 };
+
+//! The same lens behind another window, or none.
+Camera withWindow(const Camera& camera, const GlassWindow& window = GlassWindow());
 
 /** One camera of the rig at one set of parameter values: what all its images share. */
 class RigCamera

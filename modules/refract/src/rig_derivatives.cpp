@@ -62,7 +62,7 @@ std::vector<double> RigProblem::pixelErrors(const RigImage& image, const Pose& p
     std::vector<double> errors;
     for (size_t i = 0; i < image.points.pixel.size(); i++)
     {
-        const Vec3d X = toCamera.rotation.R*(toCamera1.rotation.R*Vec3d(image.points.object[i]) + toCamera1.T) + toCamera.T;
+        const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(image.points.object[i])));
         Point2d pixel;
         uchar status = REFRACT_OK;
         camera->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);

@@ -192,16 +192,20 @@ static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, Ou
     }
 }
 
-void writePoses(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
-{
-    writeVectors(fit.poses, &Pose::rvec, rvecs);
-    writeVectors(fit.poses, &Pose::tvec, tvecs);
-}
-
 void writeMat(const Mat& from, OutputArray to)
 {
     if (to.needed())
         from.copyTo(to);
+}
+
+void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
+              OutputArray covariance, OutputArray perViewErrors)
+{
+    writeVectors(fit.poses, &Pose::rvec, rvecs);
+    writeVectors(fit.poses, &Pose::tvec, tvecs);
+    writeMat(fit.stdDeviations, stdDeviations);
+    writeMat(fit.covariance, covariance);
+    writeMat(fit.perViewErrors, perViewErrors);
 }
 
 }} // namespace

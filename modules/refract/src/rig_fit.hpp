@@ -36,8 +36,9 @@ struct RigFit
 //! Starts, fit, and what it tells. rig is start and result.
 RigFit fitRig(Rig& rig, const RigTask& task);
 
-void writePoses(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
-//! Copies what is wanted.
+//! What all calibrators return; copies what is wanted.
+void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
+              OutputArray covariance, OutputArray perViewErrors);
 void writeMat(const Mat& from, OutputArray to);
 
 }} // namespace

@@ -64,7 +64,7 @@ double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>
 
 RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
                        const std::vector<PoseKnowledge>& known, int flags)
-    : rig_(rig), known_(known), isSeen_(poses.size(), false), pixelSigma_(1)
+    : rig_(rig), imagesOfView_(poses.size()), known_(known), isSeen_(poses.size(), false), pixelSigma_(1)
 {
     size_t most = 6*rig_.cameras.size();
     for (const Camera& camera : rig_.cameras)
@@ -125,6 +125,7 @@ void RigProblem::addImages(const RigViews& views)
                 if (image.points.pixel.empty())
                     continue;
                 image.rootWeights.assign(image.points.pixel.size(), 1.);
+                imagesOfView_[view].push_back((int)images_.size());
                 images_.push_back(image);
                 isSeen_[view] = true;
             }
@@ -235,10 +236,8 @@ void RigProblem::setRootWeights(int image, const std::vector<double>& rootWeight
 {
     images_[image].rootWeights = rootWeights;
     const int view = images_[image].view;
-    isSeen_[view] = false;
-    for (const RigImage& other : images_)
-        if (other.view == view && other.usedCount() > 0)
-            isSeen_[view] = true;
+    isSeen_[view] = std::any_of(imagesOfView_[view].begin(), imagesOfView_[view].end(),
+                                [this](int i) { return images_[i].usedCount() > 0; });
 }
 
 int RigProblem::pointCount() const

@@ -85,6 +85,8 @@ public:
     int viewCount() const { return (int)poses_.size(); }
     int cameraCount() const { return rig_.count(); }
     const std::vector<RigImage>& images() const { return images_; }
+    //! Indices into images().
+    const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
     const std::vector<RigBlock>& blocks() const { return blocks_; }
     void setRootWeights(int image, const std::vector<double>& rootWeights);
     //! Standard deviation of a pixel coordinate, against which poses known with a covariance are weighed.
@@ -151,6 +153,7 @@ private:
     Rig rig_;                           //!< lens models and numbers of layers
     std::vector<RigCamera> cameras_;
     std::vector<RigImage> images_;
+    std::vector<std::vector<int> > imagesOfView_;
     std::vector<double> values_;        //!< of all blocks, one after the other, as Ceres sorts blocks by their address
     std::vector<RigBlock> blocks_;
     std::vector<std::array<double, 6> > poses_, knownPoses_;

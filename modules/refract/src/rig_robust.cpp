@@ -185,8 +185,7 @@ RigViews agreeingViews(const Rig& rig, const RigViews& views)
     RigViews agreeing = views;
     for (int c = 0; c < rig.count(); c++)
     {
-        Camera bare(rig.cameras[c]);
-        bare.setWindow(GlassWindow());
+        const Camera bare = withWindow(rig.cameras[c]);
         for (int view = 0; view < views.count(); view++)
         {
             CameraViews& seen = agreeing.cameras[c];

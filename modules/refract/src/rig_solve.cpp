@@ -46,7 +46,7 @@ String RigProblem::startFault() const
         const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
         const Extrinsics toCamera1(poses_[image.view].data());
         const Matx33d R = toCamera.rotation.R*toCamera1.rotation.R;
-        const Vec3d t = toCamera.rotation.R*toCamera1.T + toCamera.T;
+        const Vec3d t = toCamera.apply(toCamera1.T);
         for (const Point3d& point : image.points.object)
         {
             const Vec3d X = R*Vec3d(point) + t;

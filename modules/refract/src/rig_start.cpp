@@ -49,9 +49,9 @@ Pose poseOfView(const std::vector<Camera>& cameras, const Rig& rig, const RigVie
 
 std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known)
 {
-    std::vector<Camera> bare = rig.cameras;
-    for (Camera& camera : bare)
-        camera.setWindow(GlassWindow());
+    std::vector<Camera> bare;
+    for (const Camera& camera : rig.cameras)
+        bare.push_back(withWindow(camera));
     std::vector<Pose> poses = known;
     poses.resize(views.count());
     for (int view = 0; view < views.count(); view++)

@@ -30,13 +30,6 @@ std::vector<Vec3d> candidateNormals(const Vec3d& given)
     return normals;
 }
 
-Camera withWindow(const Camera& camera, const GlassWindow& window)
-{
-    Camera other(camera);
-    other.setWindow(window);
-    return other;
-}
-
 GlassWindow turned(GlassWindow window, const Vec3d& normal)
 {
     window.normal = normal;
@@ -209,7 +202,7 @@ PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std
         const Extrinsics toCamera1(poses[view]);
         for (const Point3d& point : views.object[view])
         {
-            const Vec3d X = toCamera.rotation.R*(toCamera1.rotation.R*Vec3d(point) + toCamera1.T) + toCamera.T;
+            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(point)));
             Point2d pixel;
             uchar status = REFRACT_OK;
             rig.cameras[c].lens().project(1, &X[0], &X[1], &X[2], &pixel.x, &pixel.y, &status);
