@@ -1,0 +1,72 @@
+// One camera used by several threads: what a lens makes at its first use is made once, before anyone reads it.
+#include "scenes.hpp"
+
+#include <atomic>
+#include <thread>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+//! What one thread gets from a camera: rays of pixels, and pixels of points.
+struct Answers
+{
+    std::vector<Vec3d> origins, directions;
+    std::vector<Vec2d> pixels;
+    std::vector<uchar> rayStatus, pixelStatus;
+
+    bool operator==(const Answers& other) const
+    {
+        return origins == other.origins && directions == other.directions && pixels == other.pixels &&
+               rayStatus == other.rayStatus && pixelStatus == other.pixelStatus;
+    }
+};
+
+Answers ask(const Ptr<RefractiveCamera>& camera, const std::vector<Vec2d>& pixels)
+{
+    Answers a;
+    refractiveUnprojectPoints(pixels, a.origins, a.directions, camera, a.rayStatus);
+    std::vector<Vec3d> points;
+    for (size_t i = 0; i < pixels.size(); ++i)
+        points.push_back(a.origins[i] + 700*a.directions[i]);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, a.pixels, a.pixelStatus);
+    return a;
+}
+
+} // namespace
+
+TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
+    CAPTURE(kind.name, seed());
+    Random random;
+    std::vector<Vec2d> pixels;
+    for (int i = 0; i < 100; ++i)
+        pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
+    const Answers expected = ask(makeCamera(kind, window), pixels);
+    REQUIRE(std::count(expected.rayStatus.begin(), expected.rayStatus.end(), (uchar)REFRACT_OK) == 100);
+    REQUIRE(std::count(expected.pixelStatus.begin(), expected.pixelStatus.end(), (uchar)REFRACT_OK) == 100);
+
+    int wrong = 0;
+    for (int round = 0; round < 100; ++round)
+    {
+        const Ptr<RefractiveCamera> camera = makeCamera(kind, window);
+        Answers answers[2];
+        std::atomic<int> ready(0);
+        const auto work = [&](int who)
+        {
+            ++ready;
+            while (ready < 2)           // both at the same moment
+                std::this_thread::yield();
+            answers[who] = ask(camera, pixels);
+        };
+        std::thread other(work, 1);
+        work(0);
+        other.join();
+        wrong += !(answers[0] == expected) + !(answers[1] == expected);
+    }
+    CHECK(wrong == 0);
+}
