@@ -40,7 +40,8 @@ namespace {
 struct Options
 {
     TargetOptions target;
-    std::string direct[2], glass[2], camera[2];
+    RigSources images;
+    std::string camera[2];
     std::string thickness, index, imageSize, out, summary, report, pinholeOut, lens = "opencv5";
     double innerIndex = 1., outerIndex = 1., distance = 0.;
     std::vector<std::string> free;
@@ -81,10 +82,10 @@ Options parseOptions(Command& command)
     std::vector<std::string> maxErrors, notes;
     CLI::App& app = command.app;
     o.target.addTo(app, true);
-    app.add_option("--direct", o.direct[0], "Images without the window: glob or corners.vnl");
-    app.add_option("--glass", o.glass[0], "Images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct2", o.direct[1], "The same of camera 2");
-    CLI::Option* glass2 = app.add_option("--glass2", o.glass[1], "The same of camera 2");
+    app.add_option("--direct", o.images.direct[0], "Images without the window: glob or corners.vnl");
+    app.add_option("--glass", o.images.glass[0], "Images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct2", o.images.direct[1], "The same of camera 2");
+    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "The same of camera 2");
     app.add_option("--camera", o.camera[0], "Lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
     app.add_option("--camera2", o.camera[1], "Lens of camera 2");
     app.add_option("--lens", o.lens, "Lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
@@ -127,7 +128,7 @@ Options parseOptions(Command& command)
         o.label.notes.push_back(parseNote(text));
     o.distanceGiven = distance->count() > 0;
     o.stereo = glass2->count() > 0;
-    if (!o.stereo && !(o.direct[1].empty() && o.camera[1].empty()))
+    if (!o.stereo && !(o.images.direct[1].empty() && o.camera[1].empty()))
         throw Failure("--direct2 and --camera2 need --glass2: give the images of camera 2 through the window");
     return o;
 }
@@ -168,22 +169,14 @@ void readWindow(const Options& o, double square, RigOptions& rig)
 void readImages(const Options& o, const Target& target, bool quiet, RigCalibration& c)
 {
     const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
-    ViewSet sets[2][2];
-    const ViewSet* direct[2] = {};
-    const ViewSet* glass[2] = {};
-    for (int k = 0; k < 2; k++)
-        for (bool through : {false, true})
-        {
-            const std::string& source = through ? o.glass[k] : o.direct[k];
-            if (source.empty())
-                continue;
-            ViewSet& set = sets[k][through];
-            set = readViews(source, target, size, quiet);
-            (through ? glass : direct)[k] = &set;
-            c.withoutTarget.insert(c.withoutTarget.end(), set.withoutTarget.begin(), set.withoutTarget.end());
-            c.inputs.insert(c.inputs.end(), set.files.begin(), set.files.end());
-        }
-    c.data = pairViews(target, direct, glass, o.unpaired);
+    const cv::Size sizes[] = {size, size};
+    const RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
+    for (const ViewSet* set : sets.all())
+    {
+        c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
+        c.inputs.insert(c.inputs.end(), set->files.begin(), set->files.end());
+    }
+    c.data = pairViews(target, sets, o.unpaired);
 }
 
 RigCalibration calibrate(const Options& o, bool quiet)

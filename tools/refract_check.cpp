@@ -32,7 +32,8 @@ const double EXACT = 1e8;               // degrees of freedom of a noise level t
 
 struct Options
 {
-    std::string calibration, direct[2], glass[2], imageSize, summary;
+    std::string calibration, imageSize, summary;
+    RigSources images;
     TargetOptions target;
     double falseAlarm = 0.01, detect = 0.1, sigma = 0.;
 };
@@ -41,10 +42,10 @@ void addOptions(CLI::App& app, Options& o)
 {
     app.add_option("calib.yml", o.calibration, "What refract_calib wrote")->required();
     o.target.addTo(app, true);
-    app.add_option("--glass", o.glass[0], "New images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct", o.direct[0], "New images without the window");
-    CLI::Option* glass2 = app.add_option("--glass2", o.glass[1], "The same of camera 2");
-    app.add_option("--direct2", o.direct[1], "The same of camera 2")->needs(glass2);
+    app.add_option("--glass", o.images.glass[0], "New images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct", o.images.direct[0], "New images without the window");
+    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "The same of camera 2");
+    app.add_option("--direct2", o.images.direct[1], "The same of camera 2")->needs(glass2);
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
     app.add_option("--false-alarm", o.falseAlarm, "Probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
         ->capture_default_str();
@@ -75,24 +76,13 @@ CheckBasis basisOf(const Options& o, const Calibration& calibration)
 
 std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, bool quiet)
 {
-    if (!o.glass[1].empty() && !calibration.stereo())
+    if (!o.images.glass[1].empty() && !calibration.stereo())
         throw Failure("'" + o.calibration + "' has one camera: leave --glass2 out");
-    const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
-    ViewSet sets[2][2];
-    const ViewSet* direct[2] = {};
-    const ViewSet* glass[2] = {};
-    for (int c = 0; c < 2; c++)
-        for (bool through : {false, true})
-        {
-            const std::string& source = through ? o.glass[c] : o.direct[c];
-            if (source.empty())
-                continue;
-            const cv::Size known = calibration.cameras[c].camera->imageSize();
-            sets[c][through] = readViews(source, target, size.empty() ? known : size, quiet);
-            (through ? glass : direct)[c] = &sets[c][through];
-        }
+    cv::Size sizes[2];
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
     std::vector<Moment> moments;
-    for (const Moment& m : pairViews(target, direct, glass, false).moments)
+    for (const Moment& m : pairViews(target, readViewSets(o.images, target, sizes, quiet), false).moments)
         if (m.hasGlass())
             moments.push_back(m);
     return moments;
@@ -127,7 +117,7 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis
         if (power >= CERTAIN)
             continue;
         const int times = imagesNeeded(window, result.windows.size(), o, basis.freedom);
-        const bool pairs = !o.direct[0].empty() || !o.direct[1].empty();
+        const bool pairs = !o.images.direct[0].empty() || !o.images.direct[1].empty();
         const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "

@@ -32,25 +32,38 @@ std::vector<int> allMoments(const RigData& data)
     return all;
 }
 
-RigData pairViews(const Target& target, const ViewSet* const direct[2], const ViewSet* const glass[2], bool unpaired)
+RigViewSets readViewSets(const RigSources& sources, const Target& target, const Size imageSize[2], bool quiet)
+{
+    RigViewSets sets;
+    for (int c = 0; c < 2; c++)
+        for (bool through : {false, true})
+        {
+            const std::string& source = (through ? sources.glass : sources.direct)[c];
+            if (!source.empty())
+                (through ? sets.glass : sets.direct)[c] = readViews(source, target, imageSize[c], quiet);
+        }
+    return sets;
+}
+
+RigData pairViews(const Target& target, const RigViewSets& sets, bool unpaired)
 {
     RigData data;
-    data.cameraCount = glass[1] ? 2 : 1;
+    data.cameraCount = sets.glass[1].views.empty() ? 1 : 2;
     data.objectPoints = target.objectPoints();
     data.neighbours = target.neighbours();
     std::map<std::pair<std::string, bool>, Moment> moments;
     for (int c = 0; c < data.cameraCount; c++)
         for (bool through : {false, true})
         {
-            const ViewSet* set = through ? glass[c] : direct[c];
-            if (!set)
+            const ViewSet& set = (through ? sets.glass : sets.direct)[c];
+            if (set.views.empty())
                 continue;
-            if (!data.imageSize[c].empty() && set->imageSize != data.imageSize[c])
+            if (!data.imageSize[c].empty() && set.imageSize != data.imageSize[c])
                 throw Failure(format("camera %d: direct images are %dx%d, glass images %dx%d: they must come from the same "
                                      "camera at the same resolution", c + 1, data.imageSize[c].width,
-                                     data.imageSize[c].height, set->imageSize.width, set->imageSize.height));
-            data.imageSize[c] = set->imageSize;
-            for (const View& view : set->views)
+                                     data.imageSize[c].height, set.imageSize.width, set.imageSize.height));
+            data.imageSize[c] = set.imageSize;
+            for (const View& view : set.views)
             {
                 if (view.seenCount() < MIN_POINTS)
                     continue;
