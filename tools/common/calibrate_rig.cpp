@@ -27,6 +27,16 @@ double directRms(const RigData& data, const Fit& fit, int camera)
     return std::sqrt(sum / count);
 }
 
+//! As calibrateGlassRig wants them: per camera, per view.
+std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<int>& moments, bool glass)
+{
+    std::vector<std::vector<Mat>> images(data.cameraCount);
+    for (int c = 0; c < data.cameraCount; c++)
+        for (int i : moments)
+            images[c].push_back(Mat((glass ? data.moments[i].glass : data.moments[i].direct)[c], true));
+    return images;
+}
+
 } // namespace
 
 std::vector<int> usefulMoments(const RigData& data, int flags)
@@ -48,24 +58,30 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
     Fit fit;
     fit.rig = start.clone();
     fit.moments = moments;
-    const std::vector<std::vector<Point3d>> object(moments.size(), data.objectPoints);
-    std::vector<std::vector<Point2d>> direct[2], glass[2];
-    for (int i : moments)
-        for (int c = 0; c < 2; c++)
-        {
-            direct[c].push_back(data.moments[i].direct[c]);
-            glass[c].push_back(data.moments[i].glass[c]);
-        }
-    std::vector<Ptr<RefractiveCamera>>& cameras = fit.rig.cameras;
-    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, MAX_ITERATIONS, 1e-12);
-    if (data.cameraCount == 1)
-        fit.rms = calibrateGlass(object, glass[0], direct[0], cameras[0], fit.rvecs, fit.tvecs, fit.stdDeviations,
-                                 fit.covariance, fit.perViewErrors, noArray(), flags, criteria);
-    else
-        fit.rms = stereoCalibrateGlass(object, glass[0], direct[0], glass[1], direct[1], cameras[0], cameras[1],
-                                       fit.rig.R, fit.rig.T, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance,
-                                       fit.perViewErrors, flags | GLASS_FREE_EXTRINSICS, criteria);
-    const int points = (int)residualsOf(data, fit).size();
+    const bool stereo = data.cameraCount == 2;
+    std::vector<int> windows = {0};
+    std::vector<Mat> Rs = {Mat::eye(3, 3, CV_64F)}, Ts = {Mat::zeros(3, 1, CV_64F)};
+    int rigFlags = flags & ~GLASS_SHARED_WINDOW;
+    if (stereo)
+    {
+        windows.push_back(flags & GLASS_SHARED_WINDOW ? 0 : 1);
+        Rs.push_back(Mat(fit.rig.R, true));
+        Ts.push_back(Mat(fit.rig.T, true));
+        rigFlags |= GLASS_FREE_EXTRINSICS;
+    }
+    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(moments.size(), data.objectPoints),
+                                imagesOf(data, moments, true), imagesOf(data, moments, false), fit.rig.cameras, windows, Rs, Ts,
+                                fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
+                                fit.inliers, noArray(), rigFlags, noArray(),
+                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, MAX_ITERATIONS, 1e-12));
+    if (stereo)
+    {
+        fit.rig.R = Rs[1];
+        fit.rig.T = Ts[1];
+    }
+    int points = 0;
+    for (const Mat& used : fit.inliers)
+        points += used.empty() ? 0 : countNonZero(used);
     const size_t free = freeWindowParameters(fit, flags).size() + freeRigParameters(fit).size();
     fit.freedom = 2. * points - (double)free - 6. * (double)moments.size();
     fit.sigma = fit.rms * std::sqrt(points / fit.freedom);

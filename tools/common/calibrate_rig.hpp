@@ -40,8 +40,9 @@ struct Fit
     Rig rig;
     std::vector<int> moments;                   //!< that took part, as indices into RigData::moments
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
-    cv::Mat perViewErrors;                      //!< one row each: glass 1, direct 1 (, glass 2, direct 2), px, NaN: none
     cv::Mat stdDeviations, covariance;
+    cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: glass 1, direct 1 (, glass 2, direct 2)
+    std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
     double rms = 0.;
     double freedom = 0.;                        //!< degrees of freedom: coordinates - free parameters - 6 for each board
     double sigma = 0.;                          //!< of a pixel coordinate, from the residuals
@@ -69,7 +70,7 @@ Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSou
 //! The moments that a fit with these flags learns from.
 std::vector<int> usefulMoments(const RigData& data, int flags);
 
-//! calibrateGlass or stereoCalibrateGlass on some of the moments.
+//! calibrateGlassRig on some of the moments.
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
 
 /** fitRig on all that is useful. Lenses that came from the direct images are refined with the windows where pairs tie

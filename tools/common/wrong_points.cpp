@@ -8,17 +8,6 @@ namespace tools {
 
 namespace {
 
-using Images = std::vector<std::vector<Mat>>;       // per camera, per view
-
-Images imagesOf(const RigData& data, bool glass)
-{
-    Images images(data.cameraCount);
-    for (int c = 0; c < data.cameraCount; c++)
-        for (const Moment& m : data.moments)
-            images[c].push_back(Mat(glass ? m.glass[c] : m.direct[c], true));
-    return images;
-}
-
 const char* reasonOf(uchar status)
 {
     switch (status)
@@ -57,22 +46,10 @@ std::string Dropped::sentence() const
 
 WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
 {
-    const Rig rig = start.clone();
-    const int cameras = data.cameraCount, stereo = cameras == 2 ? GLASS_FREE_EXTRINSICS : 0;
-    std::vector<int> windows = {0};
-    std::vector<Mat> Rs = {Mat::eye(3, 3, CV_64F)}, Ts = {Mat::zeros(3, 1, CV_64F)}, rvecs, tvecs, inliers;
-    if (cameras == 2)
-    {
-        windows.push_back(flags & GLASS_SHARED_WINDOW ? 0 : 1);
-        Rs.push_back(Mat(rig.R, true));
-        Ts.push_back(Mat(rig.T, true));
-    }
-    Mat status;
+    Fit fit;
     try
     {
-        calibrateGlassRig(std::vector<std::vector<Point3d>>(data.moments.size(), data.objectPoints), imagesOf(data, true),
-                          imagesOf(data, false), rig.cameras, windows, Rs, Ts, rvecs, tvecs, noArray(), noArray(), noArray(),
-                          status, inliers, noArray(), (flags & ~GLASS_SHARED_WINDOW) | GLASS_ROBUST | stereo);
+        fit = fitRig(data, start, allMoments(data), flags | GLASS_ROBUST);
     }
     catch (const cv::Exception& e)
     {
@@ -80,13 +57,14 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
     }
     WrongPoints wrong;
     for (int i = 0; i < (int)data.moments.size(); i++)
-        for (int c = 0; c < cameras; c++)
+        for (int c = 0; c < data.cameraCount; c++)
             for (bool glass : {true, false})
             {
                 Moment& m = data.moments[i];
                 const int column = 2 * c + !glass;
                 Dropped dropped{m.stem, c, glass, 0, false, ""};
-                if (clean(glass ? m.glass[c] : m.direct[c], status.at<uchar>(i, column), inliers[2 * cameras * i + column], dropped))
+                if (clean(glass ? m.glass[c] : m.direct[c], fit.imageStatus.at<uchar>(i, column),
+                          fit.inliers[fit.imageStatus.cols * i + column], dropped))
                     wrong.dropped.push_back(dropped);
             }
     return wrong;
