@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
 #include <iomanip>
+#include <map>
 #include <sstream>
 
 using namespace cv;
@@ -37,15 +38,21 @@ struct SceneOptions
     std::function<GlassWindow(int)> window;         // default: the rig's
 };
 
+std::vector<Point3d> boardPoints()
+{
+    std::vector<Point3d> points;
+    for (int row = 0; row < BOARD.height; row++)
+        for (int column = 0; column < BOARD.width; column++)
+            points.emplace_back(SQUARE * column, SQUARE * row, 0);
+    return points;
+}
+
 //! Writes direct1.vnl, glass1.vnl (, direct2.vnl, glass2.vnl) and camera1.yml, camera2.yml into a folder.
 void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsigned salt)
 {
     const PaperRig rig;
     scenes::Random random(salt);
-    std::vector<Point3d> object;
-    for (int row = 0; row < BOARD.height; row++)
-        for (int column = 0; column < BOARD.width; column++)
-            object.emplace_back(SQUARE * column, SQUARE * row, 0);
+    const std::vector<Point3d> object = boardPoints();
     std::ostringstream files[2][2];
     for (int m = 0; m < options.moments; m++)
     {
@@ -108,6 +115,26 @@ std::string lens(const TemporaryFolder& f) { return " --camera=" + f / "camera1.
 double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)) * 180 / CV_PI; }
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+//! RMS of glass1.vnl behind a window, each board where it fits best.
+double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
+{
+    const std::vector<Point3d> object = boardPoints();
+    std::map<std::string, std::vector<Point2d>> views;
+    std::ifstream file(f / "glass1.vnl");
+    std::string line, name;
+    std::getline(file, line);       // the heading
+    for (double x, y, level; file >> name >> x >> y >> level;)
+        views[name].emplace_back(x, y);
+    const PaperRig rig;
+    double squares = 0;
+    for (const auto& view : views)
+    {
+        Vec3d rvec, tvec;
+        squares += std::pow(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec), 2);
+    }
+    return std::sqrt(squares / views.size());
+}
 
 const char* const PANE = " --thickness=20 --index=1.5437";
 
@@ -191,6 +218,43 @@ TEST_CASE("refract_calib says what glass-only views cannot tell", "[calib_tool]"
     INFO(unpaired.out << unpaired.err);
     CHECK(unpaired.code == 0);
     CHECK(mentions(unpaired.out, "30 to 90 times"));
+}
+
+TEST_CASE("refract_calib tells of a second solution that fits as well, and not with pairs", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 3;
+    writeScene(f, options, 119);
+    const std::string summary = " --no-cross-validation --no-robust --summary=" + f / "summary.json";
+    const ToolResult r = runTool(inputs(f, PANE + lens(f) + summary, false));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "a second solution fits nearly as well: normal ("));
+    CHECK(mentions(r.out, "second solution: normal; RMS, px"));
+    const nlohmann::json camera = nlohmann::json::parse(readFile(f / "summary.json"))["cameras"][0];
+    const nlohmann::json second = camera["window"]["second_solution"];
+    REQUIRE(second.is_object());
+    CHECK(second["excluded"] == false);
+    CHECK(second["standard_deviations_worse"].get<double>() < 3);
+
+    // What it says is so: with the window tilted that way, the best poses leave this RMS.
+    GlassWindow window = RefractiveCamera::read(f / "calib.yml")->window();
+    const Vec3d found = window.normal;
+    for (int i = 0; i < 3; i++)
+        window.normal[i] = second["normal"][i].get<double>();
+    window.normal = normalize(window.normal);       // six digits
+    CHECK(degreesBetween(window.normal, found) > 0.5);
+    const double there = rmsThrough(f, window), here = rmsThrough(f, RefractiveCamera::read(f / "calib.yml")->window());
+    CHECK(second["rms_px"].get<double>() == Approx(there).epsilon(1e-3));
+    CHECK(camera["rms_px"]["glass"].get<double>() == Approx(here).epsilon(1e-3));
+    CHECK(there >= here);
+
+    const ToolResult paired = runTool(inputs(f, PANE + lens(f) + summary));
+    INFO(paired.out << paired.err);
+    REQUIRE(paired.code == 0);
+    CHECK_FALSE(mentions(paired.out, "second solution"));
+    CHECK(nlohmann::json::parse(readFile(f / "summary.json"))["cameras"][0]["window"]["second_solution"].is_null());
 }
 
 TEST_CASE("refract_calib warns that thickness and index are tied", "[calib_tool]")

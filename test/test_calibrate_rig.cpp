@@ -188,6 +188,40 @@ TEST_CASE("A second minimum of a window seen through only is told, with how much
     CHECK(ambiguous > 0);
 }
 
+TEST_CASE("A second minimum of a shared window is told in the frame of its first camera", "[rig_glass]")
+{
+    int found = 0;
+    for (int run = 0; run < 20; run++)
+    {
+        Random random(3700 + run);
+        CAPTURE(run, seed());
+        const RigTruth truth = makeRig(2, { 0, 0 }, 1);
+        RigScene scene = makeRigScene(truth, 2, random, 0.1);
+        scene.refracted[0][1].clear();      // so that camera 2 sees more of the window, and is searched
+        RigCall call(truth, scene, false);
+        call.run(0);
+
+        // Camera 2 alone, from the same start.
+        const RigTruth second = { { truth.cameras[1] }, { 0 }, { Matx33d::eye() }, { Vec3d() } };
+        RigScene ofSecond = scene;
+        ofSecond.refracted.erase(ofSecond.refracted.begin());
+        RigCall alone(second, ofSecond, false);
+        GlassWindow start = call.cameras[1]->window();
+        start.normal = truth.Rs[1]*Vec3d(0, 0, 1);
+        alone.cameras[0]->setWindow(start);
+        alone.run(0);
+        const double excess = call.otherMinima.at<double>(0, 3);
+        CHECK(std::isnan(call.otherMinima.at<double>(1, 3)));
+        if (std::isnan(excess))
+            continue;
+        found++;
+        CHECK(excess == Approx(alone.otherMinima.at<double>(0, 3)).epsilon(0.01));
+        CHECK(angleBetween(Vec3d(call.otherMinima.ptr<double>(0)),
+                           truth.Rs[1].t()*Vec3d(alone.otherMinima.ptr<double>(0))) < 0.01);
+    }
+    CHECK(found > 2);
+}
+
 TEST_CASE("A sealed camera: lens and normal from views through the window alone", "[rig_glass]")
 {
     for (double outerIndex : { 1., 1.333 })

@@ -72,7 +72,7 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
     fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(moments.size(), data.objectPoints),
                                 imagesOf(data, moments, true), imagesOf(data, moments, false), fit.rig.cameras, windows, Rs, Ts,
                                 fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
-                                fit.inliers, noArray(), rigFlags, noArray(),
+                                fit.inliers, fit.otherMinima, rigFlags, noArray(),
                                 TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, MAX_ITERATIONS, 1e-12));
     if (stereo)
     {

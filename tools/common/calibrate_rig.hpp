@@ -43,6 +43,7 @@ struct Fit
     cv::Mat stdDeviations, covariance;
     cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: glass 1, direct 1 (, glass 2, direct 2)
     std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
+    cv::Mat otherMinima;                        //!< a row each camera, see calibrateGlassRig
     double rms = 0.;
     double freedom = 0.;                        //!< degrees of freedom: coordinates - free parameters - 6 for each board
     double sigma = 0.;                          //!< of a pixel coordinate, from the residuals

@@ -75,6 +75,9 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
             f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
     }
+    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    if (other && !other->isExcluded())
+        f.weak.push_back(of(c, camera) + other->sentence());
     if (equalMedia(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");

@@ -43,6 +43,29 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
     return both;
 }
 
+std::string OtherMinimum::sentence() const
+{
+    return format("a second solution fits nearly as well: normal (%.4f, %.4f, %.4f), RMS %.4f px against %.4f px (%.1f standard "
+                  "deviations worse; below 3 the data do not exclude it). Take a pair, or boards at other tilts", normal[0],
+                  normal[1], normal[2], rms, fitRms, excess);
+}
+
+std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera)
+{
+    const Mat row = calibration.fit.otherMinima.row(camera);
+    const double excess = row.at<double>(3);
+    if (std::isnan(excess))
+        return std::nullopt;
+    // The search that knows of it had the images of one camera, that with most points, and their poses and the normal to fit.
+    Rms seen = rmsOf(calibration, camera, true);
+    if (calibration.options.flags & GLASS_SHARED_WINDOW)
+        for (int other = 0; other < calibration.data.cameraCount; other++)
+            if (rmsOf(calibration, other, true).points > seen.points)
+                seen = rmsOf(calibration, other, true);
+    const double freedom = 2. * seen.points - 6. * seen.views - 2.;
+    return OtherMinimum{Vec3d(row.ptr<double>()), excess, seen.px * std::sqrt(1. + excess * excess / freedom), seen.px};
+}
+
 double coverage(const RigCalibration& calibration, int camera)
 {
     const int COLUMNS = 8, ROWS = 6;

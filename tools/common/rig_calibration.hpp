@@ -3,6 +3,7 @@
 
 #include "cross_validation.hpp"
 #include "wrong_points.hpp"
+#include <optional>
 
 /* The whole of a calibration, and the numbers that describe it. */
 namespace tools {
@@ -52,6 +53,21 @@ Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment 
 
 //! Both states together.
 Rms rmsOfCamera(const RigCalibration& calibration, int camera);
+
+//! Another tilt of a window that has a minimum of its own: its images through the window alone do not exclude it.
+struct OtherMinimum
+{
+    cv::Vec3d normal;
+    double excess;              //!< root of the difference of the squared errors, in standard deviations of a pixel
+    double rms;                 //!< px, through the window, where the fit has rmsOf
+    double fitRms;
+
+    bool isExcluded() const { return excess >= 3.; }    //!< by the data, see calibrateGlassRig
+    std::string sentence() const;
+};
+
+//! The second best of a camera's window; none with pairs, and for a shared window in the first camera alone.
+std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera);
 
 //! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
 double coverage(const RigCalibration& calibration, int camera);

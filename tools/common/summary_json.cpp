@@ -49,6 +49,16 @@ Json parameters(const std::vector<FreeParameter>& list)
     return result;
 }
 
+//! null: there is none.
+Json otherMinimumJson(const RigCalibration& c, int camera)
+{
+    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    if (!other)
+        return nullptr;
+    return {{"normal", listOf(other->normal)}, {"rms_px", other->rms}, {"standard_deviations_worse", other->excess},
+            {"excluded", other->isExcluded()}};
+}
+
 Json cameraJson(const RigCalibration& c, int camera)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
@@ -64,7 +74,8 @@ Json cameraJson(const RigCalibration& c, int camera)
             {"thickness", estimates(window.thickness, std.thickness)},
             {"index", estimates(window.index, std.index)},
             {"inner_index", window.innerIndex},
-            {"outer_index", estimate(window.outerIndex, std.outerIndex)}}},
+            {"outer_index", estimate(window.outerIndex, std.outerIndex)},
+            {"second_solution", otherMinimumJson(c, camera)}}},
         {"lens", {
             {"model", c.fit.rig.cameras[camera]->lensModel()},
             {"parameters", std::vector<double>(c.fit.rig.cameras[camera]->lensParameters())},

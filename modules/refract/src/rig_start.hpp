@@ -22,7 +22,7 @@ void checkPoses(const RigViews& views, const std::vector<Pose>& poses);
 //! A second minimum of the cost of a window that only images through it tell of.
 struct OtherMinimum
 {
-    Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the camera's frame
+    Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the owner's frame
     //! Root of the difference of the squared errors, in standard deviations of a pixel.
     double excess = std::numeric_limits<double>::quiet_NaN();
 };

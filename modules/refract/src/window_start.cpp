@@ -213,6 +213,12 @@ PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std
     return direct;
 }
 
+//! Turns a direction from one camera's frame to another's.
+Matx33d rotationBetween(const Rig& rig, int from, int to)
+{
+    return Extrinsics(rig.extrinsics[to]).rotation.R*Extrinsics(rig.extrinsics[from]).rotation.R.t();
+}
+
 //! The normal that the pairs of all cameras behind the window tell best, in the owner's frame; false if none does.
 bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, int flags,
                    Vec3d& normal)
@@ -232,9 +238,7 @@ bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::
         if (rank < least)
         {
             least = rank;
-            const Matx33d fromCamera = Extrinsics(rig.extrinsics[owner]).rotation.R*
-                                       Extrinsics(rig.extrinsics[c]).rotation.R.t();
-            normal = fromCamera*estimate.normal;
+            normal = rotationBetween(rig, c, owner)*estimate.normal;
         }
     }
     return least < std::numeric_limits<double>::infinity();
@@ -275,6 +279,7 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
                                       views.object, flags, other), rig.extrinsics[best], rig.extrinsics[owner]);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
+    other.normal = rotationBetween(rig, best, owner)*other.normal;
     return window;
 }
 

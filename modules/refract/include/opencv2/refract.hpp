@@ -534,9 +534,9 @@ none or it was left out.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
 where there is no image.
 @param otherMinima Cx4 CV_64F: where a window starts from images through it alone, the normal (3) of the second best
-minimum in the frame of the camera that saw most, and how much worse it is, as the root of the difference of the squared
-errors in standard deviations of a pixel. Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN
-where no other minimum was found. The row is the first camera's of the window.
+minimum and how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel.
+Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found. The row,
+and the frame of the normal, is the first camera's of the window.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
