@@ -20,7 +20,8 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
             rows.push_back({map.pixels[i].x, map.pixels[i].y, halfWidth, halfHeight, map.total[i]});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nunset key\nset style fill solid noborder\n"
+    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.worst()
+         << "]\nunset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
     return {plot.svg(), format("typically %.3g %s, at worst %.3g %s", map.median(), c.unit.c_str(), map.worst(), c.unit.c_str())};
 }

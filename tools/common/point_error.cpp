@@ -41,6 +41,12 @@ std::vector<double> errorsOf(const Calibration& calibration, const PointsAtRange
 
 bool ErrorMap::seen() const { return worst() == worst(); }
 
+double ErrorMap::best() const
+{
+    const std::vector<double> answers = sortedAnswers(total);
+    return answers.empty() ? NOT_SEEN : answers.front();
+}
+
 double ErrorMap::worst() const { return largest(total); }
 
 double ErrorMap::worstOfPixels() const { return largest(ofPixels); }

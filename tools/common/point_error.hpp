@@ -18,7 +18,8 @@ struct ErrorMap
     std::vector<double> ofPixels;       //!< the part of the pixel noise
 
     bool seen() const;                  //!< anything at all
-    double worst() const;               //!< NaN if nothing is seen
+    double best() const;                //!< NaN if nothing is seen
+    double worst() const;
     double median() const;
     double worstOfPixels() const;
 };

@@ -121,8 +121,8 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
     add(drawResidualVectors(c, camera), "Residuals through the window",
         "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
     add(drawResidualMap(c, camera), "Mean residual over the image",
-        "Noise averages out, so all cells should be blue; red cells, where residuals all point the same way, are a systematic "
-        "error. Cells with few corners are left white");
+        "Noise averages out, so most cells should be blue or green; red cells next to each other, where residuals all point the "
+        "same way, are a systematic error. Cells with few corners are left white");
     add(drawResidualHistogram(c, camera), "Residuals against the normal law",
         "The bars should follow the curve; long tails are single bad corners");
     return list;
@@ -152,7 +152,7 @@ void setParameters(data& page, const Fit& fit, int flags)
         {
             const double r = fit.covariance.at<double>(p.column, q.column) / (p.std * q.std);
             data cell;
-            cell.set("value", format("%.2f", r));
+            cell.set("value", format("%.2f", std::round(100. * r) / 100. + 0.));    // no minus before 0.00
             cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6 * std::abs(r)));
             cells << cell;
         }

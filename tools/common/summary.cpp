@@ -158,8 +158,8 @@ std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
     if (!std::isnan(h.transferPx))
         add("  board where its direct image is, px", px(h.transferPx), "-");
     if (!std::isnan(h.lengthRms))
-        add("lengths between corners, RMS, " + c.unit, format("%.4g", h.lengthRms),
-            std::isnan(h.pinholeLengthRms) ? "-" : format("%.4g", h.pinholeLengthRms));
+        add("lengths between corners, RMS, " + c.unit, format("%.3g", h.lengthRms),
+            std::isnan(h.pinholeLengthRms) ? "-" : format("%.3g", h.pinholeLengthRms));
     return rows;
 }
 
