@@ -82,45 +82,46 @@ Options parseOptions(Command& command)
     std::vector<std::string> maxErrors, notes;
     CLI::App& app = command.app;
     o.target.addTo(app, true);
-    app.add_option("--direct", o.images.direct[0], "Images without the window: glob or corners.vnl");
-    app.add_option("--glass", o.images.glass[0], "Images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct2", o.images.direct[1], "The same of camera 2");
-    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "The same of camera 2");
-    app.add_option("--camera", o.camera[0], "Lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
-    app.add_option("--camera2", o.camera[1], "Lens of camera 2");
-    app.add_option("--lens", o.lens, "Lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
+    app.add_option("--direct", o.images.direct[0], "images without the window: glob or corners.vnl");
+    app.add_option("--glass", o.images.glass[0], "images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct2", o.images.direct[1], "the same of camera 2");
+    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "the same of camera 2");
+    app.add_option("--camera", o.camera[0], "lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
+    app.add_option("--camera2", o.camera[1], "lens of camera 2");
+    app.add_option("--lens", o.lens, "lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
         ->capture_default_str();
-    app.add_option("--thickness", o.thickness, "Thickness of each layer, from the camera outwards: T[,T...]");
-    app.add_option("--index", o.index, "Index of refraction of each layer: N[,N...]");
-    app.add_option("--inner-index", o.innerIndex, "Index of the medium round the camera")->capture_default_str();
-    app.add_option("--outer-index", o.outerIndex, "Index of the scene's medium (1.333 water)")->capture_default_str();
-    CLI::Option* distance = app.add_option("--distance", o.distance, "From the camera's centre of projection to the window; "
+    app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
+    app.add_option("--index", o.index, "index of refraction of each layer: N[,N...]");
+    app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera")->capture_default_str();
+    app.add_option("--outer-index", o.outerIndex, "index of the scene's medium (1.333 water)")->capture_default_str();
+    CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
         "where it is needed and not given, it is estimated");
-    app.add_option("--free", o.free, "What to estimate beside the normal")->delimiter(',')
+    app.add_option("--free", o.free, "what to estimate beside the normal")->delimiter(',')
         ->check(CLI::IsMember(namesOf(FREE)));
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "Equal names are no pairs (a hand-held board)");
-    app.add_flag("--partial", o.target.partial, "A chessboard that may be partly out of view, or is cut at its edge: any piece "
+    CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
+    app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
         "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
         ->needs(unpaired)->excludes(glass2);
-    app.add_flag("--shared-window", o.sharedWindow, "Both cameras look through the same pane")->needs(glass2);
-    app.add_option("--out", o.out, "The calibration to write (.yml, .xml, .json)")->required();
+    app.add_flag("--shared-window", o.sharedWindow, "both cameras look through the same pane")->needs(glass2);
+    app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--summary", o.summary, "JSON file with everything that the table and the report say");
     app.add_option("--report", o.report, "HTML page to judge the calibration by, and to keep (needs gnuplot)");
-    app.add_option("--pinhole-out", o.pinholeOut, "Also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
+    app.add_option("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
         "the images through the window, to compare with (refract_measure --compare-with)");
-    app.add_option("--max-rms", o.limits.rms, "Limit: RMS over all corners, px")->check(moreThanZero());
-    app.add_option("--max-normal-std", o.limits.normalStdDeg, "Limit: uncertainty of the normal (larger principal one), "
+    app.add_option("--max-rms", o.limits.rms, "limit: RMS over all corners, px")->check(moreThanZero());
+    app.add_option("--max-normal-std", o.limits.normalStdDeg, "limit: uncertainty of the normal (larger principal one), "
         "degrees")->check(moreThanZero());
-    app.add_option("--max-error-at", maxErrors, "Limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
+    app.add_option("--max-error-at", maxErrors, "limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
         "3-D) of the worst point of the image at z = RANGE from camera 1")->allow_extra_args(false);
-    app.add_flag("!--no-cross-validation", o.crossValidation, "Do not calibrate again on parts of the views");
-    app.add_flag("!--no-robust", o.robust, "Use all points as they are; by default wrong points and images (dirt, wrong detections, "
-        "a board that moved within its pair) are left out, and named");
-    app.add_option("--unit", o.unit, "Unit of --square and all lengths")->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+    app.add_flag_callback("--no-cross-validation", [&o] { o.crossValidation = false; },
+        "do not calibrate again on parts of the views");
+    app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "use all points as they are; by default wrong points and "
+        "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
+    app.add_option("--unit", o.unit, "unit of --square and all lengths")->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
         ->capture_default_str();
-    app.add_option("--serial", o.label.serial, "Serial number of the window, carried into all outputs");
-    app.add_option("--note", notes, "Repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
+    app.add_option("--serial", o.label.serial, "serial number of the window, carried into all outputs");
+    app.add_option("--note", notes, "repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
     command.parse();
     for (const std::string& text : maxErrors)
         o.limits.errors.push_back(parseErrorLimit(text));

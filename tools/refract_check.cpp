@@ -40,17 +40,17 @@ struct Options
 
 void addOptions(CLI::App& app, Options& o)
 {
-    app.add_option("calib.yml", o.calibration, "What refract_calib wrote")->required();
+    app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
     o.target.addTo(app, true);
-    app.add_option("--glass", o.images.glass[0], "New images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct", o.images.direct[0], "New images without the window");
-    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "The same of camera 2");
-    app.add_option("--direct2", o.images.direct[1], "The same of camera 2")->needs(glass2);
+    app.add_option("--glass", o.images.glass[0], "new images through the window: glob or corners.vnl")->required();
+    app.add_option("--direct", o.images.direct[0], "new images without the window");
+    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "the same of camera 2");
+    app.add_option("--direct2", o.images.direct[1], "the same of camera 2")->needs(glass2);
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "Probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
+    app.add_option("--false-alarm", o.falseAlarm, "probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
         ->capture_default_str();
-    app.add_option("--detect", o.detect, "Tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
-    app.add_option("--pixel-sigma", o.sigma, "Standard deviation of a pixel coordinate (default: that of the calibration's "
+    app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
+    app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
         "residuals)")->check(moreThanZero());
     app.add_option("--summary", o.summary, "JSON file with the result");
 }

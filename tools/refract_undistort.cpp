@@ -78,8 +78,13 @@ public:
         const cv::Mat image = readImage(path);
         requireSize(image, path, camera_->imageSize());
         if (map1_.size() != image.size())
+        {
             cv::refract::initRefractiveUndistortRectifyMap(camera_, depth_, cv::noArray(), cv::noArray(), image.size(),
                                                            CV_32FC1, map1_, map2_);
+            if (cv::countNonZero(map1_ >= 0.f) == 0)
+                throw Failure("the camera sees nothing of that --depth or --plane: it must lie beyond the window, in the unit "
+                              "of the calibration, and in front of the camera");
+        }
         cv::Mat corrected;
         cv::remap(image, corrected, map1_, map2_, cv::INTER_CUBIC);
         return corrected;
@@ -111,16 +116,17 @@ int main(int argc, char** argv)
         if (options.camera > (int)calibration.cameras.size())
             throw Failure("--camera=2: '" + options.calibration + "' has one camera");
         const auto images = listImages(options);
-        makeFolder(options.folder);
         Corrector corrector(calibration.cameras[options.camera - 1].camera, depth);
         Progress progress("correcting images", (int)images.size(), command.quiet());
         for (const auto& image : images)
         {
-            writeImage(image.second, corrector.correct(image.first));
+            const cv::Mat corrected = corrector.correct(image.first);
+            makeFolder(options.folder);     // now that there is something to write
+            writeImage(image.second, corrected);
             progress.step();
         }
         if (!command.quiet())
-            std::cout << images.size() << " images written to " << options.folder << std::endl;
+            std::cout << images.size() << (images.size() == 1 ? " image" : " images") << " written to " << options.folder << std::endl;
         return DONE;
     });
 }

@@ -198,6 +198,8 @@ Scene readScene(const std::string& filename)
         if (c.camera->imageSize().empty())
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
     const FileStorage fs(filename, FileStorage::READ);
+    if (fs["target"].empty())
+        throw Failure("'" + filename + "' has no 'target' and so says nothing to render (see refract_simulate --help)");
     const Keys target(fs["target"], "target"), top(fs.root(), filename);
     scene.target.pattern = target.text("pattern", "chessboard");
     scene.target.size = target.text("size", "");
