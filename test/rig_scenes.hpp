@@ -3,7 +3,6 @@
 #define REFRACT_TEST_RIG_SCENES_HPP
 
 #include "calibration_scenes.hpp"
-#include <functional>
 
 namespace scenes {
 

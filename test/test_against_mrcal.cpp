@@ -8,7 +8,6 @@ extern "C" {        // mrcal 2.2 does not say so itself
 }
 
 #include <fstream>
-#include <memory>
 #include <opencv2/calib3d.hpp>
 
 using namespace cv;

@@ -27,7 +27,6 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "report.hpp"
 #include "summary.hpp"
 #include "summary_json.hpp"
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>

@@ -5,7 +5,6 @@
 #include "progress.hpp"
 
 #include <opencv2/imgproc.hpp>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>

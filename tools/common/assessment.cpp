@@ -9,13 +9,13 @@ namespace {
 
 const int COLUMNS = 25;         // of the maps
 
-} // namespace
-
 double millimetresIn(const std::string& unit)
 {
     static const std::map<std::string, double> MILLIMETRES = {{"mm", 1.}, {"cm", 10.}, {"m", 1000.}, {"inch", 25.4}};
     return MILLIMETRES.at(unit);
 }
+
+} // namespace
 
 Assessment assess(const RigCalibration& c, bool quiet)
 {

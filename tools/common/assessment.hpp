@@ -18,9 +18,6 @@ struct Assessment
 
 Assessment assess(const RigCalibration& calibration, bool quiet);
 
-//! Millimetres in a unit of length: "mm", "cm", "m", "inch".
-double millimetresIn(const std::string& unit);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_ASSESSMENT_HPP

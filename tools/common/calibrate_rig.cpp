@@ -1,6 +1,5 @@
 #include "calibrate_rig.hpp"
 #include <opencv2/calib3d.hpp>
-#include <algorithm>
 #include <cmath>
 
 using namespace cv;
@@ -27,18 +26,7 @@ double directRms(const RigData& data, const Fit& fit, int camera)
     return std::sqrt(sum / count);
 }
 
-//! As calibrateGlassRig wants them: per camera, per view.
-std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<int>& moments, bool glass)
-{
-    std::vector<std::vector<Mat>> images(data.cameraCount);
-    for (int c = 0; c < data.cameraCount; c++)
-        for (int i : moments)
-            images[c].push_back(Mat((glass ? data.moments[i].glass : data.moments[i].direct)[c], true));
-    return images;
-}
-
-} // namespace
-
+//! The moments that a fit with these flags learns from.
 std::vector<int> usefulMoments(const RigData& data, int flags)
 {
     std::vector<int> useful;
@@ -52,6 +40,18 @@ std::vector<int> usefulMoments(const RigData& data, int flags)
     }
     return useful;
 }
+
+//! As calibrateGlassRig wants them: per camera, per view.
+std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<int>& moments, bool glass)
+{
+    std::vector<std::vector<Mat>> images(data.cameraCount);
+    for (int c = 0; c < data.cameraCount; c++)
+        for (int i : moments)
+            images[c].push_back(Mat((glass ? data.moments[i].glass : data.moments[i].direct)[c], true));
+    return images;
+}
+
+} // namespace
 
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags)
 {

@@ -68,9 +68,6 @@ cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<cv::Po
 //! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
 Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
 
-//! The moments that a fit with these flags learns from.
-std::vector<int> usefulMoments(const RigData& data, int flags);
-
 //! calibrateGlassRig on some of the moments.
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
 

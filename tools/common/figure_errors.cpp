@@ -1,7 +1,6 @@
 #include "figures.hpp"
 #include "plot.hpp"
 #include "table.hpp"
-#include <cmath>
 
 /* How well points can be measured: over the image at one range, and over the range. */
 

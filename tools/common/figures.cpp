@@ -1,7 +1,6 @@
 #include "figures.hpp"
 #include "plot.hpp"
 #include "table.hpp"
-#include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
 

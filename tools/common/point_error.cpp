@@ -1,7 +1,6 @@
 #include "point_error.hpp"
 #include "measurement.hpp"
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 using namespace cv;

@@ -1,7 +1,6 @@
 #include "rig_checks.hpp"
 #include "pinhole_rig.hpp"
 #include "progress.hpp"
-#include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
 

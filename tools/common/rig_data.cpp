@@ -10,16 +10,6 @@ namespace tools {
 
 static const int MIN_POINTS = 4;        // of a view that is to have a pose
 
-int RigData::countGlass(int camera) const
-{
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.hasGlass(camera); });
-}
-
-int RigData::countDirect(int camera) const
-{
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.hasDirect(camera); });
-}
-
 int RigData::countPairs(int camera) const
 {
     return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.isPair(camera); });

@@ -43,8 +43,6 @@ struct RigData
     std::vector<Moment> moments;
     cv::Size imageSize[2];
 
-    int countGlass(int camera) const;
-    int countDirect(int camera) const;
     int countPairs(int camera) const;
 };
 

@@ -1,5 +1,6 @@
 #include "tolerance.hpp"
 #include "measurement.hpp"
+#include "point_error.hpp"
 #include "progress.hpp"
 #include "table.hpp"
 #include "wedge.hpp"

@@ -1,7 +1,6 @@
 #ifndef REFRACT_TOOLS_TOLERANCE_HPP
 #define REFRACT_TOOLS_TOLERANCE_HPP
 
-#include "point_error.hpp"
 #include "rig_calibration.hpp"
 
 /* What a wrong given value does to a measurement: the rig is calibrated again with the same images and the wrong value (all

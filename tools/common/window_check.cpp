@@ -1,6 +1,6 @@
 #include "window_check.hpp"
 #include "f_distribution.hpp"
-#include <opencv2/calib3d.hpp>
+#include "view_derivatives.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

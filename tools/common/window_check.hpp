@@ -1,8 +1,7 @@
 #ifndef REFRACT_TOOLS_WINDOW_CHECK_HPP
 #define REFRACT_TOOLS_WINDOW_CHECK_HPP
 
-#include "rig_data.hpp"
-#include "view_derivatives.hpp"
+#include "calibrate_rig.hpp"
 
 /* Has a window moved since the calibration? From a few new images of the target:
 

@@ -1,5 +1,4 @@
 #include "wrong_points.hpp"
-#include <algorithm>
 
 using namespace cv;
 using namespace cv::refract;

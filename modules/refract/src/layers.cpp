@@ -191,16 +191,4 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
     }
 }
 
-uchar Layers::solveInJacobian(const Vec3d& X, Vec3d& d, double* dX, double* dWindow) const
-{
-    uchar status = REFRACT_OK;
-    double ratio = 0;
-    solveIn(1, &X[0], &X[1], &X[2], NULL, &d[0], &d[1], &d[2], &status, &ratio);
-    Matx33d identity = Matx33d::eye();
-    const Columns byDirection = { identity.val, 3, 1 }, byPoint = { dX, 3, 1 }, byWindow = { dWindow, parameterCount(), 1 };
-    if (status == REFRACT_OK)
-        chain(3, 1, &X[0], &X[1], &X[2], &ratio, byDirection, byPoint, byWindow);
-    return status;
-}
-
 }} // namespace

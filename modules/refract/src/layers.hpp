@@ -47,12 +47,6 @@ public:
     void chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
                const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const;
 
-    /** solveIn for one finite point with derivatives of the direction.
-    @param dDirection_dX 3x3 row-major
-    @param dDirection_dWindow 3 x parameterCount() row-major, by the *unnormalised* normal (orthogonal to n) */
-    uchar solveInJacobian(const Vec3d& point, Vec3d& direction,
-                          double* dDirection_dX, double* dDirection_dWindow) const;
-
     //! True where the homogeneous point lies beyond the last surface (always true without window).
     bool isBeyond(double x, double y, double z, double w = 1.) const
     { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*total_; }

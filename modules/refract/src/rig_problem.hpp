@@ -75,9 +75,6 @@ public:
     RigProblem(const RigProblem&) = delete;
     RigProblem& operator=(const RigProblem&) = delete;
 
-    //! Empty, or which point has no image at the start.
-    String startFault() const;
-
     /** False if criteria.maxCount iterations did not reach the change that the criteria ask for (EPS). Throws StsBadArg that
     names a point without image at the start. */
     bool solve(const TermCriteria& criteria);
@@ -147,6 +144,7 @@ private:
 
     //! A ceres::TerminationType. iterations: in the limit, out how many were made.
     int solveInside(double change, int& iterations, double& radius);
+    String startFault() const;      //!< empty, or which point has no image at the start
     bool isOnBound() const;
     bool holdAtBounds();            //!< true if that changes what is held
 
