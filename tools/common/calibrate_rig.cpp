@@ -11,7 +11,7 @@ namespace {
 
 const int MIN_PAIRS = 3;        // to refine a lens together with the window
 const double SPOILT = 1.2;      // RMS of the direct images after / before the refinement, where it has failed
-const int MAX_ITERATIONS = 1000;
+const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
 
 double directRms(const RigData& data, const Fit& fit, int camera)
 {
@@ -73,7 +73,8 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
                                 imagesOf(data, moments, true), imagesOf(data, moments, false), fit.rig.cameras, windows, Rs, Ts,
                                 fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
                                 fit.inliers, fit.otherMinima, rigFlags, noArray(),
-                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, MAX_ITERATIONS, 1e-12));
+                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS,
+                                             flags & GLASS_ROBUST ? MAX_ROBUST_ITERATIONS : MAX_ITERATIONS, 1e-12));
     if (stereo)
     {
         fit.rig.R = Rs[1];
