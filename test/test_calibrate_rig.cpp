@@ -196,8 +196,8 @@ TEST_CASE("A second minimum of a shared window is told in the frame of its first
         Random random(3700 + run);
         CAPTURE(run, seed());
         const RigTruth truth = makeRig(2, { 0, 0 }, 1);
-        RigScene scene = makeRigScene(truth, 2, random, 0.1);
-        scene.refracted[0][1].clear();      // so that camera 2 sees more of the window, and is searched
+        RigScene scene = makeRigScene(truth, 1, random, 0.1);
+        scene.refracted[0][0][0] = Point2d(NaN, NaN);       // so that camera 2 sees more of the window, and is searched
         RigCall call(truth, scene, false);
         call.run(0);
 
