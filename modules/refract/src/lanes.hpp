@@ -9,56 +9,52 @@
 #include <cstring>
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__GNUC__) && defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 /* Lanes: one vector register full of doubles. Arithmetic and comparisons are the compiler's own vector types, as wide as
 the instruction set that this file is compiled for; only what they lack (square roots, the test of all lanes) is named
-here.
+here. Where neither the compiler nor the processor is one of these, a lane is a plain double.
 
 Everything has internal linkage: the same names are compiled several times for different instruction sets. */
 
 namespace {
 
 #if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
-enum { LANES = 8 };
+typedef double Lanes __attribute__((vector_size(64)));
+inline Lanes sqrt(Lanes a) { return (Lanes)_mm512_maskz_sqrt_pd(255, (__m512d)a); }
 #elif defined(__GNUC__) && defined(__AVX2__)
-enum { LANES = 4 };
-#elif defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
-enum { LANES = 2 };
-#else
-enum { LANES = 1 };
-#endif
-
-#if defined(__GNUC__)
-typedef double Lanes __attribute__((vector_size(LANES*sizeof(double))));
-typedef decltype(Lanes{} < Lanes{}) Mask;       //!< all bits of a lane, or none
-
-inline Lanes all(double v) { return Lanes{} + v; }
+typedef double Lanes __attribute__((vector_size(32)));
+inline Lanes sqrt(Lanes a) { return (Lanes)_mm256_sqrt_pd((__m256d)a); }
+#elif defined(__GNUC__) && defined(__SSE2__)
+typedef double Lanes __attribute__((vector_size(16)));
+inline Lanes sqrt(Lanes a) { return (Lanes)_mm_sqrt_pd((__m128d)a); }
+#elif defined(__GNUC__) && defined(__aarch64__)
+typedef double Lanes __attribute__((vector_size(16)));
+inline Lanes sqrt(Lanes a) { return (Lanes)vsqrtq_f64((float64x2_t)a); }
 #else
 typedef double Lanes;
-typedef bool Mask;
-
-inline Lanes all(double v) { return v; }
+using std::sqrt;
 #endif
 
-inline Lanes select(Mask m, Lanes a, Lanes b) { return m ? a : b; }
+enum { LANES = sizeof(Lanes)/sizeof(double) };
+typedef decltype(Lanes{} < Lanes{}) Mask;       //!< all bits of a lane, or none
 
 #if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm512_maskz_sqrt_pd(255, (__m512d)a); }
 inline bool any(Mask m) { return _mm512_movepi64_mask((__m512i)m) != 0; }
 #elif defined(__GNUC__) && defined(__AVX2__)
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm256_sqrt_pd((__m256d)a); }
 inline bool any(Mask m) { return _mm256_movemask_pd((__m256d)m) != 0; }
 #elif defined(__GNUC__) && defined(__SSE2__)
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm_sqrt_pd((__m128d)a); }
 inline bool any(Mask m) { return _mm_movemask_pd((__m128d)m) != 0; }
 #elif defined(__GNUC__) && defined(__aarch64__)
-inline Lanes sqrt(Lanes a) { return Lanes{ std::sqrt(a[0]), std::sqrt(a[1]) }; }
-inline bool any(Mask m) { return (m[0] | m[1]) != 0; }
+inline bool any(Mask m) { return vmaxvq_u32((uint32x4_t)m) != 0; }
 #else
-inline Lanes sqrt(Lanes a) { return std::sqrt(a); }
 inline bool any(Mask m) { return m; }
 #endif
+
+inline Lanes all(double v) { return Lanes{} + v; }
+inline Lanes select(Mask m, Lanes a, Lanes b) { return m ? a : b; }
 
 //! 1/sqrt(a) to about two units in the last place, for normal a > 0; NaN for 0 and infinity is possible.
 #if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
