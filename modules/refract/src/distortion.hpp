@@ -44,23 +44,23 @@ struct Radial
     T s, F, inverseD;
 };
 
-/** The distorted point. As x F + 2 p1 x y + p2 (s + 2 x^2) = x G + p2 s and the same for y, with
-G = F + 2 p1 y + 2 p2 x, one factor serves both coordinates, and both diagonal elements of the Jacobian.
-@return G */
+/** What of the distortion is not radial, s = x^2 + y^2, when G = 2 p1 y + 2 p2 x; with the radial factor added to G, all of it:
+x F + 2 p1 x y + p2 (s + 2 x^2) = x G + p2 s, and the same for y. */
 template<typename T>
-inline T displace(const OpenCVModel& m, const Radial<T>& radial, T x, T y, T& xd, T& yd)
+inline void displace(const OpenCVModel& m, T s, T G, T x, T y, T& dx, T& dy)
 {
     const double* k = m.k;
-    const T s = radial.s, G = radial.F + (2*k[P1])*y + (2*k[P2])*x;
-    xd = x*G + k[P2]*s;
-    yd = y*G + k[P1]*s;
+    dx = x*G + k[P2]*s;
+    dy = y*G + k[P1]*s;
     if (m.prism)
     {
-        xd += s*(k[S1] + s*k[S2]);
-        yd += s*(k[S3] + s*k[S4]);
+        dx += s*(k[S1] + s*k[S2]);
+        dy += s*(k[S3] + s*k[S4]);
     }
-    return G;
 }
+
+template<typename T>
+inline T tangential(const OpenCVModel& m, T x, T y) { return (2*m.k[P1])*y + (2*m.k[P2])*x; }
 
 template<typename T>
 inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
@@ -69,7 +69,9 @@ inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
     const Radial<T> radial(m, x*x + y*y);
     const T F2 = radial.slope(m), ax = F2*x, ay = F2*y;
     Distorted<T> d;
-    const T G = displace(m, radial, x, y, d.x, d.y);
+    // G serves both coordinates, and both diagonal elements of the Jacobian.
+    const T G = radial.F + tangential(m, x, y);
+    displace(m, radial.s, G, x, y, d.x, d.y);
     d.xx = G + x*(ax + 4*k[P2]);
     d.yy = G + y*(ay + 4*k[P1]);
     d.xy = d.yx = ax*y + (2*k[P1])*x + (2*k[P2])*y;
@@ -82,6 +84,29 @@ inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
         d.yy += y*prismY;
     }
     return d;
+}
+
+//! The point, were (dx, dy) all of the distortion that is not radial: by the polynomial of the inverse.
+template<typename T>
+inline void guess(const OpenCVModel& m, T xd, T yd, T dx, T dy, T& x, T& y)
+{
+    const T xr = xd - dx, yr = yd - dy, s = xr*xr + yr*yr;
+    T series = m.inverse[TERMS - 1] + T();
+    for (int k = TERMS - 2; k >= 0; --k)
+        series = series*s + m.inverse[k];
+    series = 1 + s*series;
+    const T scale = (series > 0.5) & (series < 2) ? series : 1 + T();
+    x = xr*scale;
+    y = yr*scale;
+}
+
+//! A better guess: what is not radial is small and changes slowly, so it is taken as it is at the last guess.
+template<typename T>
+inline void shift(const OpenCVModel& m, T xd, T yd, T& x, T& y)
+{
+    T dx, dy;
+    displace(m, x*x + y*y, tangential(m, x, y), x, y, dx, dy);
+    guess(m, xd, yd, dx, dy, x, y);
 }
 
 //! (x, y, 1) through a homography: dehomogenised, and the denominator.

@@ -70,6 +70,8 @@ struct OpenCVModel
     double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
     int given;                          //!< how many coefficients are parameters
     double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
+    int shifts;                 //!< how often that start is shifted for what is not radial
+    double sNear, near2;        //!< where r^2 and the square of a Newton step are smaller, the step's error is nothing
 };
 
 //! cv::fisheye's model.
@@ -94,12 +96,17 @@ struct Kernels
 
     //! In place: X -> R X + t, R row-major.
     void (*transform)(const double* R, const double* t, int n, double* x, double* y, double* z);
+    //! (x, y, z) = factor v
+    void (*multiples)(const double* v, int n, const double* factor, double* x, double* y, double* z);
     //! X -> (x, y) = H X, dehomogenised; no answer unless axis.X > 0.
     bool (*pinhole)(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
                     double* u, double* v);
     //! See meetPlane; plane (a, b, c) and d of each lane.
     bool (*meetPlane)(const Stack& stack, const double* abc, const double* planeD, int n, const double* tau,
                       const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu);
+
+    //! Of each of n pixels between others, n + 2 in all: the square root of its distance from its neighbours' chord.
+    void (*chordRoots)(int n, const double* u, const double* v, double* roots);
 
     // See Layers and Lens.
     bool (*traceOut)(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,

@@ -37,13 +37,13 @@ bool loadPoints(const void* points, bool isFloat, int n, double* x, double* y, d
     else
         deinterleave((const double*)points, n, x, y, z);
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        Lanes sum = load(x, i, n) + load(y, i, n);
+        Lanes sum = load(x, at) + load(y, at);
         if (z)
-            sum += load(z, i, n);
+            sum += load(z, at);
         answers.where(sum - sum == 0, sum);
-    }
+    });
     return answers.complete();
 }
 
@@ -73,30 +73,58 @@ void storePoints(void* points, bool isFloat, int n, const double* x, const doubl
         interleave((double*)points, n, x, y, z);
 }
 
-void transform(const double* R, const double* t, int n, double* x, double* y, double* z)
+void transform(const double* rotation, const double* translation, int n, double* x, double* y, double* z)
 {
-    for (int i = 0; i < n; i += LANES)
+    const Constants<9> R(rotation);
+    const Constants<3> t(translation);
+    eachRegister(n, [&](auto at)
     {
-        const Lanes a = load(x, i, n), b = load(y, i, n), c = load(z, i, n);
-        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, i, n);
-        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, i, n);
-        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, i, n);
-    }
+        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
+        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, at);
+        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, at);
+        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, at);
+    });
 }
 
-bool pinhole(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
+void multiples(const double* vector, int n, const double* factor, double* x, double* y, double* z)
+{
+    const Constants<3> v(vector);
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes f = load(factor, at);
+        store(f*v[0], x, at);
+        store(f*v[1], y, at);
+        store(f*v[2], z, at);
+    });
+}
+
+bool pinhole(const double* matrix, const double* direction, int n, const double* x, const double* y, const double* z,
              double* u, double* v)
 {
+    const Constants<9> H(matrix);
+    const Constants<3> axis(direction);
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes a = load(x, i, n), b = load(y, i, n), c = load(z, i, n);
+        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
         const Lanes inverse = 1/(H[6]*a + H[7]*b + H[8]*c);
         const Mask good = axis[0]*a + axis[1]*b + axis[2]*c > 0;
-        store(answers.where(good, (H[0]*a + H[1]*b + H[2]*c)*inverse), u, i, n);
-        store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, i, n);
-    }
+        store(answers.where(good, (H[0]*a + H[1]*b + H[2]*c)*inverse), u, at);
+        store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, at);
+    });
     return answers.complete();
+}
+
+void chordRoots(int n, const double* u, const double* v, double* roots)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 2, at), vB = load(v + 2, at);
+        const Lanes chordU = uB - uA, chordV = vB - vA, aU = load(u + 1, at) - uA, aV = load(v + 1, at) - vA;
+        const Lanes length2 = larger(chordU*chordU + chordV*chordV, all(1e-300));
+        const Lanes distance = absolute(aU*chordV - aV*chordU)*inverseSqrt(length2);
+        store(select(distance - distance == 0, sqrt(distance), all(0)), roots, at);
+    });
 }
 
 void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
@@ -109,13 +137,13 @@ void interpolate(const double* values, const double* row, const double* columns,
             sum += row[r]*load(values + NODES*r, c, NODES);
         store(sum, along, c, NODES);
     }
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
         Lanes sum = all(0);
         for (int c = 0; c < NODES; ++c)
-            sum += along[c]*load(columns + n*c, i, n);
-        store(sum, out, i, n);
-    }
+            sum += along[c]*load(columns + n*c, at);
+        store(sum, out, at);
+    });
 }
 
 }}} // namespace

@@ -13,16 +13,18 @@
 
 namespace cv { namespace refract { namespace {
 
-inline void storeAt(Lanes a, const Columns& columns, int row, int column, int begin, int n)
+template<typename At>
+inline void storeAt(Lanes a, const Columns& columns, int row, int column, At at)
 {
-    store(a, columns.at(row, column), begin, n);
+    store(a, columns.at(row, column), at);
 }
 
 struct Vector { Lanes x, y, z; };
 
-inline Vector loadRow(const Columns& columns, int row, int begin, int n)
+template<typename At>
+inline Vector loadRow(const Columns& columns, int row, At at)
 {
-    return { load(columns.at(row, 0), begin, n), load(columns.at(row, 1), begin, n), load(columns.at(row, 2), begin, n) };
+    return { load(columns.at(row, 0), at), load(columns.at(row, 1), at), load(columns.at(row, 2), at) };
 }
 inline Lanes dot(const Vector& a, const Vector& b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
 inline Lanes dot(const double* a, const Vector& b) { return a[0]*b.x + a[1]*b.y + a[2]*b.z; }
@@ -83,42 +85,42 @@ void chainWindow(const Stack& s, int rows, int n, const double* px, const double
                  const double* pRatio, const Columns& byDirection, const Columns& byPoint, const Columns& byWindow)
 {
     const double* normal = s.normal;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Vector X = { load(px, i, n), load(py, i, n), load(pz, i, n) };
+        const Vector X = { load(px, at), load(py, at), load(pz, at) };
         const Lanes U = dot(normal, X);
         const Vector r = { X.x - U*normal[0], X.y - U*normal[1], X.z - U*normal[2] };
-        const PathDerivative d(s, U, dot(r, r), load(pRatio, i, n));
+        const PathDerivative d(s, U, dot(r, r), load(pRatio, at));
         for (int row = 0; row < rows; ++row)
         {
-            const Vector D = loadRow(byDirection, row, i, n);
+            const Vector D = loadRow(byDirection, row, at);
             const Lanes f = dot(D, r), g = d.byU*f - d.kappa*dot(normal, D), h = d.bend*f;
-            storeAt(d.kappa*D.x + g*normal[0] + h*r.x, byPoint, row, 0, i, n);
-            storeAt(d.kappa*D.y + g*normal[1] + h*r.y, byPoint, row, 1, i, n);
-            storeAt(d.kappa*D.z + g*normal[2] + h*r.z, byPoint, row, 2, i, n);
+            storeAt(d.kappa*D.x + g*normal[0] + h*r.x, byPoint, row, 0, at);
+            storeAt(d.kappa*D.y + g*normal[1] + h*r.y, byPoint, row, 1, at);
+            storeAt(d.kappa*D.z + g*normal[2] + h*r.z, byPoint, row, 2, at);
             if (!byWindow.data)
                 continue;
             const Lanes side = 1 - d.kappa*U, back = U*h;
             const Vector m = { side*D.x + g*X.x - back*r.x, side*D.y + g*X.y - back*r.y, side*D.z + g*X.z - back*r.z };
             const Lanes along = dot(normal, m);
-            storeAt(m.x - along*normal[0], byWindow, row, 0, i, n);
-            storeAt(m.y - along*normal[1], byWindow, row, 1, i, n);
-            storeAt(m.z - along*normal[2], byWindow, row, 2, i, n);
-            mediaDerivatives(s, d, [&](int column, Lanes dKappa) { storeAt(f*dKappa, byWindow, row, column, i, n); });
+            storeAt(m.x - along*normal[0], byWindow, row, 0, at);
+            storeAt(m.y - along*normal[1], byWindow, row, 1, at);
+            storeAt(m.z - along*normal[2], byWindow, row, 2, at);
+            mediaDerivatives(s, d, [&](int column, Lanes dKappa) { storeAt(f*dKappa, byWindow, row, column, at); });
         }
-    }
+    });
 }
 
 void chainLinear(const double* A, int n, const double* px, const double* py, const double* pz, const Columns& byPoint,
                  const Columns& out)
 {
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Vector X = { load(px, i, n), load(py, i, n), load(pz, i, n) };
+        const Vector X = { load(px, at), load(py, at), load(pz, at) };
         const Vector moved = { dot(A, X), dot(A + 3, X), dot(A + 6, X) };
         for (int row = 0; row < 2; ++row)
-            storeAt(dot(loadRow(byPoint, row, i, n), moved), out, row, 0, i, n);
-    }
+            storeAt(dot(loadRow(byPoint, row, at), moved), out, row, 0, at);
+    });
 }
 
 inline Vector cross(const Vector& a, const Vector& b)
@@ -129,18 +131,18 @@ inline Vector cross(const Vector& a, const Vector& b)
 void gaussNewton(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
                  const Columns& byPoint2, double* px, double* py, double* pz, double* pMoved)
 {
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
         Vector J[4], A[3] = {}, g = {};     // A: J^T J by rows
         for (int k = 0; k < 4; ++k)
         {
-            J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, i, n);
+            J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, at);
             if (k >= 2)
             {
                 const Vector D = J[k];
                 J[k] = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
             }
-            const Lanes e = load(observed.at(k, 0), i, n) - load(predicted.at(k, 0), i, n);
+            const Lanes e = load(observed.at(k, 0), at) - load(predicted.at(k, 0), at);
             const Vector& D = J[k];
             g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
             A[0] = { A[0].x + D.x*D.x, A[0].y + D.x*D.y, A[0].z + D.x*D.z };
@@ -154,11 +156,11 @@ void gaussNewton(int n, const double* R, const Columns& observed, const Columns&
         Lanes moved = all(0);
         for (const Vector& D : J)
             moved += square(dot(D, step));
-        store(load(px, i, n) + step.x, px, i, n);
-        store(load(py, i, n) + step.y, py, i, n);
-        store(load(pz, i, n) + step.z, pz, i, n);
-        store(moved, pMoved, i, n);
-    }
+        store(load(px, at) + step.x, px, at);
+        store(load(py, at) + step.y, py, at);
+        store(load(pz, at) + step.z, pz, at);
+        store(moved, pMoved, at);
+    });
 }
 
 //! The sensor's tilt at a distorted point, and its linear map there.
@@ -179,24 +181,25 @@ struct Tilt
 };
 
 //! Derivatives by fx, fy, cx, cy and the coefficients as given.
+template<typename At>
 inline void byOpenCVParameters(const OpenCVModel& m, Lanes x, Lanes y, const Distorted<Lanes>& d, const Tilt& tilt,
-                               const Columns& out, int i, int n)
+                               const Columns& out, At at)
 {
     const Radial<Lanes> radial(m, x*x + y*y);
     const Lanes s = radial.s, D = radial.inverseD, zero = all(0);
-    storeAt(tilt.x, out, 0, 0, i, n);
-    storeAt(zero, out, 1, 0, i, n);
-    storeAt(zero, out, 0, 1, i, n);
-    storeAt(tilt.y, out, 1, 1, i, n);
+    storeAt(tilt.x, out, 0, 0, at);
+    storeAt(zero, out, 1, 0, at);
+    storeAt(zero, out, 0, 1, at);
+    storeAt(tilt.y, out, 1, 1, at);
     for (int r = 0; r < 2; ++r)
         for (int c = 0; c < 2; ++c)
-            storeAt(all(r == c), out, r, 2 + c, i, n);
+            storeAt(all(r == c), out, r, 2 + c, at);
     const auto put = [&](int c, Lanes dx, Lanes dy)
     {
         if (c >= m.given)
             return;
-        storeAt(m.fx*(tilt.xx*dx + tilt.xy*dy), out, 0, 4 + c, i, n);
-        storeAt(m.fy*(tilt.yx*dx + tilt.yy*dy), out, 1, 4 + c, i, n);
+        storeAt(m.fx*(tilt.xx*dx + tilt.xy*dy), out, 0, 4 + c, at);
+        storeAt(m.fy*(tilt.yx*dx + tilt.yy*dy), out, 1, 4 + c, at);
     };
     const int numerator[] = { K1, K2, K3 }, denominator[] = { K4, K5, K6 };
     Lanes power = s*D;
@@ -216,8 +219,8 @@ inline void byOpenCVParameters(const OpenCVModel& m, Lanes x, Lanes y, const Dis
     {
         const double* T = m.dTilt[c - TAUX];
         const Lanes inverse = 1/tilt.w, dw = T[6]*d.x + T[7]*d.y + T[8];
-        storeAt(m.fx*((T[0]*d.x + T[1]*d.y + T[2]) - tilt.x*dw)*inverse, out, 0, 4 + c, i, n);
-        storeAt(m.fy*((T[3]*d.x + T[4]*d.y + T[5]) - tilt.y*dw)*inverse, out, 1, 4 + c, i, n);
+        storeAt(m.fx*((T[0]*d.x + T[1]*d.y + T[2]) - tilt.x*dw)*inverse, out, 0, 4 + c, at);
+        storeAt(m.fy*((T[3]*d.x + T[4]*d.y + T[5]) - tilt.y*dw)*inverse, out, 1, 4 + c, at);
     }
 }
 
@@ -226,26 +229,26 @@ bool projectJacobianOpenCV(const OpenCVModel& model, int n, const double* px, co
 {
     const OpenCVModel m = model;
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes z = load(pz, i, n), inverse = 1/z, x = load(px, i, n)*inverse, y = load(py, i, n)*inverse;
+        const Lanes z = load(pz, at), inverse = 1/z, x = load(px, at)*inverse, y = load(py, at)*inverse;
         const Distorted<Lanes> d = distort(m, x, y);
         const Tilt tilt(m, d.x, d.y);
         const Mask good = (z > 0) & (x*x + y*y < m.sMax) & (d.determinant() > 0) & (tilt.w > 0);
-        store(answers.where(good, m.fx*tilt.x + m.cx), u, i, n);
-        store(m.fy*tilt.y + m.cy, v, i, n);
+        store(answers.where(good, m.fx*tilt.x + m.cx), u, at);
+        store(m.fy*tilt.y + m.cy, v, at);
         const Lanes fx = m.fx*inverse, fy = m.fy*inverse;
         const Lanes ux = fx*(tilt.xx*d.xx + tilt.xy*d.yx), uy = fx*(tilt.xx*d.xy + tilt.xy*d.yy);
         const Lanes vx = fy*(tilt.yx*d.xx + tilt.yy*d.yx), vy = fy*(tilt.yx*d.xy + tilt.yy*d.yy);
-        storeAt(ux, byDirection, 0, 0, i, n);
-        storeAt(uy, byDirection, 0, 1, i, n);
-        storeAt(-(ux*x + uy*y), byDirection, 0, 2, i, n);
-        storeAt(vx, byDirection, 1, 0, i, n);
-        storeAt(vy, byDirection, 1, 1, i, n);
-        storeAt(-(vx*x + vy*y), byDirection, 1, 2, i, n);
+        storeAt(ux, byDirection, 0, 0, at);
+        storeAt(uy, byDirection, 0, 1, at);
+        storeAt(-(ux*x + uy*y), byDirection, 0, 2, at);
+        storeAt(vx, byDirection, 1, 0, at);
+        storeAt(vy, byDirection, 1, 1, at);
+        storeAt(-(vx*x + vy*y), byDirection, 1, 2, at);
         if (byParameters.data)
-            byOpenCVParameters(m, x, y, d, tilt, byParameters, i, n);
-    }
+            byOpenCVParameters(m, x, y, d, tilt, byParameters, at);
+    });
     return answers.complete();
 }
 
@@ -256,41 +259,41 @@ bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, 
 {
     const FisheyeModel m = model;
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes X = load(px, i, n), Y = load(py, i, n), Z = load(pz, i, n), r2 = X*X + Y*Y, r = sqrt(r2);
+        const Lanes X = load(px, at), Y = load(py, at), Z = load(pz, at), r2 = X*X + Y*Y, r = sqrt(r2);
         const Lanes theta = angleOf(Z, r), inverseR = 1/larger(r, all(1e-300)), inverseL2 = 1/(r2 + Z*Z);
         Lanes factor, slope;
         bendFactor(m, theta*theta, factor, slope);
         const Lanes thetaD = theta*factor, side = select(r > 0, thetaD*inverseR, 1/Z), along = slope*Z*inverseL2;
         const Lanes ex = X*inverseR, ey = Y*inverseR, x = thetaD*(ex + m.alpha*ey), y = thetaD*ey;
-        store(answers.where(theta < m.thetaMax, m.fx*x + m.cx), u, i, n);
-        store(m.fy*y + m.cy, v, i, n);
+        store(answers.where(theta < m.thetaMax, m.fx*x + m.cx), u, at);
+        store(m.fy*y + m.cy, v, at);
         const Lanes xx = side + (along - side)*ex*ex, xy = (along - side)*ex*ey, yy = side + (along - side)*ey*ey;
         const Lanes back = -slope*r*inverseL2, xz = back*ex, yz = back*ey;
-        storeAt(m.fx*(xx + m.alpha*xy), byDirection, 0, 0, i, n);
-        storeAt(m.fx*(xy + m.alpha*yy), byDirection, 0, 1, i, n);
-        storeAt(m.fx*(xz + m.alpha*yz), byDirection, 0, 2, i, n);
-        storeAt(m.fy*xy, byDirection, 1, 0, i, n);
-        storeAt(m.fy*yy, byDirection, 1, 1, i, n);
-        storeAt(m.fy*yz, byDirection, 1, 2, i, n);
+        storeAt(m.fx*(xx + m.alpha*xy), byDirection, 0, 0, at);
+        storeAt(m.fx*(xy + m.alpha*yy), byDirection, 0, 1, at);
+        storeAt(m.fx*(xz + m.alpha*yz), byDirection, 0, 2, at);
+        storeAt(m.fy*xy, byDirection, 1, 0, at);
+        storeAt(m.fy*yy, byDirection, 1, 1, at);
+        storeAt(m.fy*yz, byDirection, 1, 2, at);
         if (!byParameters.data)
-            continue;
-        storeAt(x, byParameters, 0, 0, i, n);
-        storeAt(all(0), byParameters, 1, 0, i, n);
-        storeAt(all(0), byParameters, 0, 1, i, n);
-        storeAt(y, byParameters, 1, 1, i, n);
+            return;
+        storeAt(x, byParameters, 0, 0, at);
+        storeAt(all(0), byParameters, 1, 0, at);
+        storeAt(all(0), byParameters, 0, 1, at);
+        storeAt(y, byParameters, 1, 1, at);
         for (int row = 0; row < 2; ++row)
             for (int c = 0; c < 2; ++c)
-                storeAt(all(row == c), byParameters, row, 2 + c, i, n);
+                storeAt(all(row == c), byParameters, row, 2 + c, at);
         Lanes power = theta;
         for (int c = 0; c < 4; ++c)
         {
             power *= theta*theta;
-            storeAt(m.fx*power*(ex + m.alpha*ey), byParameters, 0, 4 + c, i, n);
-            storeAt(m.fy*power*ey, byParameters, 1, 4 + c, i, n);
+            storeAt(m.fx*power*(ex + m.alpha*ey), byParameters, 0, 4 + c, at);
+            storeAt(m.fy*power*ey, byParameters, 1, 4 + c, at);
         }
-    }
+    });
     return answers.complete();
 }
 

@@ -17,16 +17,16 @@ bool projectFisheye(const FisheyeModel& model, int n, const double* px, const do
 {
     const FisheyeModel m = model;
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes X = load(px, i, n), Y = load(py, i, n), r = sqrt(X*X + Y*Y), theta = angleOf(load(pz, i, n), r);
+        const Lanes X = load(px, at), Y = load(py, at), r = sqrt(X*X + Y*Y), theta = angleOf(load(pz, at), r);
         Lanes factor, slope;
         bendFactor(m, theta*theta, factor, slope);
         const Lanes scale = theta*factor/larger(r, all(1e-300)), x = X*scale, y = Y*scale;
         const Mask good = theta < m.thetaMax;
-        store(answers.where(good, m.fx*(x + m.alpha*y) + m.cx), u, i, n);
-        store(m.fy*y + m.cy, v, i, n);
-    }
+        store(answers.where(good, m.fx*(x + m.alpha*y) + m.cx), u, at);
+        store(m.fy*y + m.cy, v, at);
+    });
     return answers.complete();
 }
 
@@ -44,45 +44,39 @@ bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const 
     const double ENOUGH = 1e-8, REGULAR = 1e-3, fx = 1/m.fx, fy = 1/m.fy;   // the error is the square of the last move
     const int STEPS = 8;
     Answers answers;
-    AngleSearch search[GROUP];
-    for (int begin = 0; begin < n; begin += GROUP*LANES)
+    eachGroup<AngleSearch>(n, [&](Group<AngleSearch>& group)
     {
-        const int size = groupSize(begin, n);
-        for (int g = 0; g < size; ++g)
+        group.each([&](AngleSearch& a, Part at)
         {
-            AngleSearch& a = search[g];
-            a.yd = (load(pv, begin + g*LANES, n) - m.cy)*fy;
-            a.xd = (load(pu, begin + g*LANES, n) - m.cx)*fx - m.alpha*a.yd;
+            a.yd = (load(pv, at) - m.cy)*fy;
+            a.xd = (load(pu, at) - m.cx)*fx - m.alpha*a.yd;
             const Lanes target2 = a.xd*a.xd + a.yd*a.yd, series = 1 + target2*polynomial(m.inverse, target2);
             a.target = sqrt(target2);
             a.theta = a.target*select((series > 0.5) & (series < 2), series, all(1));
-        }
+        });
         bool more = true;
         for (int k = 0; k < STEPS && more; ++k)
         {
-            more = false;
-            for (int g = 0; g < size; ++g)
+            group.each([&](AngleSearch& a, Part)
             {
-                AngleSearch& a = search[g];
                 Lanes factor;
                 bendFactor(m, a.theta*a.theta, factor, a.slope);
                 a.move = (a.target - a.theta*factor)*roughInverse(a.slope);
                 a.theta += a.move;
-                more = more || any(absolute(a.move) > ENOUGH);
-            }
+            });
+            more = group.some([&](const AngleSearch& a) { return absolute(a.move) > ENOUGH; });
         }
-        for (int g = 0; g < size; ++g)
+        group.each([&](AngleSearch& a, Part at)
         {
-            const AngleSearch& a = search[g];
             const Mask good = (absolute(a.move) <= ENOUGH) & (a.theta >= 0) & (a.theta < m.thetaMax) & (a.slope > REGULAR);
             Lanes sine, cosine;
             sineCosine(a.theta, sine, cosine);
             const Lanes scale = select(a.target > 0, sine/larger(a.target, all(1e-300)), all(1));
-            store(answers.where(good, a.xd*scale), px, begin + g*LANES, n);
-            store(a.yd*scale, py, begin + g*LANES, n);
-            store(cosine, pz, begin + g*LANES, n);
-        }
-    }
+            store(answers.where(good, a.xd*scale), px, at);
+            store(a.yd*scale, py, at);
+            store(cosine, pz, at);
+        });
+    });
     return answers.complete();
 }
 

@@ -12,14 +12,16 @@
 
 namespace cv { namespace refract { namespace {
 
-bool traceOut(const Stack& s, int n, const double* wx, const double* wy, const double* wz,
+bool traceOut(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,
               double* tau, double* dx, double* dy, double* dz)
 {
-    const double *normal = s.normal, scale = s.inner/s.outer, inner2 = s.inner*s.inner, outer2 = s.outer*s.outer;
+    const Stack s = stack;      // a copy that no store can change stays in registers
+    const Constants<3> normal(s.normal);
+    const double scale = s.inner/s.outer, inner2 = s.inner*s.inner, outer2 = s.outer*s.outer;
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes x = load(wx, i, n), y = load(wy, i, n), z = load(wz, i, n);
+        const Lanes x = load(wx, at), y = load(wy, at), z = load(wz, at);
         const Lanes c = normal[0]*x + normal[1]*y + normal[2]*z, c2 = inner2*c*c;
         // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
         const Lanes qOut2 = (outer2 - inner2) + c2, qOut = s.inner == s.outer ? s.inner*c : sqrt(qOut2);
@@ -30,37 +32,39 @@ bool traceOut(const Stack& s, int n, const double* wx, const double* wy, const d
             const Medium& medium = s.media[k];
             if (medium.isScene)
                 continue;
-            const Lanes q2 = (medium.index2 - inner2) + c2, q = q2*inverseSqrt(q2);
+            const Lanes q2 = (medium.index2 - inner2) + c2;
             good &= q2 > 0;
-            sum += medium.height/medium.scale*(medium.index2 - outer2)/(q2 + q*qOut);
+            sum += medium.height/medium.scale*(1 - qOut*inverseSqrt(q2));
         }
         const Lanes along = qOut*(1/s.outer) - scale*c;
-        store(answers.where(good, sum), tau, i, n);
-        store(scale*x + along*normal[0], dx, i, n);
-        store(scale*y + along*normal[1], dy, i, n);
-        store(scale*z + along*normal[2], dz, i, n);
-    }
+        store(answers.where(good, sum), tau, at);
+        store(scale*x + along*normal[0], dx, at);
+        store(scale*y + along*normal[1], dy, at);
+        store(scale*z + along*normal[2], dz, at);
+    });
     return answers.complete();
 }
 
-bool meetPlane(const Stack& s, const double* abc, const double* planeD, int n, const double* tau,
+bool meetPlane(const Stack& stack, const double* plane, const double* planeD, int n, const double* tau,
                const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu)
 {
-    const double *normal = s.normal, axis = abc[0]*normal[0] + abc[1]*normal[1] + abc[2]*normal[2];
+    const Stack s = stack;
+    const Constants<3> normal(s.normal), abc(plane);
+    const double axis = abc[0]*normal[0] + abc[1]*normal[1] + abc[2]*normal[2];
     Answers answers;
-    for (int i = 0; i < n; i += LANES)
+    eachRegister(n, [&](auto at)
     {
-        const Lanes a = load(dx, i, n), b = load(dy, i, n), c = load(dz, i, n), t = load(tau, i, n);
-        const Lanes along = abc[0]*a + abc[1]*b + abc[2]*c, ahead = load(planeD, i, n) - t*axis, m = along/ahead;
+        const Lanes a = load(dx, at), b = load(dy, at), c = load(dz, at), t = load(tau, at);
+        const Lanes along = abc[0]*a + abc[1]*b + abc[2]*c, ahead = load(planeD, at) - t*axis, m = along/ahead;
         const Lanes shift = m*t, X = a + shift*normal[0], Y = b + shift*normal[1], Z = c + shift*normal[2];
         Mask good = (along*ahead > 0) & (m - m == 0);
         if (s.refracts)
             good &= normal[0]*X + normal[1]*Y + normal[2]*Z > m*s.total;
-        store(answers.where(good, X), x, i, n);
-        store(Y, y, i, n);
-        store(Z, z, i, n);
-        store(m, mu, i, n);
-    }
+        store(answers.where(good, X), x, at);
+        store(Y, y, at);
+        store(Z, z, at);
+        store(m, mu, at);
+    });
     return answers.complete();
 }
 
@@ -70,6 +74,7 @@ struct Path
     Lanes weight, scene;                //!< w of the point; height of the scene's medium
     Lanes radial[3], radius2;           //!< of the point about the window's axis
     Lanes ratio;                        //!< t / V, what is looked for
+    Lanes step;                         //!< the last one, of ratio
 };
 
 inline Lanes heightOf(const Medium& medium, const Path& path)
@@ -139,44 +144,38 @@ bool solveIn(const Stack& stack, int n, const double* px, const double* py, cons
     // The relative error after a Halley step is a few times the cube of the relative step.
     const double ENOUGH = 1e-5;
     const int STEPS = 8;
-    const Stack s = stack;      // a copy that no store can change stays in registers
+    const Stack s = stack;
     const double inner2 = s.inner*s.inner, excess = inner2 - s.media[0].index2;
     Answers answers;
-    Path paths[GROUP];
-    for (int begin = 0; begin < n; begin += GROUP*LANES)
+    eachGroup<Path>(n, [&](Group<Path>& group)
     {
-        const int size = groupSize(begin, n);
-        Lanes step[GROUP];
-        for (int g = 0; g < size; ++g)
+        group.each([&](Path& path, Part at)
         {
-            const int i = begin + g*LANES;
-            paths[g] = beginPath(s, load(px, i, n), load(py, i, n), load(pz, i, n), pw ? load(pw, i, n) : all(1));
-        }
+            path = beginPath(s, load(px, at), load(py, at), load(pz, at), pw ? load(pw, at) : all(1));
+        });
         bool more = true;
         for (int k = 0; k < STEPS && more; ++k)
         {
-            more = false;
-            for (int g = 0; g < size; ++g)
+            group.each([&](Path& path, Part)
             {
-                step[g] = pathStep(s, paths[g]);
-                paths[g].ratio += step[g];
-                more = more || any(absolute(step[g]) > ENOUGH*paths[g].ratio);
-            }
+                path.step = pathStep(s, path);
+                path.ratio += path.step;
+            });
+            more = group.some([&](const Path& path) { return absolute(path.step) > ENOUGH*path.ratio; });
         }
-        for (int g = 0; g < size; ++g)
+        group.each([&](Path& path, Part at)
         {
-            const Path& path = paths[g];
-            const Mask good = (path.scene > 0) & (absolute(step[g]) <= ENOUGH*path.ratio);
+            const Mask good = (path.scene > 0) & (absolute(path.step) <= ENOUGH*path.ratio);
             Lanes kappa = path.ratio;
             if (excess > 0)
                 kappa *= s.rarest*inverseSqrt(inner2 + excess*path.radius2*path.ratio*path.ratio);
-            store(answers.where(good, s.normal[0] + kappa*path.radial[0]), dx, begin + g*LANES, n);
+            store(answers.where(good, s.normal[0] + kappa*path.radial[0]), dx, at);
+            store(s.normal[1] + kappa*path.radial[1], dy, at);
+            store(s.normal[2] + kappa*path.radial[2], dz, at);
             if (ratio)
-                store(path.ratio, ratio, begin + g*LANES, n);
-            store(s.normal[1] + kappa*path.radial[1], dy, begin + g*LANES, n);
-            store(s.normal[2] + kappa*path.radial[2], dz, begin + g*LANES, n);
-        }
-    }
+                store(path.ratio, ratio, at);
+        });
+    });
     return answers.complete();
 }
 

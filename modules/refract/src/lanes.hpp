@@ -54,6 +54,8 @@ inline bool any(Mask m) { return m; }
 #endif
 
 inline Lanes all(double v) { return Lanes{} + v; }
+inline Mask none() { return all(0) != 0; }
+inline Mask isNot(Mask m) { return m == none(); }
 inline Lanes select(Mask m, Lanes a, Lanes b) { return m ? a : b; }
 
 //! 1/sqrt(a) to about two units in the last place, for normal a > 0; NaN for 0 and infinity is possible.
@@ -132,15 +134,80 @@ inline void store(Lanes a, double* p, int begin, int n)
         storeTail(tail, n - begin, p + begin);
 }
 
+//! Where in an array a register's lanes are: all of them, or the last few points that there are.
+struct Whole { int begin; };
+struct Part { int begin, n; };
+
+inline Lanes load(const double* p, Whole at)
+{
+    Lanes a;
+    std::memcpy(&a, p + at.begin, sizeof a);
+    return a;
+}
+inline Lanes load(const double* p, Part at) { return load(p, at.begin, at.n); }
+
+inline void store(Lanes a, double* p, Whole at) { std::memcpy(p + at.begin, &a, sizeof a); }
+inline void store(Lanes a, double* p, Part at) { store(a, p, at.begin, at.n); }
+
+//! body(at) for every register of an array of n.
+template<typename Body>
+inline void eachRegister(int n, const Body& body)
+{
+    int i = 0;
+    for (; i + LANES <= n; i += LANES)
+        body(Whole{ i });
+    if (i < n)
+        body(Part{ i, n });
+}
+
+//! Numbers that all lanes share, in a copy that no store can change: they stay in registers.
+template<int N>
+struct Constants
+{
+    explicit Constants(const double* numbers) { std::memcpy(value, numbers, sizeof value); }
+    double operator[](int i) const { return value[i]; }
+    double value[N];
+};
+
 /* An iteration is a chain of operations that wait for each other. Kernels that iterate therefore take a group of registers
 through each stage before the next: the chains of a group run side by side. */
 enum { GROUP = 8 };
 
-//! Registers of the group that begins at a point of an array of n.
-inline int groupSize(int begin, int n)
+template<typename Search>
+struct Group
 {
-    const int registers = (n - begin + LANES - 1)/LANES;
-    return registers < GROUP ? registers : GROUP;
+    //! step(search, at) for every register.
+    template<typename Step>
+    void each(const Step& step)
+    {
+        for (int g = 0; g < size; ++g)
+            step(search[g], Part{ begin + g*LANES, n });
+    }
+    //! Whether test(search) holds for any lane.
+    template<typename Test>
+    bool some(const Test& test) const
+    {
+        Mask lanes = none();
+        for (int g = 0; g < size; ++g)
+            lanes |= test(search[g]);
+        return any(lanes);
+    }
+    Search search[GROUP];
+    int begin, n, size;
+};
+
+//! body(group) for every group of an array of n.
+template<typename Search, typename Body>
+inline void eachGroup(int n, const Body& body)
+{
+    Group<Search> group;
+    group.n = n;
+    for (group.begin = 0; group.begin < n; group.begin += GROUP*LANES)
+    {
+        const int registers = (n - group.begin + LANES - 1)/LANES;
+        group.size = registers < GROUP ? registers : GROUP;
+        body(group);
+    }
 }
 
 //! Which lanes of a block have no answer; they are stored as NaN.
@@ -156,7 +223,7 @@ public:
     }
     bool complete() const { return !any(missing_); }
 private:
-    Mask missing_ = all(0) != 0;
+    Mask missing_ = none();
 };
 
 } // namespace

@@ -48,6 +48,9 @@ private:
     uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
     double radial(double r, double& slope) const;
     void fitStart() const;
+    //! Of an undistorting Newton step, up to this distance from the axis: the error that it leaves over its square.
+    double curvature(double r) const;
+    double startError(double r) const;      //!< of the kernel's search, at this distance from the axis
     bool inside(double x, double y, const Distorted<double>& d) const { return x*x + y*y < m_.sMax && d.determinant() > 0; }
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
@@ -118,8 +121,48 @@ void OpenCVLens::fitStart() const
     // Exact over the image, whose corner lies about as far from the principal point as the origin does.
     const auto radialFunction = [this](double r, double& slope) { return radial(r, slope); };
     const double corner = std::max(0.2, 1.1*std::hypot(m_.cx/m_.fx, m_.cy/m_.fy));
-    const double r = invertMonotone(radialFunction, corner, std::sqrt(m_.sMax));
-    fitInverse(radialFunction, std::isfinite(r) ? r : 0.95*std::sqrt(m_.sMax), TERMS, m_.inverse);
+    double r = invertMonotone(radialFunction, corner, std::sqrt(m_.sMax));
+    if (!std::isfinite(r))
+        r = 0.95*std::sqrt(m_.sMax);
+    fitInverse(radialFunction, r, TERMS, m_.inverse);
+    const double image = r/1.1, NOTHING = 2e-14;      // 2e-11 px for a focal length of 1000
+    const int MOST = 3;
+    m_.sNear = image*image;
+    m_.near2 = NOTHING/curvature(image);
+    for (m_.shifts = 0; m_.shifts < MOST && std::pow(startError(image), 2) > m_.near2; ++m_.shifts) {}
+}
+
+double OpenCVLens::curvature(double r) const
+{
+    const double h = 1e-4*r;
+    double worst = 0;
+    for (double angle = 0.125*CV_PI; angle < 2*CV_PI; angle += 0.25*CV_PI)
+        for (double part : { 0.5, 1. })
+        {
+            const double x = part*r*std::cos(angle), y = part*r*std::sin(angle);
+            const Distorted<double> d = distort(m_, x, y), dx = distort(m_, x + h, y), dy = distort(m_, x, y + h);
+            const double change = std::hypot(std::hypot(dx.xx - d.xx, dx.yx - d.yx), std::hypot(dx.xy - d.xy, dx.yy - d.yy))
+                                + std::hypot(std::hypot(dy.xx - d.xx, dy.yx - d.yx), std::hypot(dy.xy - d.xy, dy.yy - d.yy));
+            const double inverse = std::hypot(std::hypot(d.xx, d.xy), std::hypot(d.yx, d.yy))/d.determinant();
+            worst = std::max(worst, 0.5*inverse*change/h);
+        }
+    return worst;
+}
+
+double OpenCVLens::startError(double r) const
+{
+    double worst = 0;
+    for (double angle = 0.125*CV_PI; angle < 2*CV_PI; angle += 0.25*CV_PI)
+    {
+        const double x = r*std::cos(angle), y = r*std::sin(angle);
+        const Distorted<double> d = distort(m_, x, y);
+        double foundX, foundY;
+        guess(m_, d.x, d.y, 0., 0., foundX, foundY);
+        for (int k = 0; k < m_.shifts; ++k)
+            shift(m_, d.x, d.y, foundX, foundY);
+        worst = std::max(worst, std::hypot(foundX - x, foundY - y));
+    }
+    return worst;
 }
 
 double OpenCVLens::radial(double r, double& slope) const

@@ -114,12 +114,7 @@ void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, Outp
         uchar st[BLOCK];
         in.load(begin, n, u, v, NULL, st);
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
-        for (int i = 0; i < n; ++i)
-        {
-            ox[i] = tau[i]*normal[0];
-            oy[i] = tau[i]*normal[1];
-            oz[i] = tau[i]*normal[2];
-        }
+        kernels().multiples(normal.val, n, tau, ox, oy, oz);
         outOrigins.store(begin, n, ox, oy, oz, st);
         outDirections.store(begin, n, dx, dy, dz, st);
         outStatus.store(begin, n, st);
