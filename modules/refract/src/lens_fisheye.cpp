@@ -60,7 +60,7 @@ FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs
     std::fill(k, k + 4, 0.);
     std::copy(distCoeffs.begin(), distCoeffs.end(), k);
     const double slopeTerms[] = { 1, 3*k[0], 5*k[1], 7*k[2], 9*k[3] };
-    m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(std::vector<double>(slopeTerms, slopeTerms + 5))));
+    m_.thetaMax = std::min(CV_PI, std::sqrt(firstPositiveRoot(slopeTerms, 5)));
 }
 
 void FisheyeLens::fitStart() const

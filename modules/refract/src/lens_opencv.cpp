@@ -85,11 +85,11 @@ void tiltDerivatives(double tauX, double tauY, Matx33d dTilt[2])
 double monotoneRange(const double* k)
 {
     const double N[4] = { 1, k[K1], k[K2], k[K3] }, D[4] = { 1, k[K4], k[K5], k[K6] };
-    std::vector<double> slope(7, 0.);
+    double slope[7] = {};
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j)
             slope[i + j] += N[i]*D[j]*(1 + 2*(i - j));
-    return std::min(firstPositiveRoot(slope), firstPositiveRoot(std::vector<double>(D, D + 4)));
+    return std::min(firstPositiveRoot(slope, 7), firstPositiveRoot(D, 4));
 }
 
 OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, const String& model)

@@ -11,8 +11,8 @@
 
 namespace cv { namespace refract {
 
-//! Smallest positive real root of sum_k coefficients[k] s^k, infinity if there is none. coefficients[0] > 0.
-double firstPositiveRoot(std::vector<double> coefficients);
+//! Smallest positive real root of sum_k coefficients[k] s^k, infinity if there is none. coefficients[0] > 0, at most 7 terms.
+double firstPositiveRoot(const double* coefficients, int terms);
 
 /** Solves f(x) = target for 0 <= x < upper, where f increases from f(0) = 0; upper may be infinite.
 @param f callable: f(x, derivative&) -> value

@@ -20,10 +20,13 @@ GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_,
     check();
 }
 
-static void checkAtLeast(const char* name, double value, double least)
+//! layer >= 0: the name's element. Nothing is formatted unless it is wrong: cameras may be made by the call.
+static void checkAtLeast(const char* name, double value, double least, int layer = -1)
 {
-    if (!(value >= least) || !std::isfinite(value))
-        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be finite and at least %g", name, value, least));
+    if (value >= least && std::isfinite(value))
+        return;
+    const String element = layer < 0 ? String() : format("[%d]", layer);
+    CV_Error_(Error::StsOutOfRange, ("%s%s is %g; it must be finite and at least %g", name, element.c_str(), value, least));
 }
 
 void GlassWindow::check() const
@@ -44,8 +47,8 @@ void GlassWindow::check() const
                                              (int)thickness.size(), (int)index.size()));
     for (size_t i = 0; i < thickness.size(); ++i)
     {
-        checkAtLeast(format("window.thickness[%d]", (int)i).c_str(), thickness[i], 0);
-        checkAtLeast(format("window.index[%d]", (int)i).c_str(), index[i], 1);
+        checkAtLeast("window.thickness", thickness[i], 0, (int)i);
+        checkAtLeast("window.index", index[i], 1, (int)i);
     }
 }
 
