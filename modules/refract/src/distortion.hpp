@@ -95,7 +95,7 @@ inline void guess(const OpenCVModel& m, T xd, T yd, T dx, T dy, T& x, T& y)
     for (int k = TERMS - 2; k >= 0; --k)
         series = series*s + m.inverse[k];
     series = 1 + s*series;
-    const T scale = (series > 0.5) & (series < 2) ? series : 1 + T();
+    const T scale = ((series > 0.5) & (series < 2)) ? series : 1 + T();
     x = xr*scale;
     y = yr*scale;
 }
