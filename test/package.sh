@@ -6,6 +6,7 @@
 #           minutes; without, the package is only unpacked and its tools run on the libraries of this machine
 set -eu
 cd "$(dirname "$0")/.."
+main_job=$PWD/test/main_job.sh
 bare=no; build=build/release
 for argument in "$@"; do
   case $argument in
@@ -21,22 +22,14 @@ trap 'rm -rf "$work"' EXIT
 package=$(ls "$work"/packages/*.deb)
 dpkg-deb -f "$package" Package Version Depends
 
-main_job() {    # main_job RUN...: calibrates and measures, by the tools as RUN reaches them
-  "$@" refract_calib --pattern=chessboard --size=6x5 --square=39 --thickness=20 --index=1.5437 --quiet \
-    --direct='data/direct1/*' --glass='data/glass1/*' --direct2='data/direct2/*' --glass2='data/glass2/*' \
-    --out=calib.yml --report=report.html
-  "$@" refract_measure calib.yml 'data/measure1/z600_*' 'data/measure2/z600_*' --pattern=chessboard --size=6x5 \
-    --square=39 --compare --out=points.csv
-  "$@" refract_undistort --version
-}
-
 if [ $bare = no ]; then
   dpkg-deb -x "$package" "$root"
   cp -r samples/data/stereo "$root/data"
   cd "$root"
   LD_LIBRARY_PATH=$root/usr/lib PATH=$root/usr/bin:$PATH
   export LD_LIBRARY_PATH PATH
-  main_job env
+  "$main_job"
+  refract_undistort --version
 else
   debootstrap --variant=minbase bookworm "$root" "$(apt-get indextargets --format '$(SITE)' | head -1)" >"$work/root.log" ||
     { tail -5 "$work/root.log"; exit 1; }
@@ -48,6 +41,7 @@ else
   chroot "$root" sh -ec 'export DEBIAN_FRONTEND=noninteractive
     apt-get update -qq && apt-get install -y -qq --no-install-recommends /srv/package.deb' >"$work/install.log" 2>&1 ||
     { tail -20 "$work/install.log"; exit 1; }
-  main_job chroot "$root" env -C /srv
+  "$main_job" chroot "$root" env -C /srv
+  chroot "$root" refract_undistort --version
 fi
 ls -l "$home/calib.yml" "$home/points.csv" "$home/report.html"

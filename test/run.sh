@@ -57,6 +57,7 @@ for version in 4.14.0.94 5.0.0.93; do
   run "in OpenCV $version's tree: configures, compiles the module, generates bindings" \
     test/opencv_in_tree.sh $version --short
 done
+run "the kernels compiled for 64-bit ARM, run in an emulator" test/aarch64.sh --short     # everything: without --short
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do
   run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa
