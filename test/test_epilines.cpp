@@ -341,6 +341,25 @@ TEST_CASE("Both overloads of computeRefractiveEpilines agree, float32 as well", 
     }
 }
 
+TEST_CASE("A short visible part of a long curve is found", "[epilines]")
+{
+    // A lens that sees two degrees, turned to any part of a ray that fills a quarter of a turn.
+    const Ptr<RefractiveCamera> from = RefractiveCamera::create(K, noArray());
+    const Ptr<RefractiveCamera> to = RefractiveCamera::create(K, std::vector<double>({ -1000, 0, 0, 0 }));
+    for (double turn = 5; turn < 85; turn += 0.37)
+    {
+        const double c = std::cos(turn*CV_PI/180), s = std::sin(turn*CV_PI/180);
+        const Matx33d R(c, 0, s, 0, 1, 0, -s, 0, c);     // the direction `turn` to the left is ahead
+        const Vec3d T = R*Vec3d(-200, 0, 0);
+        std::vector<Mat> lines;
+        std::vector<uchar> status;
+        computeRefractiveEpilines(std::vector<Vec2d>(1, Vec2d(640, 480)), 1, from, to, R, T, Vec2d(1, INF), lines, 0.01, status);
+        CAPTURE(turn);
+        REQUIRE(status[0] == REFRACT_OK);
+        CHECK(lines[0].total() >= 2);
+    }
+}
+
 TEST_CASE("Bad arguments of computeRefractiveEpilines are named", "[epilines]")
 {
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());

@@ -2,17 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "arrays.hpp"
-#include "camera.hpp"
+#include "epipolar_curve.hpp"
 #include "kernels.hpp"
 #include "rotation.hpp"
 
-/* The curve of possible partners of a pixel: the refracted ray tau n + s d of one camera, seen by the other (raw image).
-
-The parameter t runs from infinity (0) to the ray's origin (1): the other camera sees the point (1 - t) d + t e, where e is
-the unit vector to the origin. Even steps of t are nearly even steps of the angle there, whatever the depth range; 1/s =
-t / ((1 - t) b) with b the distance of the origin. A chord over a step of t misses the curve by |second difference across
-the curve| / 8, so nodes at equal steps of the integral of its square root share the error evenly: as few points as the
+/* The curve of possible partners of a pixel, as a polyline. A chord over a step of t misses the curve by |second difference
+across the curve| / 8, so nodes at equal steps of the integral of its square root share the error evenly: as few points as the
 tolerance takes. */
 
 namespace cv { namespace refract {
@@ -20,79 +15,6 @@ namespace cv { namespace refract {
 namespace {
 
 typedef std::vector<Vec2d> Polyline;
-
-const double NOWHERE = std::numeric_limits<double>::quiet_NaN();
-
-//! The curve as a function of t.
-class EpipolarCurve
-{
-public:
-    EpipolarCurve(const Matx33d& R, const Vec3d& T, const Vec3d& normal, double tau, const Vec3d& d)
-        : direction_(R*d), origin_(R*(tau*normal) + T), unit_(1)
-    {
-        const double distance = cv::norm(origin_);
-        if (distance > 0)       // else the curve is one point in any unit
-            unit_ = 1/distance;
-    }
-
-    //! The parameter of the point at 1/s.
-    double parameter(double mu) const { return mu/(mu + unit_); }
-
-    //! The points at t, in the frame of the other camera, times w.
-    void points(int n, const double* t, double* x, double* y, double* z, double* w) const
-    {
-        for (int i = 0; i < n; ++i)
-        {
-            w[i] = t[i]*unit_;
-            x[i] = (1 - t[i])*direction_[0] + w[i]*origin_[0];
-            y[i] = (1 - t[i])*direction_[1] + w[i]*origin_[1];
-            z[i] = (1 - t[i])*direction_[2] + w[i]*origin_[2];
-        }
-    }
-
-private:
-    Vec3d direction_, origin_;  //!< in the frame of the other camera
-    double unit_;
-};
-
-//! Points of one or several curves on their way to pixels, a block at a time.
-class Projection
-{
-public:
-    explicit Projection(const Camera& other) : other_(other), size_(0) {}
-    int room() const { return BLOCK - size_; }
-    void clear() { size_ = 0; }
-    //! Returns where the points are among all.
-    int add(const EpipolarCurve& curve, int n, const double* t)
-    {
-        const int begin = size_;
-        CV_DbgAssert(n <= room());
-        curve.points(n, t, x_ + begin, y_ + begin, z_ + begin, w_ + begin);
-        std::copy(t, t + n, t_ + begin);
-        size_ += n;
-        return begin;
-    }
-    void run()
-    {
-        std::fill(status_, status_ + size_, (uchar)REFRACT_OK);
-        other_.project(size_, x_, y_, z_, w_, u_, v_, status_);
-        for (int i = 0; i < size_; ++i)
-            if (status_[i] != REFRACT_OK)
-                u_[i] = v_[i] = NOWHERE;
-    }
-    const Camera& camera() const { return other_; }
-    double t(int i) const { return t_[i]; }
-    Vec2d pixel(int i) const { return Vec2d(u_[i], v_[i]); }    //!< NaN where there is no image
-    const double* u(int i) const { return u_ + i; }
-    const double* v(int i) const { return v_ + i; }
-    uchar status(int i) const { return status_[i]; }
-
-private:
-    const Camera& other_;
-    int size_;
-    double t_[BLOCK], x_[BLOCK], y_[BLOCK], z_[BLOCK], w_[BLOCK], u_[BLOCK], v_[BLOCK];
-    uchar status_[BLOCK];
-};
 
 /* Adds the segments between nodes to a projection: their ends and middles, and after the last end a point a quarter before
 it, so that each segment's fourth point lies elsewhere on the same stretch of the curve. Returns where they begin. */
@@ -147,12 +69,13 @@ void appendSegment(const EpipolarCurve& curve, const Projection& p, int segment,
 
 const int SAMPLES = 24;     // of a curve: a few registers
 
-int addSamples(const EpipolarCurve& curve, double tNear, double tFar, Projection& p)
+//! Adds even steps of t to a projection; returns where they begin.
+int addSamples(const EpipolarCurve& curve, double tNear, double tFar, int samples, Projection& p)
 {
-    double t[SAMPLES];
-    for (int i = 0; i < SAMPLES; ++i)
-        t[i] = tNear + (tFar - tNear)*i/(SAMPLES - 1);
-    return p.add(curve, SAMPLES, t);
+    double t[BLOCK];
+    for (int i = 0; i < samples; ++i)
+        t[i] = tNear + (tFar - tNear)*i/(samples - 1);
+    return p.add(curve, samples, t);
 }
 
 //! Appends nodes over a curve's samples at equal shares of the chord error.
@@ -199,33 +122,45 @@ double edgeOfVisibility(const EpipolarCurve& curve, const Camera& other, double 
     return visible;
 }
 
-/* Nodes of the visible part of the curve: one interval, because what lies beyond a window and inside a lens' field is
-convex. Returns the status of the far end if nothing is visible. */
+/* The visible part of the curve by its samples: one interval, because what lies beyond a window and inside a lens' field is
+convex. False if no sample is visible. */
+bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int samples, double& tNear, double& tFar)
+{
+    int first = begin, last = begin + samples - 1;
+    while (first <= last && p.status(first) != REFRACT_OK)
+        ++first;
+    if (first > last)
+        return false;
+    while (p.status(last) != REFRACT_OK)
+        --last;
+    tNear = first == begin ? p.t(first) : edgeOfVisibility(curve, p.camera(), p.t(first), p.t(first - 1));
+    tFar = last == begin + samples - 1 ? p.t(last) : edgeOfVisibility(curve, p.camera(), p.t(last), p.t(last + 1));
+    return true;
+}
+
+//! Appends nodes of the visible part of a curve. Returns the status of the far end if nothing is visible.
 uchar placeVisibleNodes(const EpipolarCurve& curve, const Projection& p, int samples, double tolerance,
                         std::vector<double>& nodes)
 {
-    int first = 0, last = SAMPLES - 1;
-    while (first < SAMPLES && p.status(samples + first) != REFRACT_OK)
-        ++first;
-    if (first == SAMPLES)
-        return p.status(samples + SAMPLES - 1);
-    while (p.status(samples + last) != REFRACT_OK)
-        --last;
-    if (first == 0 && last == SAMPLES - 1)
+    const double wholeNear = p.t(samples), wholeFar = p.t(samples + SAMPLES - 1);
+    double tNear, tFar;
+    Projection other(p.camera());
+    if (!visiblePart(curve, p, samples, SAMPLES, tNear, tFar))
+    {
+        addSamples(curve, wholeNear, wholeFar, BLOCK, other);       // a closer look
+        other.run();
+        if (!visiblePart(curve, other, 0, BLOCK, tNear, tFar))
+            return p.status(samples + SAMPLES - 1);
+    }
+    if (tNear == wholeNear && tFar == wholeFar)
     {
         placeNodes(p, samples, tolerance, nodes);
         return REFRACT_OK;
     }
-    const auto edge = [&](int visible, int step)
-    {
-        const int beyond = visible + step;
-        return beyond < 0 || beyond == SAMPLES
-            ? p.t(samples + visible) : edgeOfVisibility(curve, p.camera(), p.t(samples + visible), p.t(samples + beyond));
-    };
-    Projection visible(p.camera());
-    addSamples(curve, edge(first, -1), edge(last, 1), visible);
-    visible.run();
-    placeNodes(visible, 0, tolerance, nodes);
+    other.clear();
+    addSamples(curve, tNear, tFar, SAMPLES, other);
+    other.run();
+    placeNodes(other, 0, tolerance, nodes);
     return REFRACT_OK;
 }
 
@@ -261,7 +196,7 @@ void placeAllNodes(const Camera& to, std::vector<Track>& tracks, double toleranc
         const int end = std::min(begin + TOGETHER, count);
         p.clear();
         for (int i = begin; i < end; ++i)
-            addSamples(tracks[i].curve, tracks[i].tNear, tracks[i].tFar, p);
+            addSamples(tracks[i].curve, tracks[i].tNear, tracks[i].tFar, SAMPLES, p);
         p.run();
         for (int i = begin; i < end; ++i)
         {
