@@ -130,6 +130,8 @@ bool refineNormal(const std::vector<Pair>& pairs, Vec3d& n, Matx32d& basis, Norm
     for (int iteration = 0; iteration < MOST; iteration++)
     {
         Vec2d step = here.A.solve(here.b, DECOMP_SVD);
+        if (here.b.dot(step) < DBL_EPSILON*here.cost)       // a gain that the cost's rounding would hide
+            return true;
         bool improved = false;
         while (!improved && norm(step) > 1e-15)
         {
