@@ -3,6 +3,10 @@
 #include "scenes.hpp"
 
 #include <array>
+#include <functional>
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <cpuid.h>
+#endif
 
 using namespace cv;
 using namespace cv::refract;
@@ -22,6 +26,20 @@ std::vector<const Kernels*> allLevels()
 
 const int MOST = 40;
 typedef std::array<double, MOST + 1> Array;     // one more, which no kernel may touch
+
+//! Whether the upper halves of vector registers are in use, which slows down what follows; false where one cannot tell.
+bool upperHalvesInUse()
+{
+#if defined(__x86_64__) && defined(__GNUC__)
+    unsigned a = 0, b, c, d;
+    if (!__get_cpuid_count(0xD, 1, &a, &b, &c, &d) || !(a & 4))
+        return false;
+    __asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(1));
+    return (a & 0x44) != 0;
+#else
+    return false;
+#endif
+}
 
 FisheyeModel angles()
 {
@@ -114,5 +132,24 @@ TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[k
                                          NULL));
             for (int i = 0; i < 19; ++i)
                 REQUIRE(std::isnan(dx[i]) == (i == bad));
+        }
+}
+
+TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
+{
+    const Layers layers(GlassWindow(Vec3d(0.1, 0, 1), 20, 1.5, 30));
+    const Stack stack = layers.stack();
+    const double R[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, t[3] = {};
+    for (const Kernels* level : allLevels())
+        for (int n : { 1, 5, 8, 13, 16 })
+        {
+            CAPTURE(level->instructions, n);
+            Array x, y, z, u, v, w, tau;
+            x.fill(1); y.fill(2); z.fill(500);
+            const auto clean = [](const std::function<void()>& call) { call(); return !upperHalvesInUse(); };
+            CHECK(clean([&] { level->transform(R, t, n, x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
+            CHECK(clean([&] { level->traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
         }
 }

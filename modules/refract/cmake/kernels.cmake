@@ -8,6 +8,12 @@ function(refract_kernel_options source_dir)
     return()
   endif()
   set(common -O3 -ffp-contract=fast)
+  # g++ 12 otherwise returns from kernels whose last call touches no vector register without vzeroupper, and all that the caller
+  # computes next is slowed down by the upper halves left in use.
+  check_cxx_compiler_flag("-fno-ipa-ra" REFRACT_HAS_NO_IPA_RA)
+  if(REFRACT_HAS_NO_IPA_RA)
+    list(APPEND common -fno-ipa-ra)
+  endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     check_cxx_compiler_flag("-mavx2 -mfma" REFRACT_HAS_AVX2)
     check_cxx_compiler_flag("-mavx512f -mavx512cd -mavx512vl -mavx512bw -mavx512dq" REFRACT_HAS_AVX512)
