@@ -37,7 +37,7 @@ Answers ask(const Ptr<RefractiveCamera>& camera, const std::vector<Vec2d>& pixel
 
 } // namespace
 
-TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera]")
+TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera][threads]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
     const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
