@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "layers.hpp"
+#include <numeric>
 
 namespace cv { namespace refract {
 
@@ -35,34 +36,43 @@ Layers::Layers(const GlassWindow& window)
     index_.assign(1, window.innerIndex);
     height_.insert(height_.end(), window.thickness.begin(), window.thickness.end());
     index_.insert(index_.end(), window.index.begin(), window.index.end());
-    outer_ = window.outerIndex;
-    refracts_ = !window.thickness.empty() || window.innerIndex != window.outerIndex;
-    rarest_ = outer_;
-    for (size_t i = 0; i < height_.size(); ++i)
-    {
-        total_ += height_[i];
-        rarest_ = std::min(rarest_, index_[i]);
-    }
-    media_ = mediaOf(height_, index_, outer_, rarest_);
+    const double outer = window.outerIndex, total = std::accumulate(height_.begin(), height_.end(), 0.);
+    const double rarest = std::min(outer, *std::min_element(index_.begin(), index_.end()));
+    media_ = mediaOf(height_, index_, outer, rarest);
+    const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
+    stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
+               NULL, (int)media_.size(), NULL, NULL, (int)height_.size() };
+    pointIntoVectors();
 }
 
-Stack Layers::stack() const
+Layers& Layers::operator=(const Layers& other)
 {
-    Stack s = { { normal_[0], normal_[1], normal_[2] }, refracts_, total_, index_[0], outer_, rarest_,
-                media_.data(), (int)media_.size(), height_.data(), index_.data(), (int)height_.size() };
-    return s;
+    normal_ = other.normal_;
+    height_ = other.height_;
+    index_ = other.index_;
+    media_ = other.media_;
+    stack_ = other.stack_;
+    pointIntoVectors();
+    return *this;
+}
+
+void Layers::pointIntoVectors()
+{
+    stack_.media = media_.data();
+    stack_.heights = height_.data();
+    stack_.indices = index_.data();
 }
 
 void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz,
                       double* tau, double* dx, double* dy, double* dz, uchar* status) const
 {
-    if (!refracts_)
+    if (!stack_.refracts)
     {
         std::fill(tau, tau + n, 0.);
         std::copy(wx, wx + n, dx); std::copy(wy, wy + n, dy); std::copy(wz, wz + n, dz);
         return;
     }
-    if (kernels().traceOut(stack(), n, wx, wy, wz, tau, dx, dy, dz))
+    if (kernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
         return;
     for (int i = 0; i < n; ++i)
     {
@@ -76,7 +86,7 @@ void Layers::traceOut(int n, const double* wx, const double* wy, const double* w
 
 uchar Layers::traceOne(const Vec3d& w, double& tau, Vec3d& d) const
 {
-    const double c = normal_.dot(w), inner = index_[0], inner2 = inner*inner, outer2 = outer_*outer_;
+    const double c = normal_.dot(w), inner = index_[0], outer = stack_.outer, inner2 = inner*inner, outer2 = outer*outer;
     // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
     const double qOut2 = (outer2 - inner2) + inner2*c*c, qOut = std::sqrt(qOut2);
     bool reflected = !(qOut2 > 0);
@@ -87,7 +97,7 @@ uchar Layers::traceOne(const Vec3d& w, double& tau, Vec3d& d) const
         reflected = reflected || !(q2 > 0);
         tau += height_[k]*(n2 - outer2)/(q*(q + qOut));
     }
-    d = inner/outer_*w + (qOut - inner*c)/outer_*normal_;
+    d = inner/outer*w + (qOut - inner*c)/outer*normal_;
     return !(c > 0) ? REFRACT_BEHIND_WINDOW : reflected ? REFRACT_TOTAL_REFLECTION : REFRACT_OK;
 }
 
@@ -100,14 +110,14 @@ rises monotonically to it. Two such points: t = V/U (no medium bends more than t
 denser layer has reached its limit h_i n_r / sqrt(n_i^2 - n_r^2). The unknown is the ratio t/V, regular on the axis. */
 uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
 {
-    const double r2 = rarest_*rarest_, hOut = U - w*total_;
+    const double rarest = stack_.rarest, outer = stack_.outer, r2 = rarest*rarest, hOut = U - w*stack_.total;
     double rareHeight = 0, limit = 0;
     for (size_t k = 0; k <= height_.size(); ++k)
     {
         const bool last = k == height_.size();
-        const double h = last ? hOut : w*height_[k], n = last ? outer_ : index_[k];
-        if (n > rarest_)
-            limit += h*rarest_/std::sqrt(n*n - r2);
+        const double h = last ? hOut : w*height_[k], n = last ? outer : index_[k];
+        if (n > rarest)
+            limit += h*rarest/std::sqrt(n*n - r2);
         else
             rareHeight += h;
     }
@@ -124,8 +134,8 @@ uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
         for (size_t k = 0; k <= height_.size(); ++k)
         {
             const bool last = k == height_.size();
-            const double h = last ? hOut : w*height_[k], n = last ? outer_ : index_[k], n2 = n*n;
-            const double root2 = n2 + (n2 - r2)*t2, term = h*rarest_/std::sqrt(root2);
+            const double h = last ? hOut : w*height_[k], n = last ? outer : index_[k], n2 = n*n;
+            const double root2 = n2 + (n2 - r2)*t2, term = h*rarest/std::sqrt(root2);
             f += term*ratio;
             slope += term*n2/root2;
         }
@@ -141,12 +151,12 @@ uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
                      double* dx, double* dy, double* dz, uchar* status, double* ratio) const
 {
-    if (!refracts_)
+    if (!stack_.refracts)
     {
         std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
         return;
     }
-    if (kernels().solveIn(stack(), n, x, y, z, w, dx, dy, dz, ratio))
+    if (kernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
         return;
     for (int i = 0; i < n; ++i)
     {
@@ -163,13 +173,13 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
 
 uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const
 {
-    const double U = normal_.dot(X), r2 = rarest_*rarest_, inner2 = index_[0]*index_[0];
-    if (!(U > w*total_))
+    const double U = normal_.dot(X), rarest = stack_.rarest, r2 = rarest*rarest, inner2 = index_[0]*index_[0];
+    if (!(U > w*stack_.total))
         return REFRACT_BEHIND_WINDOW;
     const Vec3d radial = X - U*normal_;
     const double V = cv::norm(radial);
     const uchar status = solveTangent(U, V, w, ratio);
-    const double t = V*ratio, kappa = rarest_*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
+    const double t = V*ratio, kappa = rarest*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
     d = normal_ + kappa*radial;
     return status;
 }
@@ -177,9 +187,9 @@ uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const
 void Layers::chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
                    const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const
 {
-    if (refracts_)
+    if (stack_.refracts)
     {
-        kernels().chainWindow(stack(), rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
+        kernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
         return;
     }
     for (int r = 0; r < rows; ++r)

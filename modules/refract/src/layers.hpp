@@ -24,9 +24,11 @@ class Layers
 {
 public:
     explicit Layers(const GlassWindow& window = GlassWindow());
+    Layers(const Layers& other) { *this = other; }
+    Layers& operator=(const Layers& other);
 
     //! False: no window; directions pass unchanged and origins are the centre of projection.
-    bool refracts() const { return refracts_; }
+    bool refracts() const { return stack_.refracts; }
 
     //! Inner directions (unit) -> height tau of the outgoing line on the axis, outer directions (unit).
     void traceOut(int n, const double* wx, const double* wy, const double* wz,
@@ -49,33 +51,33 @@ public:
 
     //! True where the homogeneous point lies beyond the last surface (always true without window).
     bool isBeyond(double x, double y, double z, double w = 1.) const
-    { return !refracts_ || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*total_; }
+    { return !stack_.refracts || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*stack_.total; }
 
     /** 1/s at which a ray tau n + s d leaves the last surface (infinity without window): it exists for smaller 1/s.
     @param cosine n.d */
     double leavingMu(double tau, double cosine) const
-    { return refracts_ && total_ > tau ? cosine/(total_ - tau) : std::numeric_limits<double>::infinity(); }
+    { return stack_.refracts && stack_.total > tau ? cosine/(stack_.total - tau) : std::numeric_limits<double>::infinity(); }
 
     const Vec3d& normal() const { return normal_; }
 
-    //! The layers as the kernels see them; it points into this object.
-    Stack stack() const;
+    //! The layers as the kernels see them; it lives as long as this object.
+    const Stack& stack() const { return stack_; }
 
 private:
+    void pointIntoVectors();    //!< where stack_ has pointers
     //! One lane of traceOut and solveIn that the kernel left without an answer: the answer, or why there is none.
     uchar traceOne(const Vec3d& w, double& tau, Vec3d& d) const;
     uchar solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const;
     //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
     uchar solveTangent(double U, double V, double w, double& ratio) const;
 
-    bool refracts_ = false;
-    Vec3d normal_ = Vec3d(0, 0, 1);
+    Vec3d normal_;
     std::vector<double> height_;    //!< inner gap, then the layers
     std::vector<double> index_;     //!< of the same
-    double outer_ = 1.;             //!< index of the scene's medium
-    double total_ = 0.;             //!< sum of the heights
-    double rarest_ = 1.;            //!< smallest index of inner medium, layers, outer medium
     std::vector<Medium> media_;     //!< the same by index, the rarest first
+    /* Not made anew for every call of a kernel: to read, as a whole, what was just written in parts, a processor waits until
+    everything written before has reached memory. */
+    Stack stack_;
 };
 
 }} // namespace

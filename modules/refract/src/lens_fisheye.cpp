@@ -5,7 +5,7 @@
 #include "fisheye_bend.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
-#include <mutex>
+#include "once.hpp"
 
 /* cv::fisheye's model (Kannala and Brandt), theta = angle to the z axis:
 
@@ -47,7 +47,7 @@ private:
 
     Matx33d K_;
     mutable FisheyeModel m_;            //!< without m_.inverse until something is unprojected
-    mutable std::once_flag startFitted_;
+    mutable Once fitStartOnce_;
 };
 
 FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs) : K_(K)
@@ -92,7 +92,7 @@ void FisheyeLens::project(int n, const double* x, const double* y, const double*
 void FisheyeLens::unproject(int n, const double* u, const double* v,
                             double* x, double* y, double* z, uchar* status) const
 {
-    std::call_once(startFitted_, [this] { fitStart(); });
+    fitStartOnce_([this] { fitStart(); });
     if (kernels().unprojectFisheye(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)

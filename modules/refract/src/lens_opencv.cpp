@@ -5,7 +5,7 @@
 #include "distortion.hpp"
 #include "lens.hpp"
 #include "monotone.hpp"
-#include <mutex>
+#include "once.hpp"
 
 /* OpenCV's lens model (calib3d's documentation), x = X/Z, y = Y/Z, s = r^2 = x^2 + y^2:
 
@@ -55,7 +55,7 @@ private:
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
     mutable OpenCVModel m_;             //!< without m_.inverse, which takes its time, until something is unprojected
-    mutable std::once_flag startFitted_;
+    mutable Once fitStartOnce_;
     bool radialOnly_;
     String model_;
 };
@@ -233,7 +233,7 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 void OpenCVLens::unproject(int n, const double* u, const double* v,
                            double* x, double* y, double* z, uchar* status) const
 {
-    std::call_once(startFitted_, [this] { fitStart(); });
+    fitStartOnce_([this] { fitStart(); });
     if (kernels().unprojectOpenCV(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)
