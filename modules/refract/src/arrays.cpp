@@ -8,6 +8,22 @@
 
 namespace cv { namespace refract {
 
+//! How far ahead of the block being read the memory is asked for the next.
+const int AHEAD = 2*BLOCK;
+
+/* Asks for memory that will be read or written soon. It comes while something else is computed; stores would otherwise wait
+for it one after the other. */
+static void prefetch(const uchar* memory, size_t bytes)
+{
+#ifdef __GNUC__
+    const size_t LINE = 64;
+    for (size_t i = 0; i < bytes; i += LINE)
+        __builtin_prefetch(memory + i);
+#else
+    CV_UNUSED(memory); CV_UNUSED(bytes);
+#endif
+}
+
 static String describe(const Mat& m)
 {
     String shape;
@@ -41,8 +57,12 @@ PointReader::PointReader(InputArray points, int channels, const char* name)
 void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar* status) const
 {
     std::fill(status, status + n, (uchar)REFRACT_OK);
-    const uchar* points = points_.data + (size_t)(z ? 3 : 2)*begin*points_.elemSize1();
-    if (kernels().load(points, depth_ == CV_32F, n, x, y, z))
+    const size_t pointSize = (size_t)(z ? 3 : 2)*points_.elemSize1();
+    const uchar* points = points_.data + begin*pointSize;
+    const bool finite = kernels().load(points, depth_ == CV_32F, n, x, y, z);
+    if (begin + AHEAD < size_)
+        prefetch(points + AHEAD*pointSize, n*pointSize);
+    if (finite)
         return;
     for (int i = 0; i < n; ++i)
         if (!std::isfinite(x[i] + y[i] + (z ? z[i] : 0)))
@@ -89,6 +109,12 @@ void PointWriter::store(int begin, int n, const double* x, const double* y, cons
         setNaN((float*)points, channels, n, status);
     else
         setNaN((double*)points, channels, n, status);
+}
+
+void PointWriter::prepare(int begin, int n) const
+{
+    if (!points_.empty())
+        prefetch(points_.data + begin*points_.elemSize(), n*points_.elemSize());
 }
 
 StatusWriter::StatusWriter(OutputArray status, int size)
@@ -202,6 +228,8 @@ void DepthReader::load(int begin, int n, double* depth) const
         std::copy(depths_.ptr<float>() + begin, depths_.ptr<float>() + begin + n, depth);
     else
         std::copy(depths_.ptr<double>() + begin, depths_.ptr<double>() + begin + n, depth);
+    if (begin + AHEAD < size_)
+        prefetch(depths_.data + (begin + AHEAD)*depths_.elemSize1(), n*depths_.elemSize1());
 }
 
 std::vector<double> readDistCoeffs(InputArray a, const char* name)

@@ -11,8 +11,9 @@
 
 namespace cv { namespace refract {
 
-//! Lanes of one block: small enough that all arrays of a chain of kernels stay in the first-level cache.
-const int BLOCK = 128;
+//! Lanes of one block: small enough that all arrays of a chain of kernels stay in the first-level cache, and that the
+//! memory has its next points ready while a block is computed.
+const int BLOCK = 64;
 
 //! N points of 2 or 3 coordinates, read in blocks.
 class PointReader
@@ -34,6 +35,8 @@ class PointWriter
 public:
     //! Depth: the caller's if fixed, else `depth`. Nx1 with channels.
     PointWriter(OutputArray points, int size, int channels, int depth);
+    //! Announces what store() will write, some computation before it does.
+    void prepare(int begin, int n) const;
     void store(int begin, int n, const double* x, const double* y, const double* z, const uchar* status);
 private:
     Mat points_;

@@ -20,7 +20,7 @@ typedef std::vector<Vec2d> Polyline;
 it, so that each segment's fourth point lies elsewhere on the same stretch of the curve. Returns where they begin. */
 int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, Projection& p)
 {
-    double t[BLOCK];
+    double t[Projection::CAPACITY];
     for (int j = 0; j < segments; ++j)
     {
         t[2*j] = nodes[j];
@@ -72,7 +72,7 @@ const int SAMPLES = 24;     // of a curve: a few registers
 //! Adds even steps of t to a projection; returns where they begin.
 int addSamples(const EpipolarCurve& curve, double tNear, double tFar, int samples, Projection& p)
 {
-    double t[BLOCK];
+    double t[Projection::CAPACITY];
     for (int i = 0; i < samples; ++i)
         t[i] = tNear + (tFar - tNear)*i/(samples - 1);
     return p.add(curve, samples, t);
@@ -147,9 +147,9 @@ uchar placeVisibleNodes(const EpipolarCurve& curve, const Projection& p, int sam
     Projection other(p.camera());
     if (!visiblePart(curve, p, samples, SAMPLES, tNear, tFar))
     {
-        addSamples(curve, wholeNear, wholeFar, BLOCK, other);       // a closer look
+        addSamples(curve, wholeNear, wholeFar, Projection::CAPACITY, other);       // a closer look
         other.run();
-        if (!visiblePart(curve, other, 0, BLOCK, tNear, tFar))
+        if (!visiblePart(curve, other, 0, Projection::CAPACITY, tNear, tFar))
             return p.status(samples + SAMPLES - 1);
     }
     if (tNear == wholeNear && tFar == wholeFar)
@@ -190,7 +190,7 @@ struct Track
 void placeAllNodes(const Camera& to, std::vector<Track>& tracks, double tolerance, std::vector<double>& nodes, uchar* status)
 {
     Projection p(to);
-    const int TOGETHER = BLOCK/SAMPLES, count = (int)tracks.size();
+    const int TOGETHER = Projection::CAPACITY/SAMPLES, count = (int)tracks.size();
     for (int begin = 0; begin < count; begin += TOGETHER)
     {
         const int end = std::min(begin + TOGETHER, count);
@@ -239,7 +239,7 @@ void joinAllNodes(const Camera& to, const std::vector<Track>& tracks, const std:
     for (const Track& track : tracks)
         for (int done = 0, segments; done < track.segments; done += segments)
         {
-            if (p.room() < std::min(2*(track.segments - done) + 2, BLOCK/2))
+            if (p.room() < std::min(2*(track.segments - done) + 2, Projection::CAPACITY/2))
                 join();
             segments = std::min(track.segments - done, p.room()/2 - 1);
             pieces.push_back({ &track, addSegments(track.curve, &nodes[track.nodes + done], segments, p), segments, done == 0 });

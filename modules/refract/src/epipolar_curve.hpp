@@ -47,12 +47,13 @@ private:
     double unit_;
 };
 
-//! Points of one or several curves on their way to pixels, a block at a time.
+//! Points of one or several curves on their way to pixels.
 class Projection
 {
 public:
+    enum { CAPACITY = 2*BLOCK };
     explicit Projection(const Camera& other) : other_(other), size_(0) {}
-    int room() const { return BLOCK - size_; }
+    int room() const { return CAPACITY - size_; }
     void clear() { size_ = 0; }
     //! Returns where the points are among all.
     int add(const EpipolarCurve& curve, int n, const double* t)
@@ -67,7 +68,8 @@ public:
     void run()
     {
         std::fill(status_, status_ + size_, (uchar)REFRACT_OK);
-        other_.project(size_, x_, y_, z_, w_, u_, v_, status_);
+        for (int i = 0; i < size_; i += BLOCK)
+            other_.project(std::min(size_ - i, BLOCK), x_ + i, y_ + i, z_ + i, w_ + i, u_ + i, v_ + i, status_ + i);
         for (int i = 0; i < size_; ++i)
             if (status_[i] != REFRACT_OK)
                 u_[i] = v_[i] = std::numeric_limits<double>::quiet_NaN();
@@ -82,8 +84,8 @@ public:
 private:
     const Camera& other_;
     int size_;
-    double t_[BLOCK], x_[BLOCK], y_[BLOCK], z_[BLOCK], w_[BLOCK], u_[BLOCK], v_[BLOCK];
-    uchar status_[BLOCK];
+    double t_[CAPACITY], x_[CAPACITY], y_[CAPACITY], z_[CAPACITY], w_[CAPACITY], u_[CAPACITY], v_[CAPACITY];
+    uchar status_[CAPACITY];
 };
 
 }} // namespace

@@ -63,7 +63,8 @@ bool meetPlane(const Stack& stack, const double* plane, const double* planeD, in
         store(answers.where(good, X), x, at);
         store(Y, y, at);
         store(Z, z, at);
-        store(m, mu, at);
+        if (mu)
+            store(m, mu, at);
     });
     return answers.complete();
 }

@@ -85,8 +85,8 @@ struct Nodes { double u[NODES*NODES], v[NODES*NODES]; };
 bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
 {
     static const CheckWeights check(-1, PixelWeights::HALF);
-    enum { GRID = NODES*NODES, ALL = GRID + 9 };
-    static_assert(ALL <= BLOCK, "one block");
+    enum { GRID = NODES*NODES, CHECKS = 9, ALL = GRID + CHECKS };
+    static_assert(GRID <= BLOCK, "one block");
     double column[ALL], row[ALL], u[ALL], v[ALL];
     uchar status[ALL];
     for (int i = 0; i < ALL; ++i)
@@ -95,7 +95,8 @@ bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
         column[i] = tile.x + (c < 0 ? check.node[i % NODES] : check.place[c % 3]);
         row[i] = tile.y + (c < 0 ? check.node[i/NODES] : check.place[c/3]);
     }
-    image.toRaw(ALL, column, row, u, v, status);
+    image.toRaw(GRID, column, row, u, v, status);
+    image.toRaw(CHECKS, column + GRID, row + GRID, u + GRID, v + GRID, status + GRID);
     bool good = std::count(status, status + ALL, (uchar)REFRACT_OK) == ALL;
     for (int r = 0; r < 3; ++r)
     {

@@ -36,16 +36,18 @@ void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* plan
             continue;
         const Vec3d d(dx[i], dy[i], dz[i]);
         const double along = abc.dot(d), ahead = planeD[i] - tau[i]*axis;
-        mu[i] = along/ahead;
-        const Vec3d X = d + mu[i]*tau[i]*normal;
+        const double m = along/ahead;
+        const Vec3d X = d + m*tau[i]*normal;
         x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
+        if (mu)
+            mu[i] = m;
         if (std::isnan(planeD[i]))
             status[i] = REFRACT_NOT_FINITE;
         else if (along == 0)
             status[i] = REFRACT_PARALLEL_RAYS;
-        else if (!(mu[i] >= 0) || std::signbit(mu[i]) || std::isinf(mu[i]))
+        else if (!(m >= 0) || std::signbit(m) || std::isinf(m))
             status[i] = REFRACT_NO_INTERSECTION;
-        else if (!layers.isBeyond(x[i], y[i], z[i], mu[i]))
+        else if (!layers.isBeyond(x[i], y[i], z[i], m))
             status[i] = REFRACT_BEHIND_WINDOW;
     }
 }
@@ -71,6 +73,7 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         std::fill(planeD, planeD + n, plane[3]);
         in.load(begin, n, u, v, NULL, st);
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        out.prepare(begin, n);
         meetPlane(cam.layers(), n, abc, planeD, tau, dx, dy, dz, x, y, z, mu, st);
         for (int i = 0; i < n; ++i)
         {

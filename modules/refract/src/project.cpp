@@ -27,6 +27,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
         uchar st[BLOCK];
         in.load(begin, n, x, y, z, st);
+        out.prepare(begin, n);
         kernels().transform(R.val, t.val, n, x, y, z);
         cam.project(n, x, y, z, NULL, u, v, st);
         out.store(begin, n, u, v, NULL, st);
@@ -113,7 +114,9 @@ void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, Outp
         double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK], ox[BLOCK], oy[BLOCK], oz[BLOCK];
         uchar st[BLOCK];
         in.load(begin, n, u, v, NULL, st);
+        outOrigins.prepare(begin, n);
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        outDirections.prepare(begin, n);
         kernels().multiples(normal.val, n, tau, ox, oy, oz);
         outOrigins.store(begin, n, ox, oy, oz, st);
         outDirections.store(begin, n, dx, dy, dz, st);

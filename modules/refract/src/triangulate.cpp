@@ -288,6 +288,7 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
         for (int i = 0; i < n; ++i)
             if (block.status[i] == REFRACT_OK)
                 block.status[i] = status2[i];
+        out.prepare(begin, n);
         triangulateBlock(pair, block, n, flags);
         for (int i = 0; i < n && pointCovariance; ++i)
             if (block.status[i] == REFRACT_OK)
