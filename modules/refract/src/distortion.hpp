@@ -86,27 +86,56 @@ inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
     return d;
 }
 
-//! The point, were (dx, dy) all of the distortion that is not radial: by the polynomial of the inverse.
-template<typename T>
-inline void guess(const OpenCVModel& m, T xd, T yd, T dx, T dy, T& x, T& y)
+//! c[0] + s (c[1] + s (...))
+template<int N, typename T>
+inline T horner(const double (&c)[N], T s)
 {
-    const T xr = xd - dx, yr = yd - dy, s = xr*xr + yr*yr;
-    T series = m.inverse[TERMS - 1] + T();
-    for (int k = TERMS - 2; k >= 0; --k)
-        series = series*s + m.inverse[k];
-    series = 1 + s*series;
+    T sum = c[N - 1] + T();
+    for (int k = N - 2; k >= 0; --k)
+        sum = sum*s + c[k];
+    return sum;
+}
+
+//! The undistorted point, were the distortion radial: by the polynomial of the inverse.
+template<typename T>
+inline void invertRadial(const OpenCVModel& m, T xr, T yr, T& x, T& y)
+{
+    const T s = xr*xr + yr*yr, series = 1 + s*horner(m.inverse, s);
     const T scale = ((series > 0.5) & (series < 2)) ? series : 1 + T();
     x = xr*scale;
     y = yr*scale;
 }
 
-//! A better guess: what is not radial is small and changes slowly, so it is taken as it is at the last guess.
+//! The same by fewer terms, good enough to say what of the distortion is not radial.
 template<typename T>
-inline void shift(const OpenCVModel& m, T xd, T yd, T& x, T& y)
+inline void invertRoughly(const OpenCVModel& m, T xr, T yr, T& x, T& y)
+{
+    const T s = xr*xr + yr*yr, scale = 1 + s*horner(m.rough, s);
+    x = xr*scale;
+    y = yr*scale;
+}
+
+//! Where the search for the undistorted point begins.
+template<typename T>
+inline void guess(const OpenCVModel& m, T xd, T yd, T& x, T& y)
+{
+    if (m.shifts == 0)
+        invertRadial(m, xd, yd, x, y);
+    else
+        invertRoughly(m, xd, yd, x, y);
+}
+
+/** A better guess, the k-th of m.shifts: what is not radial is small and changes slowly, so it is taken off as it is at the
+last guess. */
+template<typename T>
+inline void shift(const OpenCVModel& m, int k, T xd, T yd, T& x, T& y)
 {
     T dx, dy;
     displace(m, x*x + y*y, tangential(m, x, y), x, y, dx, dy);
-    guess(m, xd, yd, dx, dy, x, y);
+    if (k == m.shifts)
+        invertRadial(m, xd - dx, yd - dy, x, y);
+    else
+        invertRoughly(m, xd - dx, yd - dy, x, y);
 }
 
 //! (x, y, 1) through a homography: dehomogenised, and the denominator.

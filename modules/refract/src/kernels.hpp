@@ -57,7 +57,7 @@ struct Columns
 enum { K1, K2, P1, P2, K3, K4, K5, K6, S1, S2, S3, S4, TAUX, TAUY, DIST_COEFFS };
 
 //! Terms of the polynomial that guesses a lens's inverse radial function.
-enum { TERMS = 7 };
+enum { TERMS = 7, ROUGH_TERMS = 3 };
 
 //! OpenCV's lens model as the kernels see it.
 struct OpenCVModel
@@ -70,6 +70,7 @@ struct OpenCVModel
     double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
     int given;                          //!< how many coefficients are parameters
     double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
+    double rough[ROUGH_TERMS];  //!< the same, good to as much as is not radial
     int shifts;                 //!< how often that start is shifted for what is not radial
     double sNear, near2;        //!< where r^2 and the square of a Newton step are smaller, the step's error is nothing
 };

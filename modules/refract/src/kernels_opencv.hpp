@@ -28,89 +28,71 @@ bool projectOpenCV(const OpenCVModel& model, int n, const double* px, const doub
     return answers.complete();
 }
 
-//! A search for the undistorted point of (xd, yd).
-struct PlaneSearch
-{
-    Lanes xd, yd, x, y;
-    Lanes xx, xy, yx, yy, inverse;      //!< the Jacobian of the last Newton step, 1/determinant
-    Lanes move2;                        //!< square of that step
-    Mask unfinished;                    //!< more than rounding may be left
-    Mask inFront;                       //!< of the tilted sensor
-};
+//! The point (x, y) that is distorted to (xd, yd), as far as it is known.
+struct PlaneSearch { Lanes xd, yd, x, y; };
 
-//! Goes to where the distorted point would be right, were the map linear. Returns the square of the step.
-inline Lanes correct(PlaneSearch& p, Lanes xd, Lanes yd)
+inline PlaneSearch beginSearch(const OpenCVModel& m, Lanes u, Lanes v)
 {
-    const Lanes ex = p.xd - xd, ey = p.yd - yd;
-    const Lanes dx = (p.yy*ex - p.xy*ey)*p.inverse, dy = (p.xx*ey - p.yx*ex)*p.inverse;
+    PlaneSearch p;
+    p.xd = (u - m.cx)*(1/m.fx);
+    p.yd = (v - m.cy)*(1/m.fy);
+    if (m.tilted)
+    {
+        const Mask inFront = homography(m.untilt, p.xd, p.yd) > 0;  // of the tilted sensor
+        p.xd = select(inFront, p.xd, all(NAN));
+    }
+    guess(m, p.xd, p.yd, p.x, p.y);
+    return p;
+}
+
+/** A Newton step. It leaves an error of its square times the curvature, which is known in the image (OpenCVModel::near2).
+@param regular where the lens is far from the edge of its domain
+@return where more than rounding may be left */
+inline Mask newtonStep(const OpenCVModel& m, PlaneSearch& p, Mask& regular)
+{
+    const double SINGULAR = 1e3, FAR2 = 1e-20;
+    const Distorted<Lanes> d = distort(m, p.x, p.y);
+    const Lanes inverse = roughInverse(d.determinant()), ex = p.xd - d.x, ey = p.yd - d.y;
+    const Lanes dx = (d.yy*ex - d.xy*ey)*inverse, dy = (d.xx*ey - d.yx*ex)*inverse, move2 = dx*dx + dy*dy;
     p.x += dx;
     p.y += dy;
-    return dx*dx + dy*dy;
-}
-
-//! Leaves an error of the step's square times the curvature, which is known in the image (OpenCVModel::near2).
-inline void newtonStep(const OpenCVModel& m, PlaneSearch& p)
-{
-    const Distorted<Lanes> d = distort(m, p.x, p.y);
-    p.xx = d.xx;
-    p.xy = d.xy;
-    p.yx = d.yx;
-    p.yy = d.yy;
-    p.inverse = roughInverse(d.determinant());
-    p.move2 = correct(p, d.x, d.y);
-    p.unfinished = (p.move2 > m.near2) | (p.x*p.x + p.y*p.y > m.sNear);
-}
-
-//! A step with the Jacobian of the last Newton step. It leaves an error of the order of the product of both steps.
-inline void chordStep(const OpenCVModel& m, PlaneSearch& p)
-{
-    const double ENOUGH2 = 1e-30;
-    const Radial<Lanes> radial(m, p.x*p.x + p.y*p.y);
-    Lanes xd, yd;
-    displace(m, radial.s, radial.F + tangential(m, p.x, p.y), p.x, p.y, xd, yd);
-    p.unfinished = p.move2*correct(p, xd, yd) > ENOUGH2;
+    const Lanes s = p.x*p.x + p.y*p.y;
+    regular = (s < m.sMax) & (inverse > 0) & (inverse < SINGULAR);
+    return move2 > select(s > m.sNear, all(FAR2), all(m.near2));
 }
 
 /* Newton in the plane, from a start that in the image is so good that the first step is the last. Only a root in the
 middle of the domain is accepted here: at its edge, where the Jacobian is nearly singular, the safeguarded search of
 lens_opencv.cpp knows better. */
-bool unprojectOpenCV(const OpenCVModel& model, int n, const double* pu, const double* pv, double* px, double* py, double* pz)
+bool unprojectOpenCV(const OpenCVModel& model, int n, const double* u, const double* v, double* x, double* y, double* z)
 {
     const OpenCVModel m = model;
-    const double SINGULAR = 1e3, fx = 1/m.fx, fy = 1/m.fy;
-    const int TURNS = 4, CHORDS = 3;
+    const int STEPS = 8;
     Answers answers;
     eachGroup<PlaneSearch>(n, [&](Group<PlaneSearch>& group)
     {
-        const auto unfinished = [&] { return group.some([&](const PlaneSearch& p) { return p.unfinished; }); };
-        group.each([&](PlaneSearch& p, Part at)
-        {
-            p.xd = (load(pu, at) - m.cx)*fx;
-            p.yd = (load(pv, at) - m.cy)*fy;
-            p.inFront = m.tilted ? homography(m.untilt, p.xd, p.yd) > 0 : p.xd == p.xd;
-            guess(m, p.xd, p.yd, all(0), all(0), p.x, p.y);
-        });
-        for (int k = 0; k < m.shifts; ++k)
-            group.each([&](PlaneSearch& p, Part) { shift(m, p.xd, p.yd, p.x, p.y); });
+        group.each([&](PlaneSearch& p, Part at) { p = beginSearch(m, load(u, at), load(v, at)); });
+        for (int k = 1; k <= m.shifts; ++k)
+            group.each([&](PlaneSearch& p, Part) { shift(m, k, p.xd, p.yd, p.x, p.y); });
+        Answers found;
         bool more = true;
-        for (int k = 0; k < TURNS && more; ++k)
+        for (int k = 0; k < STEPS && more; ++k)
         {
-            group.each([&](PlaneSearch& p, Part) { newtonStep(m, p); });
-            more = unfinished();
-            for (int chord = 0; chord < CHORDS && more; ++chord)
+            found = Answers();
+            Mask unfinished = none();
+            group.each([&](PlaneSearch& p, Part at)
             {
-                group.each([&](PlaneSearch& p, Part) { chordStep(m, p); });
-                more = unfinished();
-            }
+                Mask regular;
+                const Mask open = newtonStep(m, p, regular);
+                unfinished |= open;
+                const Lanes inverse = inverseSqrt(1 + p.x*p.x + p.y*p.y);
+                store(found.where(regular & isNot(open), p.x*inverse), x, at);
+                store(p.y*inverse, y, at);
+                store(inverse, z, at);
+            });
+            more = any(unfinished);
         }
-        group.each([&](PlaneSearch& p, Part at)
-        {
-            const Lanes s = p.x*p.x + p.y*p.y, z = inverseSqrt(1 + s);
-            const Mask good = p.inFront & isNot(p.unfinished) & (s < m.sMax) & (p.inverse > 0) & (p.inverse < SINGULAR);
-            store(answers.where(good, p.x*z), px, at);
-            store(p.y*z, py, at);
-            store(z, pz, at);
-        });
+        answers.add(found);
     });
     return answers.complete();
 }

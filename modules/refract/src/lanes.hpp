@@ -221,6 +221,7 @@ public:
         missing_ |= answer != answer;
         return answer;
     }
+    void add(const Answers& others) { missing_ |= others.missing_; }
     bool complete() const { return !any(missing_); }
 private:
     Mask missing_ = none();

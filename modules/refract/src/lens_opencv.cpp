@@ -125,6 +125,7 @@ void OpenCVLens::fitStart() const
     if (!std::isfinite(r))
         r = 0.95*std::sqrt(m_.sMax);
     fitInverse(radialFunction, r, TERMS, m_.inverse);
+    fitInverse(radialFunction, r, ROUGH_TERMS, m_.rough);
     const double image = r/1.1, NOTHING = 2e-14;      // 2e-11 px for a focal length of 1000
     const int MOST = 3;
     m_.sNear = image*image;
@@ -157,9 +158,9 @@ double OpenCVLens::startError(double r) const
         const double x = r*std::cos(angle), y = r*std::sin(angle);
         const Distorted<double> d = distort(m_, x, y);
         double foundX, foundY;
-        guess(m_, d.x, d.y, 0., 0., foundX, foundY);
-        for (int k = 0; k < m_.shifts; ++k)
-            shift(m_, d.x, d.y, foundX, foundY);
+        guess(m_, d.x, d.y, foundX, foundY);
+        for (int k = 1; k <= m_.shifts; ++k)
+            shift(m_, k, d.x, d.y, foundX, foundY);
         worst = std::max(worst, std::hypot(foundX - x, foundY - y));
     }
     return worst;
