@@ -66,7 +66,8 @@ struct OpenCVModel
     double k[DIST_COEFFS];
     double sMax;                //!< square of the radius where the radial part stops growing
     bool rational, prism, tilted;       //!< whether D, s1 ... s4, the tilt do anything
-    double tilt[9], untilt[9];
+    double tilt[9];
+    double fromPixel[9];                //!< homography: pixels -> distorted points, without tilt
     double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
     int given;                          //!< how many coefficients are parameters
     double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins

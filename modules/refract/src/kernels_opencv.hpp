@@ -33,13 +33,17 @@ struct PlaneSearch { Lanes xd, yd, x, y; };
 
 inline PlaneSearch beginSearch(const OpenCVModel& m, Lanes u, Lanes v)
 {
-    PlaneSearch p;
-    p.xd = (u - m.cx)*(1/m.fx);
-    p.yd = (v - m.cy)*(1/m.fy);
+    const double* H = m.fromPixel;
+    PlaneSearch p = { u, v, u, v };
     if (m.tilted)
     {
-        const Mask inFront = homography(m.untilt, p.xd, p.yd) > 0;  // of the tilted sensor
+        const Mask inFront = homography(H, p.xd, p.yd) > 0;     // of the tilted sensor
         p.xd = select(inFront, p.xd, all(NAN));
+    }
+    else
+    {
+        p.xd = H[0]*u + H[2];
+        p.yd = H[4]*v + H[5];
     }
     guess(m, p.xd, p.yd, p.x, p.y);
     return p;

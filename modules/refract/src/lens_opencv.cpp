@@ -107,9 +107,10 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     m_.tilted = k[TAUX] != 0 || k[TAUY] != 0;
     m_.prism = k[S1] != 0 || k[S2] != 0 || k[S3] != 0 || k[S4] != 0;
     radialOnly_ = k[P1] == 0 && k[P2] == 0 && !m_.prism;
-    const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]), untilt = tilt.inv();
+    const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]);
+    const Matx33d fromPixel = tilt.inv()*Matx33d(1/m_.fx, 0, -m_.cx/m_.fx, 0, 1/m_.fy, -m_.cy/m_.fy, 0, 0, 1);
     std::copy(tilt.val, tilt.val + 9, m_.tilt);
-    std::copy(untilt.val, untilt.val + 9, m_.untilt);
+    std::copy(fromPixel.val, fromPixel.val + 9, m_.fromPixel);
     Matx33d dTilt[2];
     tiltDerivatives(k[TAUX], k[TAUY], dTilt);
     for (int i = 0; i < 2; ++i)
@@ -244,9 +245,9 @@ void OpenCVLens::unproject(int n, const double* u, const double* v,
 
 uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
 {
-    double xd = (u - m_.cx)/m_.fx, yd = (v - m_.cy)/m_.fy;
-    if (m_.tilted && !(homography(m_.untilt, xd, yd) > 0))
-        return REFRACT_OUTSIDE_LENS_MODEL;
+    double xd = u, yd = v;
+    if (!(homography(m_.fromPixel, xd, yd) > 0))
+        return REFRACT_OUTSIDE_LENS_MODEL;      // behind the tilted sensor
     const uchar status = undistort(xd, yd, x, y);
     z = 1/std::sqrt(1 + x*x + y*y);
     x *= z;
