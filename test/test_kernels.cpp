@@ -135,6 +135,77 @@ TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[k
         }
 }
 
+TEST_CASE("A chord is close where the cubic through its points stays within the tolerance", "[kernels]")
+{
+    Random random;
+    const double TOLERANCE = 0.01;
+    int known = 0, close = 0;
+    for (const Kernels* level : allLevels())
+        for (int n = 1; n <= 19; ++n)
+            for (int trial = 0; trial < 50; ++trial)
+            {
+                // Segments along u of the curve v = a u + b u^2 + c u^3, u = t.
+                const double a = random.uniform(-1, 1), b = random.uniform(-0.03, 0.03), c = random.uniform(-2e-3, 2e-3);
+                const auto curve = [&](double t) { return t*(a + t*(b + t*c)); };
+                Array t, v, tMiddle, vMiddle, slack;
+                for (int i = 0; i <= n; ++i)
+                    t[i] = i == 0 ? -1. : t[i - 1] + random.uniform(0.5, 2);
+                for (int i = 0; i < n; ++i)
+                    tMiddle[i] = 0.5*(t[i] + t[i + 1]);
+                tMiddle[n] = 0.5*(t[n] + tMiddle[n - 1]);
+                for (int i = 0; i <= n; ++i)
+                {
+                    v[i] = curve(t[i]);
+                    vMiddle[i] = curve(tMiddle[i]);
+                }
+                slack[n] = -7;
+                const bool all = level->areClose(n, TOLERANCE, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(),
+                                                 vMiddle.data(), slack.data());
+                CAPTURE(level->instructions, n, trial);
+                REQUIRE(slack[n] == -7);
+                bool every = true;
+                for (int i = 0; i < n; ++i)
+                {
+                    const double du = t[i + 1] - t[i], dv = v[i + 1] - v[i];
+                    double farthest = 0;
+                    for (double p = 0; p <= 1; p += 1./64)
+                        farthest = std::max(farthest, std::abs(du*(curve(t[i] + p*du) - v[i]) - dv*p*du)/std::hypot(du, dv));
+                    every = every && !std::isnan(slack[i]);
+                    if (!std::isnan(slack[i]))
+                        REQUIRE(farthest <= TOLERANCE);
+                    if (farthest < 0.8*TOLERANCE)
+                        REQUIRE(!std::isnan(slack[i]));
+                    known += farthest <= TOLERANCE;
+                    close += !std::isnan(slack[i]);
+                }
+                REQUIRE(all == every);
+            }
+    CHECK(close > 0.9*known);
+    CHECK(close < known);       // some are refused: the margin is tested
+}
+
+TEST_CASE("Where the middle of a chord is out of sight it has no answer, where the next middle is it has one", "[kernels]")
+{
+    for (const Kernels* level : allLevels())
+        for (int bad = 0; bad <= 19; ++bad)
+        {
+            Array t, v, tMiddle, slack;
+            for (int i = 0; i < MOST; ++i)
+            {
+                t[i] = i;
+                v[i] = 0;
+                tMiddle[i] = i + 0.5;
+            }
+            Array vMiddle = v;
+            vMiddle[bad] = NAN;
+            CAPTURE(level->instructions, bad);
+            CHECK(level->areClose(19, 0.01, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(), vMiddle.data(),
+                                  slack.data()) == (bad == 19));
+            for (int i = 0; i < 19; ++i)
+                REQUIRE(std::isnan(slack[i]) == (i == bad));
+        }
+}
+
 TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
 {
     const Layers layers(GlassWindow(Vec3d(0.1, 0, 1), 20, 1.5, 30));
@@ -150,6 +221,8 @@ TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
             CHECK(clean([&] { level->transform(R, t, n, x.data(), y.data(), z.data()); }));
             CHECK(clean([&] { level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
             CHECK(clean([&] { level->traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->chordRoots(n, x.data(), y.data(), u.data()); }));
+            CHECK(clean([&] { level->areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(), tau.data()); }));
             CHECK(clean([&] { level->pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
         }
 }

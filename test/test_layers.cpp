@@ -2,6 +2,8 @@
 #include "layers.hpp"
 #include "scenes.hpp"
 
+#include <memory>
+
 using namespace cv;
 using namespace cv::refract;
 using namespace scenes;
@@ -180,6 +182,27 @@ TEST_CASE("Infinitely far points keep or refract their direction by Snell's law 
         const Vec3d across = window.innerIndex*window.normal.cross(unit(w)) - window.outerIndex*window.normal.cross(d);
         REQUIRE(norm(across) < 1e-13);
     }
+}
+
+TEST_CASE("A copy of layers does without the original", "[layers]")
+{
+    Random random;
+    std::unique_ptr<Layers> original(new Layers(makeWindow(PANE_IN_AIR, random)));
+    const Vec3d w = unit(Vec3d(0.1, -0.2, 1));
+    const Ray expected = traceOut(*original, w);
+    const Layers copy(*original);
+    Layers assigned(GlassWindow(Vec3d(0, 0, 1), 5, 1.4, 3));
+    assigned = *original;
+    original.reset();
+    for (const Layers* layers : { &copy, (const Layers*)&assigned })
+    {
+        const Ray ray = traceOut(*layers, w);
+        CHECK(ray.tau == expected.tau);
+        CHECK(ray.direction == expected.direction);
+    }
+    CHECK(copy.stack().media != assigned.stack().media);
+    CHECK(copy.stack().heights != assigned.stack().heights);
+    CHECK(copy.stack().indices != assigned.stack().indices);
 }
 
 TEST_CASE("Homogeneous points: only the ratio to w counts", "[layers]")

@@ -16,55 +16,39 @@ namespace {
 
 typedef std::vector<Vec2d> Polyline;
 
-/* Adds the segments between nodes to a projection: their ends and middles, and after the last end a point a quarter before
-it, so that each segment's fourth point lies elsewhere on the same stretch of the curve. Returns where they begin. */
+/* Adds the segments between nodes to a projection: their ends, then their middles and a point a quarter before the last end,
+so that each segment's next middle lies elsewhere on the same stretch of the curve. Returns where the ends begin. */
 int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, Projection& p)
 {
-    double t[Projection::CAPACITY];
+    double middles[Projection::CAPACITY/2];
     for (int j = 0; j < segments; ++j)
-    {
-        t[2*j] = nodes[j];
-        t[2*j + 1] = 0.5*(nodes[j] + nodes[j + 1]);
-    }
-    t[2*segments] = nodes[segments];
-    t[2*segments + 1] = 0.5*(nodes[segments] + t[2*segments - 1]);
-    return p.add(curve, 2*segments + 2, t);
+        middles[j] = 0.5*(nodes[j] + nodes[j + 1]);
+    middles[segments] = 0.5*(nodes[segments] + middles[segments - 1]);
+    const int begin = p.add(curve, segments + 1, nodes);
+    p.add(curve, segments + 1, middles);
+    return begin;
 }
 
-double cross(const Vec2d& a, const Vec2d& b) { return a[0]*b[1] - a[1]*b[0]; }
-
-/* Whether a segment's chord is within the tolerance of the curve, whose distance across the chord is about
-(1 - u^2) (middle + skew u), -1 <= u <= 1 by t, which the middle and the fourth point tell, and at most
-middle + skew^2/(4 middle) and middle + 0.385 skew. */
-bool isClose(const Projection& p, int segment, double tolerance)
+/* Appends what follows after the first end of segments, which are split where the curve leaves the chord by more than the
+tolerance. A NaN inside (grazing the edge of visibility) is not split. */
+void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, int segments, double tolerance, int depth,
+                    Polyline& line)
 {
-    const Vec2d a = p.pixel(segment), b = p.pixel(segment + 2), chord = b - a;
-    const double length2 = chord.dot(chord), enough = 0.95*tolerance + 1e-13*(std::abs(b[0]) + std::abs(b[1]));
-    const double u = 2*(p.t(segment + 3) - p.t(segment + 1))/(p.t(segment + 2) - p.t(segment));
-    const double middle = cross(chord, p.pixel(segment + 1) - a), other = cross(chord, p.pixel(segment + 3) - a);
-    const double skew = (other/(1 - u*u) - middle)/u;
-    double most = std::abs(middle);
-    if (skew != 0 && !std::isnan(skew))     // else the fourth point is out of sight
-        most += std::min(0.25*skew*skew/most, 0.385*std::abs(skew));
-    return most*most <= enough*enough*length2;      // far beyond any sensor, pixels are rounding
-}
-
-/* Appends what follows after the first end of a segment, split where the curve leaves the chord by more than the tolerance.
-A NaN inside (grazing the edge of visibility) is not split. */
-void appendSegment(const EpipolarCurve& curve, const Projection& p, int segment, double tolerance, int depth, Polyline& line)
-{
-    const Vec2d b = p.pixel(segment + 2);
-    if (depth == 0 || std::isnan(p.pixel(segment + 1)[0]) || isClose(p, segment, tolerance))
-    {
-        line.push_back(b);
-        return;
-    }
-    const double nodes[] = { p.t(segment), p.t(segment + 1), p.t(segment + 2) };
-    Projection halves(p.camera());
-    addSegments(curve, nodes, 2, halves);
-    halves.run();
-    appendSegment(curve, halves, 0, tolerance, depth - 1, line);
-    appendSegment(curve, halves, 2, tolerance, depth - 1, line);
+    double slack[Projection::CAPACITY/2];
+    const double *t = p.t() + begin, *u = p.u() + begin, *v = p.v() + begin;
+    const int middles = segments + 1;
+    const bool allClose = kernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
+    for (int j = 0; j < segments; ++j)
+        if (allClose || depth == 0 || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
+            line.push_back(Vec2d(u[j + 1], v[j + 1]));
+        else
+        {
+            const double nodes[] = { t[j], t[middles + j], t[j + 1] };
+            Projection halves(p.camera());
+            addSegments(curve, nodes, 2, halves);
+            halves.run();
+            appendSegments(curve, halves, 0, 2, tolerance, depth - 1, line);
+        }
 }
 
 const int SAMPLES = 24;     // of a curve: a few registers
@@ -83,7 +67,7 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
 {
     double root[SAMPLES], share[SAMPLES];   // root of the distance from the neighbours' chord; its sum so far
     double slope[SAMPLES];                  // of t by that sum, to the next sample
-    kernels().chordRoots(SAMPLES - 2, p.u(samples), p.v(samples), root + 1);
+    kernels().chordRoots(SAMPLES - 2, p.u() + samples, p.v() + samples, root + 1);
     root[0] = root[1];
     root[SAMPLES - 1] = root[SAMPLES - 2];
     share[0] = 0;
@@ -93,7 +77,7 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
     // so that the check of the finished segments seldom has to split one.
     const double estimate = 0.5*share[SAMPLES - 1]/std::sqrt(4*tolerance);
     const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*estimate)));
-    const double first = p.t(samples), step = p.t(samples + 1) - first, part = share[SAMPLES - 1]/segments;
+    const double first = p.t()[samples], step = p.t()[samples + 1] - first, part = share[SAMPLES - 1]/segments;
     for (int i = 0; i < SAMPLES - 1; ++i)
         slope[i] = step/std::max(share[i + 1] - share[i], DBL_MIN);
     nodes.push_back(first);
@@ -103,7 +87,7 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
             ++i;
         nodes.push_back(first + i*step + (j*part - share[i])*slope[i]);
     }
-    nodes.push_back(p.t(samples + SAMPLES - 1));
+    nodes.push_back(p.t()[samples + SAMPLES - 1]);
 }
 
 //! The end of visibility between a visible and an invisible t, from the visible side.
@@ -133,8 +117,8 @@ bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int
         return false;
     while (p.status(last) != REFRACT_OK)
         --last;
-    tNear = first == begin ? p.t(first) : edgeOfVisibility(curve, p.camera(), p.t(first), p.t(first - 1));
-    tFar = last == begin + samples - 1 ? p.t(last) : edgeOfVisibility(curve, p.camera(), p.t(last), p.t(last + 1));
+    tNear = first == begin ? p.t()[first] : edgeOfVisibility(curve, p.camera(), p.t()[first], p.t()[first - 1]);
+    tFar = last == begin + samples - 1 ? p.t()[last] : edgeOfVisibility(curve, p.camera(), p.t()[last], p.t()[last + 1]);
     return true;
 }
 
@@ -142,7 +126,7 @@ bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int
 uchar placeVisibleNodes(const EpipolarCurve& curve, const Projection& p, int samples, double tolerance,
                         std::vector<double>& nodes)
 {
-    const double wholeNear = p.t(samples), wholeFar = p.t(samples + SAMPLES - 1);
+    const double wholeNear = p.t()[samples], wholeFar = p.t()[samples + SAMPLES - 1];
     double tNear, tFar;
     Projection other(p.camera());
     if (!visiblePart(curve, p, samples, SAMPLES, tNear, tFar))
@@ -221,6 +205,7 @@ void joinAllNodes(const Camera& to, const std::vector<Track>& tracks, const std:
 {
     struct Piece { const Track* track; int begin, segments; bool isFirst; };
     std::vector<Piece> pieces;
+    lines.points.reserve(nodes.size());
     Projection p(to);
     const auto join = [&]
     {
@@ -229,8 +214,7 @@ void joinAllNodes(const Camera& to, const std::vector<Track>& tracks, const std:
         {
             if (piece.isFirst)
                 lines.points.push_back(p.pixel(piece.begin));
-            for (int j = 0; j < piece.segments; ++j)
-                appendSegment(piece.track->curve, p, piece.begin + 2*j, tolerance, 12, lines.points);
+            appendSegments(piece.track->curve, p, piece.begin, piece.segments, tolerance, 12, lines.points);
             lines.end[piece.track->point] = (int)lines.points.size();
         }
         pieces.clear();
@@ -262,7 +246,11 @@ void writeLines(const std::vector<Polylines>& blocks, int count, int depth, Outp
         if (n == 0)
             continue;
         Mat line = lines.getMat(i);
-        Mat(line.size(), CV_64FC2, (void*)(block.points.data() + begin)).convertTo(line, depth);    // a vector is a row
+        const Vec2d* points = block.points.data() + begin;
+        if (depth == CV_64F)
+            std::copy(points, points + n, line.ptr<Vec2d>());
+        else
+            std::copy(points, points + n, line.ptr<Vec2f>());
         begin += n;
     }
 }

@@ -75,10 +75,10 @@ public:
                 u_[i] = v_[i] = std::numeric_limits<double>::quiet_NaN();
     }
     const Camera& camera() const { return other_; }
-    double t(int i) const { return t_[i]; }
-    Vec2d pixel(int i) const { return Vec2d(u_[i], v_[i]); }    //!< NaN where there is no image
-    const double* u(int i) const { return u_ + i; }
-    const double* v(int i) const { return v_ + i; }
+    const double* t() const { return t_; }
+    const double* u() const { return u_; }      //!< NaN where there is no image
+    const double* v() const { return v_; }
+    Vec2d pixel(int i) const { return Vec2d(u_[i], v_[i]); }
     uchar status(int i) const { return status_[i]; }
 
 private:

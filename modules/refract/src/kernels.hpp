@@ -109,6 +109,12 @@ struct Kernels
 
     //! Of each of n pixels between others, n + 2 in all: the square root of its distance from its neighbours' chord.
     void (*chordRoots)(int n, const double* u, const double* v, double* roots);
+    /** Of each of n segments of a curve, n + 1 ends in all, whether its chord is within the tolerance of the curve. The curve's
+    distance across the chord is about (1 - p^2) (middle + skew p), -1 <= p <= 1 by t: the middle and the next middle (so n + 1
+    of them) tell, and it is at most middle + skew^2/(4 middle) and middle + 0.385 skew.
+    @param slack what is left of the tolerance; no answer where the chord is not close, or the middle is NaN */
+    bool (*areClose)(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
+                     const double* uMiddle, const double* vMiddle, double* slack);
 
     // See Layers and Lens.
     bool (*traceOut)(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,

@@ -127,6 +127,28 @@ void chordRoots(int n, const double* u, const double* v, double* roots)
     });
 }
 
+bool areClose(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
+              const double* uMiddle, const double* vMiddle, double* slack)
+{
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 1, at), vB = load(v + 1, at);
+        const Lanes chordU = uB - uA, chordV = vB - vA;
+        const auto height = [&](const double* pu, const double* pv)     // over the chord, times its length
+        { return chordU*(load(pv, at) - vA) - chordV*(load(pu, at) - uA); };
+        const Lanes place = 2*(load(tMiddle + 1, at) - load(tMiddle, at))/(load(t + 1, at) - load(t, at));
+        const Lanes middle = height(uMiddle, vMiddle), other = height(uMiddle + 1, vMiddle + 1);
+        const Lanes skew = (other/(1 - place*place) - middle)/place, most = absolute(middle);
+        const Lanes near = 0.25*skew*skew/most, far = 0.385*absolute(skew), more = select(near < far, near, far);
+        const Lanes reach = most + select(more == more, more, all(0));      // else the fourth point is out of sight
+        const Lanes enough = 0.95*tolerance + 1e-13*(absolute(uB) + absolute(vB));  // far out, pixels are rounding
+        const Lanes rest = enough*enough*(chordU*chordU + chordV*chordV) - reach*reach;
+        store(answers.where(rest >= 0, rest), slack, at);
+    });
+    return answers.complete();
+}
+
 void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
 {
     double along[NODES];
@@ -134,8 +156,8 @@ void interpolate(const double* values, const double* row, const double* columns,
     {
         Lanes sum = all(0);
         for (int r = 0; r < NODES; ++r)
-            sum += row[r]*load(values + NODES*r, c, NODES);
-        store(sum, along, c, NODES);
+            sum += row[r]*load(values + NODES*r, Part{ c, NODES });
+        store(sum, along, Part{ c, NODES });
     }
     eachRegister(n, [&](auto at)
     {

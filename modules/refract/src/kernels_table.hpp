@@ -22,7 +22,7 @@ const Kernels table = {
 #else
     "baseline",
 #endif
-    loadPoints, storePoints, transform, multiples, pinhole, meetPlane, chordRoots, traceOut, solveIn, chainWindow, chainLinear,
+    loadPoints, storePoints, transform, multiples, pinhole, meetPlane, chordRoots, areClose, traceOut, solveIn, chainWindow, chainLinear,
     interpolate, gaussNewton,
     projectOpenCV, unprojectOpenCV, projectJacobianOpenCV, projectFisheye, unprojectFisheye, projectJacobianFisheye
 };

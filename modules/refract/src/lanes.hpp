@@ -95,44 +95,26 @@ inline Lanes polynomial(const double (&c)[N], Lanes x)
     return sum;
 }
 
-#if defined(__GNUC__)
-#define REFRACT_SELDOM __attribute__((noinline, cold))
-#else
-#define REFRACT_SELDOM
+//! The last n < LANES points of an array, the very last repeated, so that every lane holds a point; and back.
+#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
+inline __mmask8 firstLanes(int n) { return (__mmask8)((1 << n) - 1); }
+inline Lanes loadTail(const double* p, int n)
+{
+    return (Lanes)_mm512_mask_loadu_pd(_mm512_set1_pd(p[n - 1]), firstLanes(n), p);
+}
+inline void storeTail(Lanes a, double* p, int n) { _mm512_mask_storeu_pd(p, firstLanes(n), (__m512d)a); }
+#elif defined(__GNUC__) && defined(__AVX2__)
+inline __m256i firstLanes(int n) { return _mm256_cmpgt_epi64(_mm256_set1_epi64x(n), _mm256_setr_epi64x(0, 1, 2, 3)); }
+inline Lanes loadTail(const double* p, int n)
+{
+    const __m256i lanes = firstLanes(n);
+    return (Lanes)_mm256_blendv_pd(_mm256_set1_pd(p[n - 1]), _mm256_maskload_pd(p, lanes), (__m256d)lanes);
+}
+inline void storeTail(Lanes a, double* p, int n) { _mm256_maskstore_pd(p, firstLanes(n), (__m256d)a); }
+#else   // one or two lanes: one point
+inline Lanes loadTail(const double* p, int) { return all(*p); }
+inline void storeTail(Lanes a, double* p, int) { std::memcpy(p, &a, sizeof *p); }
 #endif
-
-//! The last points of an array, the very last repeated, so that every lane holds a point.
-REFRACT_SELDOM const double* paddedTail(const double* p, int n, double* tail)
-{
-    for (int i = 0; i < LANES; ++i)
-        tail[i] = p[i < n ? i : n - 1];
-    return tail;
-}
-
-REFRACT_SELDOM void storeTail(const double* tail, int n, double* p)
-{
-    std::memcpy(p, tail, sizeof(double)*n);
-}
-
-//! Lanes begin ... of an array of n.
-inline Lanes load(const double* p, int begin, int n)
-{
-    double tail[LANES];
-    const double* from = begin + LANES <= n ? p + begin : paddedTail(p + begin, n - begin, tail);
-    Lanes a;
-    std::memcpy(&a, from, sizeof a);
-    return a;
-}
-
-inline void store(Lanes a, double* p, int begin, int n)
-{
-    double tail[LANES];
-    const bool whole = begin + LANES <= n;
-    double* to = whole ? p + begin : tail;
-    std::memcpy(to, &a, sizeof a);
-    if (!whole)
-        storeTail(tail, n - begin, p + begin);
-}
 
 //! Where in an array a register's lanes are: all of them, or the last few points that there are.
 struct Whole { int begin; };
@@ -144,10 +126,21 @@ inline Lanes load(const double* p, Whole at)
     std::memcpy(&a, p + at.begin, sizeof a);
     return a;
 }
-inline Lanes load(const double* p, Part at) { return load(p, at.begin, at.n); }
+inline Lanes load(const double* p, Part at)
+{
+    const int left = at.n - at.begin;
+    return left >= LANES ? load(p, Whole{ at.begin }) : loadTail(p + at.begin, left);
+}
 
 inline void store(Lanes a, double* p, Whole at) { std::memcpy(p + at.begin, &a, sizeof a); }
-inline void store(Lanes a, double* p, Part at) { store(a, p, at.begin, at.n); }
+inline void store(Lanes a, double* p, Part at)
+{
+    const int left = at.n - at.begin;
+    if (left >= LANES)
+        store(a, p, Whole{ at.begin });
+    else
+        storeTail(a, p + at.begin, left);
+}
 
 //! body(at) for every register of an array of n.
 template<typename Body>
