@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_DISTORTION_HPP
 
 #include "kernels.hpp"
+#include "polynomial.hpp"
 
 /* The formula of OpenCV's lens model (lens_opencv.cpp states it), for one point (T = double) and for many (T = Lanes). */
 
@@ -86,21 +87,11 @@ inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
     return d;
 }
 
-//! c[0] + s (c[1] + s (...))
-template<int N, typename T>
-inline T horner(const double (&c)[N], T s)
-{
-    T sum = c[N - 1] + T();
-    for (int k = N - 2; k >= 0; --k)
-        sum = sum*s + c[k];
-    return sum;
-}
-
 //! The undistorted point, were the distortion radial: by the polynomial of the inverse.
 template<typename T>
 inline void invertRadial(const OpenCVModel& m, T xr, T yr, T& x, T& y)
 {
-    const T s = xr*xr + yr*yr, series = 1 + s*horner(m.inverse, s);
+    const T s = xr*xr + yr*yr, series = 1 + s*polynomial(m.inverse, s);
     const T scale = ((series > 0.5) & (series < 2)) ? series : 1 + T();
     x = xr*scale;
     y = yr*scale;
@@ -110,7 +101,7 @@ inline void invertRadial(const OpenCVModel& m, T xr, T yr, T& x, T& y)
 template<typename T>
 inline void invertRoughly(const OpenCVModel& m, T xr, T yr, T& x, T& y)
 {
-    const T s = xr*xr + yr*yr, scale = 1 + s*horner(m.rough, s);
+    const T s = xr*xr + yr*yr, scale = 1 + s*polynomial(m.rough, s);
     x = xr*scale;
     y = yr*scale;
 }

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_KERNELS_ANGLES_HPP
 
 #include "lanes.hpp"
+#include "polynomial.hpp"
 
 /* Angles of all lanes at once, to the accuracy of double. */
 

@@ -7,6 +7,7 @@
 
 #include "fisheye_bend.hpp"
 #include "kernels_angles.hpp"
+#include "polynomial.hpp"
 
 /* cv::fisheye's lens model, see lens_fisheye.cpp. */
 

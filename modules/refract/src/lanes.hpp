@@ -85,16 +85,6 @@ inline Lanes absolute(Lanes a) { return select(a < 0, -a, a); }
 inline Lanes larger(Lanes a, Lanes b) { return select(a > b, a, b); }
 inline Lanes square(Lanes a) { return a*a; }
 
-//! c[0] + x (c[1] + x (...))
-template<int N>
-inline Lanes polynomial(const double (&c)[N], Lanes x)
-{
-    Lanes sum = all(c[N - 1]);
-    for (int k = N - 2; k >= 0; --k)
-        sum = sum*x + c[k];
-    return sum;
-}
-
 //! The last n < LANES points of an array, the very last repeated, so that every lane holds a point; and back.
 #if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
 inline __mmask8 firstLanes(int n) { return (__mmask8)((1 << n) - 1); }

@@ -1,0 +1,22 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_POLYNOMIAL_HPP
+#define OPENCV_REFRACT_POLYNOMIAL_HPP
+
+namespace {
+
+//! c[0] + x (c[1] + x (...)), for one point (T = double) and for many (T = Lanes).
+template<int N, typename T>
+inline T polynomial(const double (&c)[N], T x)
+{
+    T sum = c[N - 1] + T();
+    for (int k = N - 2; k >= 0; --k)
+        sum = sum*x + c[k];
+    return sum;
+}
+
+} // namespace
+
+#endif // OPENCV_REFRACT_POLYNOMIAL_HPP
