@@ -222,7 +222,8 @@ TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
             CHECK(clean([&] { level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
             CHECK(clean([&] { level->traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
             CHECK(clean([&] { level->chordRoots(n, x.data(), y.data(), u.data()); }));
-            CHECK(clean([&] { level->areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(), tau.data()); }));
+            CHECK(clean([&] { level->areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(),
+                                              tau.data()); }));
             CHECK(clean([&] { level->pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
         }
 }

@@ -147,8 +147,8 @@ TEST_CASE("Residuals with and without jacobians are the same; weights scale them
     jacobians[0] = byPose.data();
     REQUIRE(image.evaluate(withJacobian, jacobians.data()));
     CHECK(largestDifference(weighted, withJacobian) < 1e-9);
-    CHECK(weighted[6] == 0.5*residuals[6]);
-    CHECK(weighted[8] == residuals[8]);
+    CHECK(std::abs(weighted[6] - 0.5*residuals[6]) < 1e-12);     // in another lane it may be rounded otherwise
+    CHECK(std::abs(weighted[8] - residuals[8]) < 1e-12);
     CHECK(weighted[14] == 0);
     CHECK(byPose[14*6] == 0);
 }

@@ -2,7 +2,6 @@
 // arithmetic or decimal literals, so that every build starts from the same bits.
 #include "kernels.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -125,8 +124,7 @@ int main()
     plane.fx = 2438.5; plane.fy = 2440.125; plane.cx = 644.25; plane.cy = 500.5;
     plane.k[K1] = -0.208; plane.k[K2] = 0.136; plane.k[P1] = 0.001; plane.k[P2] = -0.0005; plane.k[K3] = 0.03;
     plane.sMax = std::numeric_limits<double>::infinity();
-    const double fromPixel[] = { 1/plane.fx, 0, -plane.cx/plane.fx, 0, 1/plane.fy, -plane.cy/plane.fy, 0, 0, 1 };
-    std::copy(fromPixel, fromPixel + 9, plane.fromPixel);
+    plane.untilt[0] = 1/plane.fx; plane.untilt[4] = 1/plane.fy; plane.untilt[8] = 1;
     throughLens("opencv", plane, kernels.projectOpenCV, kernels.unprojectOpenCV, directions);
 
     FisheyeModel sphere = {};

@@ -67,7 +67,7 @@ struct OpenCVModel
     double sMax;                //!< square of the radius where the radial part stops growing
     bool rational, prism, tilted;       //!< whether D, s1 ... s4, the tilt do anything
     double tilt[9];
-    double fromPixel[9];                //!< homography: pixels -> distorted points, without tilt
+    double untilt[9];                   //!< homography: pixels, from the principal point -> distorted points without tilt
     double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
     int given;                          //!< how many coefficients are parameters
     double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
@@ -109,9 +109,9 @@ struct Kernels
 
     //! Of each of n pixels between others, n + 2 in all: the square root of its distance from its neighbours' chord.
     void (*chordRoots)(int n, const double* u, const double* v, double* roots);
-    /** Of each of n segments of a curve, n + 1 ends in all, whether its chord is within the tolerance of the curve. The curve's
-    distance across the chord is about (1 - p^2) (middle + skew p), -1 <= p <= 1 by t: the middle and the next middle (so n + 1
-    of them) tell, and it is at most middle + skew^2/(4 middle) and middle + 0.385 skew.
+    /** Whether the chord of each of n segments of a curve (n + 1 ends) is within the tolerance of it. Its distance across the
+    chord is about (1 - p^2) (middle + skew p), -1 <= p <= 1 by t: the middle and the next one tell (n + 1 middles); and at
+    most middle + skew^2/(4 middle) and middle + 0.385 skew.
     @param slack what is left of the tolerance; no answer where the chord is not close, or the middle is NaN */
     bool (*areClose)(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
                      const double* uMiddle, const double* vMiddle, double* slack);

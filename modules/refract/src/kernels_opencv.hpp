@@ -33,31 +33,35 @@ struct PlaneSearch { Lanes xd, yd, x, y; };
 
 inline PlaneSearch beginSearch(const OpenCVModel& m, Lanes u, Lanes v)
 {
-    const double* H = m.fromPixel;
-    PlaneSearch p = { u, v, u, v };
+    PlaneSearch p;
+    p.xd = u - m.cx;
+    p.yd = v - m.cy;
     if (m.tilted)
     {
-        const Mask inFront = homography(H, p.xd, p.yd) > 0;     // of the tilted sensor
+        const Mask inFront = homography(m.untilt, p.xd, p.yd) > 0;  // of the tilted sensor
         p.xd = select(inFront, p.xd, all(NAN));
     }
     else
     {
-        p.xd = H[0]*u + H[2];
-        p.yd = H[4]*v + H[5];
+        p.xd *= m.untilt[0];
+        p.yd *= m.untilt[4];
     }
     guess(m, p.xd, p.yd, p.x, p.y);
     return p;
 }
 
-/** A Newton step. It leaves an error of its square times the curvature, which is known in the image (OpenCVModel::near2).
+/** A Newton step. It leaves an error of its square times the curvature, which is known in the image (OpenCVModel::near2). A
+small step that makes up for a large difference is none: far out, where prism terms leave the Jacobian with one direction, both
+products of a determinant may cancel.
 @param regular where the lens is far from the edge of its domain
 @return where more than rounding may be left */
 inline Mask newtonStep(const OpenCVModel& m, PlaneSearch& p, Mask& regular)
 {
-    const double SINGULAR = 1e3, FAR2 = 1e-20;
+    const double SINGULAR = 1e3, FAR2 = 1e-20, STEEP2 = 1e4;    // no Jacobian of an image is as steep
     const Distorted<Lanes> d = distort(m, p.x, p.y);
     const Lanes inverse = roughInverse(d.determinant()), ex = p.xd - d.x, ey = p.yd - d.y;
-    const Lanes dx = (d.yy*ex - d.xy*ey)*inverse, dy = (d.xx*ey - d.yx*ex)*inverse, move2 = dx*dx + dy*dy;
+    const Lanes dx = (d.yy*ex - d.xy*ey)*inverse, dy = (d.xx*ey - d.yx*ex)*inverse;
+    const Lanes move2 = dx*dx + dy*dy + (ex*ex + ey*ey)*(1/STEEP2);
     p.x += dx;
     p.y += dy;
     const Lanes s = p.x*p.x + p.y*p.y;

@@ -22,8 +22,8 @@ const Kernels table = {
 #else
     "baseline",
 #endif
-    loadPoints, storePoints, transform, multiples, pinhole, meetPlane, chordRoots, areClose, traceOut, solveIn, chainWindow, chainLinear,
-    interpolate, gaussNewton,
+    loadPoints, storePoints, transform, multiples, pinhole, meetPlane, chordRoots, areClose,
+    traceOut, solveIn, chainWindow, chainLinear, interpolate, gaussNewton,
     projectOpenCV, unprojectOpenCV, projectJacobianOpenCV, projectFisheye, unprojectFisheye, projectJacobianFisheye
 };
 

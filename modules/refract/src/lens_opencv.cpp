@@ -108,9 +108,10 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     m_.prism = k[S1] != 0 || k[S2] != 0 || k[S3] != 0 || k[S4] != 0;
     radialOnly_ = k[P1] == 0 && k[P2] == 0 && !m_.prism;
     const Matx33d tilt = tiltMatrix(k[TAUX], k[TAUY]);
-    const Matx33d fromPixel = tilt.inv()*Matx33d(1/m_.fx, 0, -m_.cx/m_.fx, 0, 1/m_.fy, -m_.cy/m_.fy, 0, 0, 1);
+    Matx33d untilt = tilt.inv()*Matx33d(1/m_.fx, 0, 0, 0, 1/m_.fy, 0, 0, 0, 1);
+    untilt(0, 2) = untilt(1, 2) = 0;    // the tilt leaves the principal point where it is, not just almost
     std::copy(tilt.val, tilt.val + 9, m_.tilt);
-    std::copy(fromPixel.val, fromPixel.val + 9, m_.fromPixel);
+    std::copy(untilt.val, untilt.val + 9, m_.untilt);
     Matx33d dTilt[2];
     tiltDerivatives(k[TAUX], k[TAUY], dTilt);
     for (int i = 0; i < 2; ++i)
@@ -245,8 +246,8 @@ void OpenCVLens::unproject(int n, const double* u, const double* v,
 
 uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
 {
-    double xd = u, yd = v;
-    if (!(homography(m_.fromPixel, xd, yd) > 0))
+    double xd = u - m_.cx, yd = v - m_.cy;
+    if (!(homography(m_.untilt, xd, yd) > 0))
         return REFRACT_OUTSIDE_LENS_MODEL;      // behind the tilted sensor
     const uchar status = undistort(xd, yd, x, y);
     z = 1/std::sqrt(1 + x*x + y*y);
