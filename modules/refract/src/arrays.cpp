@@ -24,6 +24,13 @@ static void prefetch(const uchar* memory, size_t bytes)
 #endif
 }
 
+//! Prefetches what follows block begin ... begin + n - 1 of an array that is read from its start to its end.
+static void prefetchAhead(const uchar* array, size_t itemSize, int size, int begin, int n)
+{
+    if (begin + AHEAD < size)
+        prefetch(array + (begin + AHEAD)*itemSize, n*itemSize);
+}
+
 static String describe(const Mat& m)
 {
     String shape;
@@ -58,10 +65,8 @@ void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar*
 {
     std::fill(status, status + n, (uchar)REFRACT_OK);
     const size_t pointSize = (size_t)(z ? 3 : 2)*points_.elemSize1();
-    const uchar* points = points_.data + begin*pointSize;
-    const bool finite = kernels().load(points, depth_ == CV_32F, n, x, y, z);
-    if (begin + AHEAD < size_)
-        prefetch(points + AHEAD*pointSize, n*pointSize);
+    const bool finite = kernels().load(points_.data + begin*pointSize, depth_ == CV_32F, n, x, y, z);
+    prefetchAhead(points_.data, pointSize, size_, begin, n);
     if (finite)
         return;
     for (int i = 0; i < n; ++i)
@@ -228,8 +233,7 @@ void DepthReader::load(int begin, int n, double* depth) const
         std::copy(depths_.ptr<float>() + begin, depths_.ptr<float>() + begin + n, depth);
     else
         std::copy(depths_.ptr<double>() + begin, depths_.ptr<double>() + begin + n, depth);
-    if (begin + AHEAD < size_)
-        prefetch(depths_.data + (begin + AHEAD)*depths_.elemSize1(), n*depths_.elemSize1());
+    prefetchAhead(depths_.data, depths_.elemSize1(), size_, begin, n);
 }
 
 std::vector<double> readDistCoeffs(InputArray a, const char* name)

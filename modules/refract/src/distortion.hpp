@@ -91,8 +91,7 @@ inline Distorted<T> distort(const OpenCVModel& m, T x, T y)
 template<typename T>
 inline void invertRadial(const OpenCVModel& m, T xr, T yr, T& x, T& y)
 {
-    const T s = xr*xr + yr*yr, series = 1 + s*polynomial(m.inverse, s);
-    const T scale = ((series > 0.5) & (series < 2)) ? series : 1 + T();
+    const T scale = guessRatio(m.inverse, xr*xr + yr*yr);
     x = xr*scale;
     y = yr*scale;
 }

@@ -51,9 +51,9 @@ bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const 
         {
             a.yd = (load(pv, at) - m.cy)*fy;
             a.xd = (load(pu, at) - m.cx)*fx - m.alpha*a.yd;
-            const Lanes target2 = a.xd*a.xd + a.yd*a.yd, series = 1 + target2*polynomial(m.inverse, target2);
+            const Lanes target2 = a.xd*a.xd + a.yd*a.yd;
             a.target = sqrt(target2);
-            a.theta = a.target*select((series > 0.5) & (series < 2), series, all(1));
+            a.theta = a.target*guessRatio(m.inverse, target2);
         });
         bool more = true;
         for (int k = 0; k < STEPS && more; ++k)

@@ -61,12 +61,12 @@ inline Mask newtonStep(const OpenCVModel& m, PlaneSearch& p, Mask& regular)
     const Distorted<Lanes> d = distort(m, p.x, p.y);
     const Lanes inverse = roughInverse(d.determinant()), ex = p.xd - d.x, ey = p.yd - d.y;
     const Lanes dx = (d.yy*ex - d.xy*ey)*inverse, dy = (d.xx*ey - d.yx*ex)*inverse;
-    const Lanes move2 = dx*dx + dy*dy + (ex*ex + ey*ey)*(1/STEEP2);
+    const Lanes change2 = dx*dx + dy*dy + (ex*ex + ey*ey)*(1/STEEP2);
     p.x += dx;
     p.y += dy;
     const Lanes s = p.x*p.x + p.y*p.y;
     regular = (s < m.sMax) & (inverse > 0) & (inverse < SINGULAR);
-    return move2 > select(s > m.sNear, all(FAR2), all(m.near2));
+    return change2 > select(s > m.sNear, all(FAR2), all(m.near2));
 }
 
 /* Newton in the plane, from a start that in the image is so good that the first step is the last. Only a root in the

@@ -16,7 +16,8 @@ p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_
     tau(p) = sum_i h_i (1 - q_out / q_i) = sum_i h_i (n_i^2 - n_out^2) / (q_i (q_i + q_out))
 
 is where the outgoing line meets the axis O + tau n; the second form does not cancel, and vanishes exactly for a gap
-whose medium is the scene's. (The kernels leave such a gap out and take the first form: what cancels is the rounding of h_i.) For one pane in air: equations (12) and (16) of Plate2024.
+whose medium is the scene's. (The kernels leave such a gap out and take the first form: what cancels is the rounding of h_i.)
+For one pane in air: equations (12) and (16) of Plate2024.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
 results are not meaningful. */

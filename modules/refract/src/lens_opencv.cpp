@@ -54,7 +54,7 @@ private:
     bool inside(double x, double y, const Distorted<double>& d) const { return x*x + y*y < m_.sMax && d.determinant() > 0; }
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
-    mutable OpenCVModel m_;             //!< without m_.inverse, which takes its time, until something is unprojected
+    mutable OpenCVModel m_;             //!< inverse ... near2, which take their time, when something is unprojected
     mutable Once fitStartOnce_;
     bool radialOnly_;
     String model_;

@@ -17,7 +17,8 @@ void checkPlane(const Vec4d& plane, const char* name);
 
 /** Where rays (tau n + s d) meet the plane a x + b y + c z = d, as homogeneous points d + mu (tau n) with mu = 1/s, so that
 a plane at infinity (d infinite) needs no case of its own.
-@param planeD d of each lane */
+@param planeD d of each lane
+@param mu may be null */
 void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const double* tau,
                const double* dx, const double* dy, const double* dz,
                double* x, double* y, double* z, double* mu, uchar* status);

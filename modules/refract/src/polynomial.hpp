@@ -17,6 +17,14 @@ inline T polynomial(const double (&c)[N], T x)
     return sum;
 }
 
+/** A ratio near 1 as a series: 1 + x (c[0] + x (c[1] + ...)), or 1 where x is so far out that the series says nothing. */
+template<int N, typename T>
+inline T guessRatio(const double (&c)[N], T x)
+{
+    const T series = 1 + x*polynomial(c, x);
+    return ((series > 0.5) & (series < 2)) ? series : 1 + T();
+}
+
 } // namespace
 
 #endif // OPENCV_REFRACT_POLYNOMIAL_HPP
