@@ -203,20 +203,3 @@ TEST_CASE("A window seen from another camera: the same points lie on it", "[resi
         CHECK(norm(window.normal) == Approx(1));
     }
 }
-
-TEST_CASE("The prior of a known pose has the size that its covariance says", "[residual]")
-{
-    const std::array<double, 6> known = { { 0.1, 0.2, 0.3, 1, 2, 3 } };
-    Matrix6 rows = Matrix6::Identity();
-    rows(3, 0) = 0.5;
-    const std::unique_ptr<ceres::CostFunction> cost(PosePrior::Create(known, rows, 2));
-    std::vector<double> pose(known.begin(), known.end()), residuals(6), jacobian(36);
-    pose[0] += 0.01;
-    const double* parameters[] = { pose.data() };
-    double* jacobians[] = { jacobian.data() };
-    REQUIRE(cost->Evaluate(parameters, residuals.data(), jacobians));
-    CHECK(residuals[0] == Approx(0.02));
-    CHECK(residuals[3] == Approx(0.01));
-    CHECK(jacobian[3*6] == 1);
-    CHECK(jacobian[0] == 2);
-}

@@ -1,5 +1,6 @@
 #include "calibrate_rig.hpp"
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
 #include <cmath>
 
 using namespace cv;
@@ -9,22 +10,7 @@ namespace tools {
 
 namespace {
 
-const int MIN_PAIRS = 3;        // to refine a lens together with the window
-const double SPOILT = 1.2;      // RMS of the direct images after / before the refinement, where it has failed
 const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
-
-double directRms(const RigData& data, const Fit& fit, int camera)
-{
-    double sum = 0.;
-    int count = 0;
-    for (const Residual& r : residualsOf(data, fit))
-        if (r.camera == camera && !r.glass)
-        {
-            sum += r.error.dot(r.error);
-            count++;
-        }
-    return std::sqrt(sum / count);
-}
 
 //! The moments that a fit with these flags learns from.
 std::vector<int> usefulMoments(const RigData& data, int flags)
@@ -91,24 +77,15 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
 
 Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags)
 {
-    const Fit fit = fitRig(data, start, usefulMoments(data, flags), flags);
-    for (int c = 0; c < data.cameraCount; c++)
-        if (lensSources[c].kind != LensSource::FROM_DIRECT || data.countPairs(c) < MIN_PAIRS)
-            return fit;
-    try
-    {
-        const int freed = flags | GLASS_FREE_INTRINSICS;
-        const Fit refined = fitRig(data, fit.rig, usefulMoments(data, freed), freed);
-        for (int c = 0; c < data.cameraCount; c++)
-            if (directRms(data, refined, c) > SPOILT * lensSources[c].rms)
-                return fit;     // a wrong thickness or index must not spoil the lens
-        flags = freed;
-        return refined;
-    }
-    catch (const cv::Exception&)
-    {
-        return fit;         // too few or too similar views to refine the lens; its own calibration stands
-    }
+    const Fit held = fitRig(data, start, usefulMoments(data, flags), flags);
+    const bool fromImages = std::any_of(lensSources.begin(), lensSources.end(),
+                                        [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
+    if (!fromImages || (flags & GLASS_FREE_INTRINSICS))
+        return held;
+    flags |= GLASS_FREE_INTRINSICS;
+    Fit fit = fitRig(data, held.rig, usefulMoments(data, flags), flags);
+    fit.otherMinima = held.otherMinima;     // only looked for while the lens is held
+    return fit;
 }
 
 void poseInCamera(const Rig& rig, int camera, Vec3d& rvec, Vec3d& tvec)

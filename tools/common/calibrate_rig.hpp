@@ -71,9 +71,8 @@ Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSou
 //! calibrateGlassRig on some of the moments.
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
 
-/** fitRig on all that is useful. Lenses that came from the direct images are refined with the windows where pairs tie
-the two together: better by far for R and T, and +- that carry the lens's uncertainty. Views that are glass-only leave
-the lens alone, as it would take up part of the window; so does a refinement that makes the direct images fit worse.
+/** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
+images are views too, each with its own pose. The windows are found first, with the lenses held.
 @param flags gets GLASS_FREE_INTRINSICS if so */
 Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags);
 

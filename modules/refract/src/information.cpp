@@ -13,6 +13,7 @@ reduced first, on their own columns. */
 
 #include "information.hpp"
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 namespace cv { namespace refract {
 
@@ -24,11 +25,11 @@ using Eigen::VectorXd;
 //! The free coordinates of each block, and where they stand among all.
 struct FreeSpace
 {
-    explicit FreeSpace(const RigProblem& rig) : count(0)
+    explicit FreeSpace(const RigProblem& rig, bool withHeld = true) : count(0)
     {
         for (const RigBlock& block : rig.blocks())
         {
-            bases.push_back(block.tangentBasis());
+            bases.push_back(block.tangentBasis(withHeld));
             first.push_back(count);
             count += (int)bases.back().cols();
         }
@@ -38,7 +39,7 @@ struct FreeSpace
     int count;
 };
 
-//! One image's derivatives by its pose (6 columns) and by the free parameters that it depends on.
+//! One image's derivatives by its pose (6 columns) and by the free parameters that it depends on, and its residuals.
 struct ImageRows
 {
     ImageRows(const FreeSpace& space, const RigProblem::Derivatives& d)
@@ -55,6 +56,8 @@ struct ImageRows
             for (int j = 0; j < basis.cols(); j++)
                 columns.push_back(space.first[d.blocks[i]] + j);
         }
+        rows.conservativeResize(Eigen::NoChange, rows.cols() + 1);
+        rows.rightCols<1>() = d.residuals;
     }
 
     //! As few rows with the same products.
@@ -65,11 +68,13 @@ struct ImageRows
         rows = MatrixXd(qr.matrixQR().topRows(least).triangularView<Eigen::Upper>());
     }
 
+    //! Columns: all free parameters, the residual.
     MatrixXd spread(int count) const
     {
-        MatrixXd all = MatrixXd::Zero(rows.rows(), count);
+        MatrixXd all = MatrixXd::Zero(rows.rows(), count + 1);
         for (size_t i = 0; i < columns.size(); i++)
             all.col(columns[i]) = rows.col(6 + i);
+        all.rightCols<1>() = rows.rightCols<1>();
         return all;
     }
 
@@ -86,14 +91,16 @@ MatrixXd stacked(const MatrixXd& top, const MatrixXd& bottom)
     return both;
 }
 
-//! The part of J that no change of the pose can imitate.
-MatrixXd withoutPose(const MatrixXd& J, const MatrixXd& K)
+/** The part of J that no change of the pose can imitate.
+@param ofPose gets the squares of the last column's other part */
+MatrixXd withoutPose(const MatrixXd& J, const MatrixXd& K, double& ofPose)
 {
     const Eigen::RowVectorXd scale = K.colwise().norm().cwiseMax(DBL_MIN);
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
     qr.setThreshold(1e-12);
     qr.compute(K.array().rowwise()/scale.array());
     const MatrixXd rotated = qr.householderQ().adjoint()*J;
+    ofPose = rotated.topRows(qr.rank()).rightCols<1>().squaredNorm();
     return rotated.bottomRows(J.rows() - qr.rank());
 }
 
@@ -137,35 +144,61 @@ private:
 
 } // namespace
 
-Information rigInformation(const RigProblem& rig)
+Information rigInformation(const RigProblem& rig, bool withHeld)
 {
-    const FreeSpace space(rig);
+    const FreeSpace space(rig, withHeld);
+    const int count = space.count;
     Information information;
-    SquareRoot root(space.count);
-    VectorXd squares = VectorXd::Zero(space.count);
+    information.ofPoses = 0;
+    SquareRoot root(count + 1);
+    VectorXd squares = VectorXd::Zero(count);
     for (int view = 0; view < rig.viewCount(); view++)
     {
-        MatrixXd J(0, space.count), K(0, 6);
+        MatrixXd J(0, count + 1), K(0, 6);
         for (int i : rig.imagesOf(view))
         {
             ImageRows own(space, rig.derivatives(rig.images()[i]));
             own.reduce();
-            J = stacked(J, own.spread(space.count));
+            J = stacked(J, own.spread(count));
             K = stacked(K, own.rows.leftCols<6>());
         }
         if (J.rows() == 0)
             continue;
-        squares += J.colwise().squaredNorm().transpose();
+        squares += J.leftCols(count).colwise().squaredNorm().transpose();
         if (rig.knowledgeOf(view) == PoseKnowledge::UNCERTAIN)
         {
-            J = stacked(J, MatrixXd::Zero(6, space.count));
+            J = stacked(J, MatrixXd::Zero(6, count + 1));
+            J.bottomRightCorner<6, 1>() = rig.priorOfPose(view);
             K = stacked(K, rig.priorByPose(view));
         }
-        root.add(withoutPose(J, K));
+        double ofPose;
+        root.add(withoutPose(J, K, ofPose));
+        information.ofPoses += ofPose;
     }
-    information.root = root.triangle();
+    for (int block = 0; block < (int)rig.blocks().size(); block++)
+    {
+        const MatrixXd byParameters = rig.priorByBlock(block)*space.bases[block];
+        MatrixXd rows = MatrixXd::Zero(byParameters.rows(), count + 1);
+        rows.middleCols(space.first[block], byParameters.cols()) = byParameters;
+        rows.rightCols<1>() = rig.priorOfBlock(block);
+        squares += rows.leftCols(count).colwise().squaredNorm().transpose();
+        root.add(rows);
+    }
+    const MatrixXd triangle = root.triangle();
+    information.root = triangle.topLeftCorner(count, count);
+    information.residual = triangle.topRightCorner(count, 1);
     information.effect = squares.cwiseSqrt();
     return information;
+}
+
+double stepLeft(const RigProblem& rig)
+{
+    const double SINGULAR = 1e-9;       // what no data determine has no least squares
+    const Information information = rigInformation(rig, false);
+    const VectorXd scale = (information.effect.array() > 0).select(information.effect.cwiseInverse(), 0);
+    Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+    svd.setThreshold(SINGULAR);
+    return std::sqrt((svd.matrixU().leftCols(svd.rank()).transpose()*information.residual).squaredNorm() + information.ofPoses);
 }
 
 MatrixXd rigJacobian(const RigProblem& rig)

@@ -105,7 +105,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
     // Known windows and lenses do without the derivatives by camera parameters.
     const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes.size(),
                                           [](const double* jacobian) { return jacobian != nullptr; }) ||
-                              (rig_.window && jacobians[extrinsics_]);
+                              (rig_.window && extrinsics_ >= 0 && jacobians[extrinsics_]);
     const int SMALL = 32, count = camera.parameterCount();      // so many points' derivatives stay in the cache
     AutoBuffer<double, 2*32*SMALL> buffer(2*(3 + count)*SMALL);
     const Columns byPoint = { buffer.data(), 3, SMALL };
@@ -188,28 +188,6 @@ bool ImageResidual::Evaluate(double const* const* parameters, double* residuals,
         return false;
     return jacobians ? linearize(*camera, parameters[0], residuals, jacobians)
                      : project(*camera, parameters[0], residuals);
-}
-
-PosePrior::PosePrior(const std::array<double, 6>& known, const Matrix6& rows)
-    : known_(known), rows_(rows)
-{
-    set_num_residuals(6);
-    mutable_parameter_block_sizes()->push_back(6);
-}
-
-ceres::CostFunction* PosePrior::Create(const std::array<double, 6>& known, const Matrix6& inverseRoot, double scale)
-{
-    return new PosePrior(known, scale*inverseRoot);
-}
-
-bool PosePrior::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
-{
-    typedef Eigen::Map<const Eigen::Matrix<double, 6, 1> > Map6;
-    Eigen::Map<Eigen::Matrix<double, 6, 1> > out(residuals);
-    out = rows_*(Map6(parameters[0]) - Map6(known_.data()));
-    if (jacobians && jacobians[0])
-        std::copy(rows_.data(), rows_.data() + rows_.size(), jacobians[0]);
-    return true;
 }
 
 }} // namespace

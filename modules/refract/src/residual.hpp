@@ -56,20 +56,6 @@ private:
     int extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
 };
 
-//! A known pose with its covariance: rows of the covariance's inverse root times (pose - known).
-class PosePrior : public ceres::CostFunction
-{
-public:
-    //! known must outlive the cost. scale: of the rows.
-    static ceres::CostFunction* Create(const std::array<double, 6>& known, const Matrix6& inverseRoot, double scale);
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
-private:
-    PosePrior(const std::array<double, 6>& known, const Matrix6& rows);
-    const std::array<double, 6>& known_;
-    const Matrix6 rows_;
-};
-
 }} // namespace
 
 #endif // OPENCV_REFRACT_RESIDUAL_HPP

@@ -7,7 +7,7 @@
 
 namespace cv { namespace refract {
 
-Eigen::MatrixXd RigBlock::tangentBasis() const
+Eigen::MatrixXd RigBlock::tangentBasis(bool withHeld) const
 {
     const int size = (int)values.size();
     if (kind == NORMAL)
@@ -16,11 +16,12 @@ Eigen::MatrixXd RigBlock::tangentBasis() const
         ceres::SphereManifold<3>().PlusJacobian(values.data(), basis.data());
         return basis.colwise().normalized();    // radians; Ceres' scale differs between versions
     }
-    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, std::count(isFree.begin(), isFree.end(), true));
-    for (int i = 0, column = 0; i < size; i++)
-        if (isFree[i])
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, size);
+    int column = 0;
+    for (int i = 0; i < size; i++)
+        if (isFree[i] && (withHeld || !isHeld[i]))
             basis(i, column++) = 1;
-    return basis;
+    return basis.leftCols(column);
 }
 
 String RigBlock::nameOf(int coordinate) const
@@ -57,6 +58,8 @@ Eigen::VectorXd RigProblem::residuals(const RigImage& image) const
 std::vector<double> RigProblem::pixelErrors(const RigImage& image, const Pose& pose) const
 {
     const Camera* camera = cameras_[image.camera].camera(image.refracted);
+    if (!camera)
+        return std::vector<double>(image.points.pixel.size(), std::numeric_limits<double>::infinity());
     const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
     const Extrinsics toCamera1(pose);
     std::vector<double> errors;
@@ -77,11 +80,23 @@ double RigProblem::squaredError() const
     double sum = 0;
     for (const RigImage& image : images_)
         sum += residuals(image).squaredNorm();
-    typedef Eigen::Map<const Eigen::Matrix<double, 6, 1> > Map6;
     for (int view = 0; view < viewCount(); view++)
         if (isUncertain(view))
-            sum += (priorByPose(view)*(Map6(poses_[view].data()) - Map6(knownPoses_[view].data()))).squaredNorm();
+            sum += priorOfPose(view).squaredNorm();
+    for (int block = 0; block < (int)blocks_.size(); block++)
+        sum += priorOfBlock(block).squaredNorm();
     return sum;
+}
+
+Vector6 RigProblem::priorOfPose(int view) const
+{
+    typedef Eigen::Map<const Vector6> Map6;
+    return priorByPose(view)*(Map6(poses_[view].data()) - Map6(knownPoses_[view].data()));
+}
+
+Eigen::VectorXd RigProblem::priorOfBlock(int block) const
+{
+    return priorByBlock(block)*(blocks_[block].values - blocks_[block].known);
 }
 
 RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
@@ -146,8 +161,9 @@ void RigProblem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
     const int owner = rig_.owner[camera], row = publicRow(RigBlock::NORMAL, camera);
     const int ownerRow = publicRow(RigBlock::NORMAL, owner);
     const WindowTransfer& window = *cameras_[camera].window;
-    Eigen::MatrixXd rows = window.byWindow*basis.middleRows<4>(ownerRow) +
-                           window.byCamera*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, camera));
+    Eigen::MatrixXd rows = window.byWindow*basis.middleRows<4>(ownerRow);
+    if (camera > 0)
+        rows += window.byCamera*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, camera));
     if (owner > 0)
         rows += window.byOwner*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, owner));
     basis.middleRows<4>(row) = rows;

@@ -36,7 +36,7 @@ void checkFreedom(const RigProblem& rig)
                                      rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
 }
 
-//! Solves; where poses are known with a covariance, until they are weighed against the pixels' own noise.
+//! Solves; where something is known with a covariance, until it is weighed against the pixels' own noise.
 RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const TermCriteria& criteria)
 {
     const int ROUNDS = 20;
@@ -51,7 +51,7 @@ RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const T
             outcome.varianceFactor = 1;
             outcome.imageStatus.assign(rig.images().size(), (uchar)GLASS_IMAGE_USED);
         }
-        if (!rig.hasUncertainPoses() || !outcome.converged)
+        if (!rig.hasPriors() || !outcome.converged)
             break;
         const double before = rig.pixelSigma();
         rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(rig.freedom(), 1)));
@@ -100,32 +100,95 @@ void markUnusable(const RigTask& task, RigFit& fit)
         }
 }
 
-//! Starts of windows (into rig) and poses. Robust: images without a pose are taken out of the task.
-std::vector<Pose> startPoses(Rig& rig, RigTask& task, RigFit& fit)
+struct Start
+{
+    Rig rig;
+    std::vector<Pose> poses;
+};
+
+//! Takes images that no pose agrees with out of the task.
+void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigTask& task)
+{
+    for (int c = 0; c < (int)agreeing.cameras.size(); c++)
+        for (int view = 0; view < agreeing.count(); view++)
+        {
+            CameraViews& seen = task.views.cameras[c];
+            if (agreeing.cameras[c].direct[view].empty() || !poses[view].found)
+                seen.direct[view].clear();
+            if (agreeing.cameras[c].refracted[view].empty() || !poses[view].found)
+                seen.refracted[view].clear();
+        }
+}
+
+//! The lens and the distance have to be told by images through the windows alone.
+bool isSealed(const RigTask& task)
+{
+    bool seesDirect = !task.knownPoses.empty() || !task.cameras.empty();
+    for (const CameraViews& camera : task.views.cameras)
+        seesDirect = seesDirect || seesAnything(camera.direct);
+    return !seesDirect && (task.flags & GLASS_FREE_INTRINSICS) && (task.flags & GLASS_FREE_DISTANCE);
+}
+
+//! The same start with the windows at a part of the way to the targets, and the poses that go with it.
+Start atPartOfRange(Start start, double part, const RigViews& views)
+{
+    double sum = 0;
+    int count = 0;
+    for (const Pose& pose : start.poses)
+        if (pose.found)
+        {
+            sum += norm(pose.tvec);
+            count++;
+        }
+    setDistances(start.rig, part*sum/count);
+    start.poses.assign(views.count(), Pose());
+    addPosesThroughWindow(start.rig, views, start.poses);
+    return start;
+}
+
+/** Where only images through the windows tell of lens and distance, the cost has more than one minimum: fits from several
+distances, the best of them. */
+Start bestStart(const Start& given, const RigViews& views, const RigTask& task)
+{
+    const TermCriteria rough(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9);
+    Start best = given;
+    double least = std::numeric_limits<double>::infinity();
+    for (double part : { 0., 0.15, 0.4, 0.75 })
+        try
+        {
+            const Start start = part > 0 ? atPartOfRange(given, part, views) : given;
+            RigProblem problem(start.rig, views, start.poses, task.knowledge, task.cameras, task.flags);
+            problem.solve(rough);
+            if (!(problem.squaredError() < least))
+                continue;
+            least = problem.squaredError();
+            best.rig = problem.rig();
+            for (int view = 0; view < views.count(); view++)
+                best.poses[view] = problem.pose(view);
+        }
+        catch (const cv::Exception&) {}     // a point has no image from there
+    return best;
+}
+
+//! Starts of windows and poses. Robust: images without a pose are taken out of the task.
+Start findStart(const Rig& rig, RigTask& task, RigFit& fit)
 {
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
-    std::vector<Pose> poses = posesWithoutWindow(rig, views, task.knownPoses);
-    const std::vector<OtherMinimum> minima = startWindows(rig, views, poses, task.flags);
-    addPosesThroughWindow(rig, views, poses);
+    Start start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+    const std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
+    addPosesThroughWindow(start.rig, views, start.poses);
     fit.otherMinima.create(rig.count(), 4, CV_64F);
     for (int c = 0; c < rig.count(); c++)
     {
         Mat(minima[c].normal.t()).copyTo(fit.otherMinima(Rect(0, c, 3, 1)));
         fit.otherMinima.at<double>(c, 3) = minima[c].excess;
     }
-    if (!isRobust)
-        checkPoses(views, poses);
-    for (int c = 0; isRobust && c < rig.count(); c++)
-        for (int view = 0; view < views.count(); view++)
-        {
-            CameraViews& seen = task.views.cameras[c];
-            if (views.cameras[c].direct[view].empty() || !poses[view].found)
-                seen.direct[view].clear();
-            if (views.cameras[c].refracted[view].empty() || !poses[view].found)
-                seen.refracted[view].clear();
-        }
-    return poses;
+    if (isRobust)
+        dropUnusable(views, start.poses, task);
+    else
+        checkPoses(views, start.poses);
+    return isSealed(task) ? bestStart(start, views, task) : start;
 }
 
 } // namespace
@@ -144,9 +207,8 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     const TermCriteria criteria = checkedCriteria(task_.criteria);
     RigFit fit;
     RigTask task = task_;
-    Rig start = rig;
-    const std::vector<Pose> poses = startPoses(start, task, fit);
-    RigProblem problem(start, task.views, poses, task.knowledge, task.flags);
+    const Start start = findStart(rig, task, fit);
+    RigProblem problem(start.rig, task.views, start.poses, task.knowledge, task.cameras, task.flags);
     if (!(task.flags & GLASS_ROBUST))
         checkFreedom(problem);
     const RobustOutcome outcome = solve(problem, task, seenCount(task_.views), criteria);

@@ -15,6 +15,7 @@ struct RigTask
     RigViews views;
     std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
     std::vector<PoseKnowledge> knowledge;       //!< of the same
+    std::vector<CameraKnowledge> cameras;       //!< one per camera, or empty
     int flags;
     TermCriteria criteria;
     bool wantsJacobian = false;

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "rig_problem.hpp"
+#include <Eigen/Cholesky>
 
 namespace cv { namespace refract {
 
@@ -63,7 +64,7 @@ double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>
 } // namespace
 
 RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
-                       const std::vector<PoseKnowledge>& known, int flags)
+                       const std::vector<PoseKnowledge>& known, const std::vector<CameraKnowledge>& knownCameras, int flags)
     : rig_(rig), imagesOfView_(poses.size()), known_(known), isSeen_(poses.size(), false), pixelSigma_(1)
 {
     size_t most = 6*rig_.cameras.size();
@@ -76,11 +77,14 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
         const std::vector<double> all = camera.parameters();
         const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
         const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
+        const CameraKnowledge ofCamera = knownCameras.empty() ? CameraKnowledge() : knownCameras[c];
         addBlock(RigBlock::LENS, c, lens, freeLens(lens, flags));
+        setKnown(ofCamera, 0, blocks_.back());
         if (!rig_.owns(c))
             continue;
         addBlock(RigBlock::NORMAL, c, std::vector<double>(lensEnd, lensEnd + 3), std::vector<bool>(3, true));
         addBlock(RigBlock::MEDIA, c, media, freeMedia(((int)media.size() - 3)/2, flags));
+        setKnown(ofCamera, (int)lens.size() + 3, blocks_.back());
     }
     for (int c = 1; c < rig_.count(); c++)
     {
@@ -104,10 +108,44 @@ void RigProblem::addBlock(RigBlock::Kind kind, int camera, const std::vector<dou
     double* const kept = values_.data() + values_.size();
     values_.insert(values_.end(), values.begin(), values.end());
     RigBlock block = { kind, camera, Eigen::Map<Eigen::VectorXd>(kept, values.size()), isFree, std::vector<double>(),
-                       std::vector<bool>(values.size(), false) };
+                       std::vector<bool>(values.size(), false), Eigen::VectorXd(), Eigen::MatrixXd() };
     for (int i = 0; i < (int)values.size(); i++)
         block.lower.push_back(lowerBound(kind, i, values));
+    block.known = block.values;
+    block.priorRows.resize(0, block.values.size());
     blocks_.push_back(block);
+}
+
+/** The part of what is known that belongs to a block. Roots of correlations: the parameters' sizes differ by orders.
+@param first column of the block's first value */
+void RigProblem::setKnown(const CameraKnowledge& known, int first, RigBlock& block)
+{
+    const int size = (int)block.values.size();
+    if (first + size > known.covariance.cols())
+        return;
+    const Eigen::MatrixXd covariance = known.covariance.block(first, first, size, size);
+    std::vector<int> uncertain;
+    for (int i = 0; i < size; i++)
+        if (covariance(i, i) > 0)
+            uncertain.push_back(i);
+        else if (block.kind == RigBlock::LENS)
+            block.isFree[i] = false;
+    const int count = (int)uncertain.size();
+    Eigen::MatrixXd correlation(count, count);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++)
+            correlation(i, j) = covariance(uncertain[i], uncertain[j])/
+                                std::sqrt(covariance(uncertain[i], uncertain[i])*covariance(uncertain[j], uncertain[j]));
+    const Eigen::LLT<Eigen::MatrixXd> root(correlation);
+    if (root.info() != Eigen::Success)
+        CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", block.camera));
+    const Eigen::MatrixXd inverse = root.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
+    block.priorRows.setZero(count, size);
+    for (int j = 0; j < count; j++)
+    {
+        block.isFree[uncertain[j]] = true;
+        block.priorRows.col(uncertain[j]) = inverse.col(j)/std::sqrt(covariance(uncertain[j], uncertain[j]));
+    }
 }
 
 void RigProblem::addImages(const RigViews& views)
@@ -224,12 +262,9 @@ void RigProblem::setPose(int view, const Pose& pose)
         poses_[view] = sixOf(pose);
 }
 
-bool RigProblem::hasUncertainPoses() const
+bool RigProblem::hasPriors() const
 {
-    for (int view = 0; view < viewCount(); view++)
-        if (isUncertain(view))
-            return true;
-    return false;
+    return equationCount() > 2*pointCount();
 }
 
 void RigProblem::setRootWeights(int image, const std::vector<double>& rootWeights)
@@ -269,6 +304,8 @@ int RigProblem::equationCount() const
     int count = 2*pointCount();
     for (int view = 0; view < viewCount(); view++)
         count += isUncertain(view) ? 6 : 0;
+    for (const RigBlock& block : blocks_)
+        count += (int)block.priorRows.rows();
     return count;
 }
 

@@ -7,10 +7,12 @@
 
 #include "residual.hpp"
 #include <ceres/evaluation_callback.h>
+#include <ceres/types.h>
 
 namespace cv { namespace refract {
 
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
+typedef Eigen::Matrix<double, 6, 1> Vector6;
 
 //! The cameras: lens and window of each, and where they are.
 struct Rig
@@ -29,6 +31,14 @@ struct PoseKnowledge
     enum Kind { UNKNOWN, EXACT, UNCERTAIN };
     Kind kind = UNKNOWN;
     Matrix6 inverseRoot;                //!< W, W^T W = inverse of the covariance; UNCERTAIN only
+};
+
+/** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window. A
+parameter with a variance is estimated, within it. A lens parameter without one is exact. Empty: nothing is known. */
+struct CameraKnowledge
+{
+    Eigen::MatrixXd covariance;
+    bool isEmpty() const { return covariance.size() == 0; }
 };
 
 //! One image of the problem.
@@ -53,9 +63,11 @@ struct RigBlock
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
     std::vector<double> lower;      //!< bounds
     std::vector<bool> isHeld;       //!< on its bound while solving
+    Eigen::VectorXd known;          //!< values known from an earlier step
+    Eigen::MatrixXd priorRows;      //!< W, W (values - known) has unit covariance; no rows: nothing is known
 
     //! d values / d free coordinates; orthonormal. A normal moves on the sphere.
-    Eigen::MatrixXd tangentBasis() const;
+    Eigen::MatrixXd tangentBasis(bool withHeld = true) const;
     //! What a coordinate is called in messages.
     String nameOf(int coordinate) const;
 };
@@ -69,14 +81,16 @@ free is said by GlassCalibrationFlags. */
 class RigProblem : private ceres::EvaluationCallback
 {
 public:
-    //! known: one per view, or empty. The start of a known pose is the known one.
+    /** The start of what is known is the known value.
+    @param known one per view, or empty
+    @param knownCameras one per camera, or empty */
     RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
-               const std::vector<PoseKnowledge>& known, int flags);
+               const std::vector<PoseKnowledge>& known, const std::vector<CameraKnowledge>& knownCameras, int flags);
     RigProblem(const RigProblem&) = delete;
     RigProblem& operator=(const RigProblem&) = delete;
 
-    /** False if criteria.maxCount iterations did not reach the change that the criteria ask for (EPS). Throws StsBadArg that
-    names a point without image at the start. */
+    /** False if criteria.maxCount iterations did not reach the change that the criteria ask for (EPS), or no minimum. Throws
+    StsBadArg that names a point without image at the start. */
     bool solve(const TermCriteria& criteria);
 
     int viewCount() const { return (int)poses_.size(); }
@@ -86,7 +100,7 @@ public:
     const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
     const std::vector<RigBlock>& blocks() const { return blocks_; }
     void setRootWeights(int image, const std::vector<double>& rootWeights);
-    //! Standard deviation of a pixel coordinate, against which poses known with a covariance are weighed.
+    //! Standard deviation of a pixel coordinate, against which what is known with a covariance is weighed.
     void setPixelSigma(double sigma) { pixelSigma_ = sigma; }
     double pixelSigma() const { return pixelSigma_; }
 
@@ -95,7 +109,7 @@ public:
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     PoseKnowledge::Kind knowledgeOf(int view) const { return known_.empty() ? PoseKnowledge::UNKNOWN : known_[view].kind; }
-    bool hasUncertainPoses() const;
+    bool hasPriors() const;             //!< poses or parameters known with a covariance
 
     int pointCount() const;             //!< of those with a weight
     int freeCount() const;              //!< without the poses
@@ -104,7 +118,7 @@ public:
     int freedom() const { return equationCount() - freeCount() - 6*poseCount(); }
     //! Weighted residuals of one image: u, v of each point.
     Eigen::VectorXd residuals(const RigImage& image) const;
-    double squaredError() const;        //!< of all images, and of the poses known with a covariance
+    double squaredError() const;        //!< of all images, and of what is known with a covariance
 
     //! Distance of each predicted from the observed pixel, whatever its weight, with this pose; infinite without image.
     std::vector<double> pixelErrors(const RigImage& image, const Pose& pose) const;
@@ -120,6 +134,10 @@ public:
     Derivatives derivatives(const RigImage& image) const;
     //! What is known of a pose counts as six more residuals; their derivatives by the pose.
     Matrix6 priorByPose(int view) const { return pixelSigma_*known_[view].inverseRoot; }
+    Vector6 priorOfPose(int view) const;                //!< these residuals
+    //! The same of a block's parameters.
+    Eigen::MatrixXd priorByBlock(int block) const { return pixelSigma_*blocks_[block].priorRows; }
+    Eigen::VectorXd priorOfBlock(int block) const;
 
     /** d public parameters / d free coordinates of all blocks, in the order of blocks(). What the other cameras see of a
     shared window follows from its owner's. */
@@ -128,6 +146,7 @@ public:
 
 private:
     void addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values, const std::vector<bool>& isFree);
+    void setKnown(const CameraKnowledge& known, int first, RigBlock& block);
     void addImages(const RigViews& views);
     int blockOf(RigBlock::Kind kind, int camera) const;
     const double* valuesOf(RigBlock::Kind kind, int camera) const;      //!< null for the extrinsics of camera 1
@@ -143,7 +162,8 @@ private:
     void PrepareForEvaluation(bool, bool isNewPoint) override { if (isNewPoint) updateCameras(); }
 
     //! A ceres::TerminationType. iterations: in the limit, out how many were made.
-    int solveInside(double change, int& iterations, double& radius);
+    int solveInside(ceres::TrustRegionStrategyType strategy, double change, int& iterations, double& radius);
+    bool isAtMinimum() const;
     String startFault() const;      //!< empty, or which point has no image at the start
     bool isOnBound() const;
     bool holdAtBounds();            //!< true if that changes what is held

@@ -6,10 +6,15 @@
 
 Ceres keeps bounds by projecting each step, and creeps where a step's other coordinates rely on the one that was cut off.
 So every few iterations a coordinate that lies on its bound, with the cost falling beyond it, is held there, and is let go
-when the cost falls towards the inside. */
+when the cost falls towards the inside.
 
-#include "rig_problem.hpp"
+Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
+domain those of the dogleg do: they take turns. A small change of the cost is no proof of a minimum: the step that is left
+to that of the linearised problem must be far below what the noise does. */
+
+#include "information.hpp"
 #include <ceres/manifold.h>
+#include <ceres/normal_prior.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -47,8 +52,11 @@ String RigProblem::startFault() const
         const Extrinsics toCamera1(poses_[image.view].data());
         const Matx33d R = toCamera.rotation.R*toCamera1.rotation.R;
         const Vec3d t = toCamera.apply(toCamera1.T);
-        for (const Point3d& point : image.points.object)
+        for (size_t i = 0; i < image.points.object.size(); i++)
         {
+            if (image.rootWeights[i] == 0)
+                continue;
+            const Point3d& point = image.points.object[i];
             const Vec3d X = R*Vec3d(point) + t;
             double u, v;
             uchar status = REFRACT_OK;
@@ -63,6 +71,15 @@ String RigProblem::startFault() const
     return String();
 }
 
+//! The step that is left is far below the uncertainty of what it would move.
+bool RigProblem::isAtMinimum() const
+{
+    const double NEGLIGIBLE = 1e-3;     // standard deviations
+    const double LEAST_SIGMA = 1e-6;    // px: perfect data end in rounding errors
+    const double variance = freedom() > 0 ? squaredError()/freedom() : 0;
+    return stepLeft(*this) < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
+}
+
 bool RigProblem::solve(const TermCriteria& criteria)
 {
     const String fault = startFault();
@@ -70,16 +87,18 @@ bool RigProblem::solve(const TermCriteria& criteria)
         CV_Error(Error::StsBadArg, fault);
     const int ITERATIONS_BETWEEN = 20;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
+    const ceres::TrustRegionStrategyType strategies[] = { ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG };
+    const double firstRadius = ceres::Solver::Options().initial_trust_region_radius;
+    double radius[] = { firstRadius, firstRadius };
     int left = criteria.maxCount;
-    double radius = ceres::Solver::Options().initial_trust_region_radius;
-    while (left > 0)
+    for (int turn = 0; left > 0; turn = 1 - turn)
     {
         int iterations = std::min(left, ITERATIONS_BETWEEN);
-        const int outcome = solveInside(stopsByChange ? criteria.epsilon : 0., iterations, radius);
-        if (outcome == ceres::FAILURE)
-            return false;
+        const int outcome = solveInside(strategies[turn], stopsByChange ? criteria.epsilon : 0., iterations, radius[turn]);
         left -= iterations;
-        if (!(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE)
+        if (outcome == ceres::FAILURE)
+            radius[turn] = firstRadius;
+        else if (!(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE && isAtMinimum())
             return true;
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
@@ -106,6 +125,8 @@ bool RigProblem::holdAtBounds()
         for (size_t i = 0; i < d.blocks.size(); i++)
             gradients[d.blocks[i]] += d.byBlock[i].transpose()*d.residuals;
     }
+    for (size_t b = 0; b < blocks_.size(); b++)
+        gradients[b] += priorByBlock((int)b).transpose()*priorOfBlock((int)b);
     bool changed = false;
     for (size_t b = 0; b < blocks_.size(); b++)
         for (int i = 0; i < (int)blocks_[b].values.size(); i++)
@@ -118,7 +139,7 @@ bool RigProblem::holdAtBounds()
     return changed;
 }
 
-int RigProblem::solveInside(double change, int& iterations, double& radius)
+int RigProblem::solveInside(ceres::TrustRegionStrategyType strategy, double change, int& iterations, double& radius)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
@@ -128,6 +149,9 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
     for (RigBlock& block : blocks_)
     {
         addToProblem(problem, block);
+        if (block.priorRows.rows() > 0)
+            problem.AddResidualBlock(new ceres::NormalPrior(pixelSigma_*block.priorRows, block.known), nullptr,
+                                     block.values.data());
         ordering->AddElementToGroup(block.values.data(), group++);
     }
     for (const RigImage& image : images_)
@@ -145,11 +169,12 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
         if (!isAdjusted(view))
             problem.SetParameterBlockConstant(poses_[view].data());
         else if (isUncertain(view))
-            problem.AddResidualBlock(PosePrior::Create(knownPoses_[view], known_[view].inverseRoot, pixelSigma_), nullptr,
-                                     poses_[view].data());
+            problem.AddResidualBlock(new ceres::NormalPrior(priorByPose(view), Eigen::Map<const Vector6>(knownPoses_[view].data())),
+                                     nullptr, poses_[view].data());
     }
 
     ceres::Solver::Options options;
+    options.trust_region_strategy_type = strategy;
     options.linear_solver_type = ceres::DENSE_SCHUR;
     options.linear_solver_ordering = ordering;
     options.max_num_iterations = iterations;
@@ -162,9 +187,9 @@ int RigProblem::solveInside(double change, int& iterations, double& radius)
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     updateCameras();
+    iterations = std::max(1, (int)summary.iterations.size() - 1);
     if (!summary.IsSolutionUsable())
         return ceres::FAILURE;
-    iterations = std::max(1, (int)summary.iterations.size() - 1);
     radius = summary.iterations.back().trust_region_radius;
     return summary.termination_type;
 }

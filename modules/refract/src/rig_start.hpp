@@ -32,8 +32,13 @@ struct OtherMinimum
 From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
 with the lens known, some views are fitted from the best few of a ring of tilts, as the cost through the window alone has
 more than one minimum, and all views from each distinct one of these; the least cost wins. Else the given window.
-@return one per camera; only an owner's may hold a minimum */
+A window of unknown distance that is shared is described from now on in the frame of the camera nearest to it (rig.owner): its
+distance has a bound at 0, so that no camera comes to lie beyond. Where the start puts one there, the window moves out.
+@return one per camera; only the given owner's may hold a minimum */
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags);
+
+//! The distance of every window from the camera that is nearest to it.
+void setDistances(Rig& rig, double distance);
 
 }} // namespace
 

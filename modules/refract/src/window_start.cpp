@@ -106,7 +106,8 @@ std::vector<Candidate> tryNormals(const Camera& camera, const RigViews& views)
 Candidate fitWindow(const Camera& camera, const RigViews& views, const Candidate& start, int flags)
 {
     const Rig rig = { { withWindow(camera, start.window) }, { 0 }, { Pose() } };
-    RigProblem problem(rig, views, start.poses, std::vector<PoseKnowledge>(), flags & GLASS_FREE_DISTANCE);
+    RigProblem problem(rig, views, start.poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(),
+                       flags & GLASS_FREE_DISTANCE);
     problem.solve(TermCriteria(TermCriteria::COUNT | TermCriteria::EPS, 100, 1e-6));
     Candidate fitted = { problem.camera(0).window(), start.poses, problem.squaredError() };
     for (int view = 0; view < views.count(); view++)
@@ -283,6 +284,48 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     return window;
 }
 
+//! The distance of the window of an owner from another camera; negative beyond it.
+double distanceFrom(const Rig& rig, int c)
+{
+    const GlassWindow window = rig.cameras[rig.owner[c]].window();
+    return WindowTransfer(window.normal, window.distance, Extrinsics(rig.extrinsics[rig.owner[c]]),
+                          Extrinsics(rig.extrinsics[c])).distance;
+}
+
+//! The cameras that do not own their window get what they see of it.
+void transferToOthers(Rig& rig)
+{
+    for (int c = 0; c < rig.count(); c++)
+        if (!rig.owns(c))
+            rig.cameras[c].setWindow(transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]],
+                                                 rig.extrinsics[c]));
+}
+
+//! Gives every shared window to the camera that is nearest to it.
+void giveToNearest(Rig& rig)
+{
+    const std::vector<int> given = rig.owner;
+    for (int owner = 0; owner < rig.count(); owner++)
+    {
+        if (given[owner] != owner)
+            continue;
+        int nearest = owner;
+        for (int c = owner + 1; c < rig.count(); c++)
+            if (given[c] == owner && distanceFrom(rig, c) < distanceFrom(rig, nearest))
+                nearest = c;
+        if (nearest == owner)
+            continue;
+        const double least = distanceFrom(rig, nearest);
+        GlassWindow window = rig.cameras[owner].window();
+        if (least < 0)
+            window.distance += window.distance - least;     // the nearest is where the first was thought to be
+        rig.cameras[nearest].setWindow(transferred(window, rig.extrinsics[owner], rig.extrinsics[nearest]));
+        for (int c = 0; c < rig.count(); c++)
+            if (given[c] == owner)
+                rig.owner[c] = nearest;
+    }
+}
+
 } // namespace
 
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags)
@@ -291,11 +334,22 @@ std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const st
     for (int c = 0; c < rig.count(); c++)
         if (rig.owns(c))
             rig.cameras[c].setWindow(startWindow(rig, c, views, poses, flags, others[c]));
-    for (int c = 0; c < rig.count(); c++)
-        if (!rig.owns(c))
-            rig.cameras[c].setWindow(transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]],
-                                                 rig.extrinsics[c]));
+    if (flags & GLASS_FREE_DISTANCE)
+        giveToNearest(rig);
+    transferToOthers(rig);
     return others;
+}
+
+void setDistances(Rig& rig, double distance)
+{
+    for (int c = 0; c < rig.count(); c++)
+        if (rig.owns(c))
+        {
+            GlassWindow window = rig.cameras[c].window();
+            window.distance = distance;
+            rig.cameras[c].setWindow(window);
+        }
+    transferToOthers(rig);
 }
 
 }} // namespace

@@ -1,0 +1,309 @@
+/* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
+distance, lens, R and T. The long form is hidden: run with [.honesty]. */
+#include "measurement.hpp"
+#include "paper_rig.hpp"
+#include "wrong_points.hpp"
+#include <Eigen/SVD>
+#include <map>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+const double SIGMA = 0.1;       // px
+
+enum class Flow { PAIRS, HAND_HELD, SEALED, SHARED_WALL, ROBUST };
+enum class Medium { AIR, HOUSING, SURFACE, LAMINATE };
+
+struct Setup
+{
+    Flow flow;
+    Medium medium;
+    int cameras;
+
+    std::string name() const
+    {
+        static const char* const FLOWS[] = {"pairs", "hand-held", "sealed", "shared wall", "robust, 5 % wrong"};
+        static const char* const MEDIA[] = {"air", "housing in water", "bare surface", "laminate"};
+        return format("%s, %s, %d camera(s)", FLOWS[(int)flow], MEDIA[(int)medium], cameras);
+    }
+    bool inWater() const { return medium == Medium::HOUSING || medium == Medium::SURFACE; }
+    bool paired() const { return flow == Flow::PAIRS || flow == Flow::ROBUST; }
+    bool hasDirect() const { return flow != Flow::SEALED; }
+    bool shared() const { return flow == Flow::SHARED_WALL; }
+};
+
+GlassWindow windowOf(const Setup& setup, const Vec3d& normal)
+{
+    GlassWindow window;
+    window.normal = normalize(normal);
+    switch (setup.medium)
+    {
+    case Medium::AIR:
+        return GlassWindow(normal, 20., 1.5437, 50.);
+    case Medium::HOUSING:
+        return GlassWindow(normal, 10., 1.49, 40., 1.333);
+    case Medium::SURFACE:
+        window.distance = 80.;
+        window.outerIndex = 1.333;
+        return window;
+    case Medium::LAMINATE:
+        window.thickness = {6., 1.5, 6.};
+        window.index = {1.52, 1.48, 1.52};
+        window.distance = 50.;
+        return window;
+    }
+    return window;
+}
+
+Rig trueRig(const Setup& setup)
+{
+    Rig rig = paperRig(setup.cameras);
+    rig.cameras[0]->setWindow(windowOf(setup, Vec3d(-0.2483, 0.0961, 1)));
+    if (setup.cameras == 1)
+        return rig;
+    GlassWindow second = windowOf(setup, Vec3d(0.1823, -0.2809, 1));
+    if (setup.shared())
+    {
+        second = rig.cameras[0]->window();
+        second.normal = rig.R * second.normal;
+        second.distance += second.normal.dot(rig.T);
+        if (second.distance < 20.)
+        {
+            GlassWindow first = rig.cameras[0]->window();
+            first.distance += 20. - second.distance;
+            second.distance = 20.;
+            rig.cameras[0]->setWindow(first);
+        }
+    }
+    rig.cameras[1]->setWindow(second);
+    return rig;
+}
+
+void displaceSome(std::vector<Point2d>& pixels, double part, scenes::Random& random)
+{
+    for (Point2d& p : pixels)
+        if (random.uniform(0, 1) < part)
+            p += random.uniform(3, 20) * Point2d(std::cos(random.uniform(0, 7)), std::sin(random.uniform(0, 7)));
+}
+
+//! What the cameras see, without what lies outside the images.
+Moment look(const Rig& rig, const std::vector<Point3d>& object, bool direct, bool glass, const Setup& setup,
+            scenes::Random& random)
+{
+    const Vec3d rvec = random.vector(0.45);
+    const double z = random.uniform(500, 900);
+    const Vec3d tvec(random.uniform(-0.12, 0.12) * z, random.uniform(-0.1, 0.1) * z, z);
+    Moment m = observe(rig, object, rvec, tvec, direct, SIGMA, random);
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        for (std::vector<Point2d>* pixels : {&m.direct[c], &m.glass[c]})
+        {
+            for (Point2d& p : *pixels)
+                if (!Rect2d(0, 0, 1280, 1024).contains(p))
+                    p = Point2d(NAN, NAN);
+            if (setup.flow == Flow::ROBUST)
+                displaceSome(*pixels, 0.05, random);
+            if (std::count_if(pixels->begin(), pixels->end(), seen) < 12)
+                pixels->clear();
+        }
+    if (!glass)
+        m.glass[0].clear(), m.glass[1].clear();
+    return m;
+}
+
+RigData takeImages(const Rig& rig, const Setup& setup, scenes::Random& random)
+{
+    RigData data;
+    data.cameraCount = setup.cameras;
+    data.objectPoints = board(9, 6, 25.);
+    data.imageSize[0] = data.imageSize[1] = Size(1280, 1024);
+    const int directs = 14, glasses = setup.paired() ? 6 : setup.hasDirect() ? 15 : 25;
+    for (int i = 0; setup.hasDirect() && i < directs; i++)
+        data.moments.push_back(look(rig, data.objectPoints, true, setup.paired() && i < glasses, setup, random));
+    for (int i = 0; !setup.paired() && i < glasses; i++)
+        data.moments.push_back(look(rig, data.objectPoints, false, true, setup, random));
+    for (size_t i = 0; i < data.moments.size(); i++)
+        data.moments[i].stem = "view" + std::to_string(i);
+    return data;
+}
+
+//! As refract_calib does it.
+Fit calibrate(RigData data, const Setup& setup, const Rig& truth)
+{
+    RigOptions options;
+    options.window = truth.cameras[0]->window();
+    options.window.normal = Vec3d(0, 0, 1);
+    options.lensCoefficients = 4;
+    if (setup.inWater())
+    {
+        options.window.distance = 25.;
+        options.flags |= GLASS_FREE_DISTANCE;
+    }
+    if (setup.shared())
+        options.flags |= GLASS_SHARED_WINDOW;
+    if (!setup.hasDirect())
+        options.flags |= GLASS_FREE_INTRINSICS;
+    std::vector<LensSource> sources;
+    Rig start = startRig(data, options, sources);
+    if (setup.flow == Flow::ROBUST)
+    {
+        dropWrongPoints(data, start, options.flags);
+        start = startRig(data, options, sources);
+    }
+    return fitAll(data, start, sources, options.flags);
+}
+
+//! Errors and stated deviations of one kind of number.
+struct Ratio
+{
+    double errors = 0., stated = 0.;
+    int count = 0;
+    std::vector<double> each;
+    void add(double error, double deviation)
+    {
+        if (!(deviation > 0.))
+            return;
+        errors += error * error;
+        stated += deviation * deviation;
+        each.push_back(std::abs(error) / deviation);
+        count++;
+    }
+    double value() const { return std::sqrt(errors / stated); }
+    double within(double sigmas) const
+    {
+        return (double)std::count_if(each.begin(), each.end(), [=](double e) { return e < sigmas; }) / (double)each.size();
+    }
+};
+
+struct Honesty
+{
+    std::map<std::string, Ratio> ratios;
+    int refused = 0, trials = 0;
+    std::string why;
+};
+
+//! Errors of a part of the parameters, each in its principal directions.
+void addParameters(Ratio& ratio, const Mat& covariance, int first, const std::vector<double>& errors)
+{
+    const int count = (int)errors.size();
+    for (int i = 0; i < count; i++)
+        ratio.add(errors[i], std::sqrt(covariance.at<double>(first + i, first + i)));
+}
+
+void compare(const Fit& fit, const Rig& truth, Honesty& honesty)
+{
+    Mat C = fit.covariance;
+    for (int c = 0; c < (int)truth.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(fit.rig, c);
+        const Mat lens = fit.rig.cameras[c]->lensParameters(), trueLens = truth.cameras[c]->lensParameters();
+        std::vector<double> errors;
+        for (int i = 0; i < at.lensCount; i++)
+            errors.push_back(lens.at<double>(i) - trueLens.at<double>(i));
+        addParameters(honesty.ratios["f"], C, at.lens, {errors[0], errors[1]});
+        addParameters(honesty.ratios["c"], C, at.lens + 2, {errors[2], errors[3]});
+        addParameters(honesty.ratios["k"], C, at.lens + 4, {errors[4], errors[5]});
+        const GlassWindow w = fit.rig.cameras[c]->window(), t = truth.cameras[c]->window();
+        addParameters(honesty.ratios["normal"], C, at.normal, {w.normal[0] - t.normal[0], w.normal[1] - t.normal[1]});
+        if (w.innerIndex != w.outerIndex)
+            addParameters(honesty.ratios["distance"], C, at.distance, {w.distance - t.distance});
+    }
+    if (truth.cameras.size() == 2)
+    {
+        Vec3d r, rt;
+        Rodrigues(fit.rig.R, r);
+        Rodrigues(truth.R, rt);
+        const int at = columnsOf(fit.rig, 1).end;
+        addParameters(honesty.ratios["R"], C, at, {r[0] - rt[0], r[1] - rt[1], r[2] - rt[2]});
+        const Vec3d d = fit.rig.T - truth.T;
+        addParameters(honesty.ratios["T"], C, at + 3, {d[0], d[1], d[2]});
+    }
+}
+
+//! Points of the working volume, of pixels without noise: the calibration's part alone.
+void comparePoints(const Fit& fit, const Rig& truth, Honesty& honesty)
+{
+    Calibration calibration = calibrationOf(fit.rig);
+    calibration.covariance = fit.covariance;
+    std::vector<Point3d> points;
+    for (double z : {550., 700., 850.})
+        for (double x : {-0.1, 0., 0.1})
+            for (double y : {-0.08, 0.08})
+                points.emplace_back(x * z, y * z, z);
+    std::vector<Point2d> pixels1, pixels2;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), truth.cameras[0], pixels1);
+    const double none = 1e-9;
+    if (truth.cameras.size() == 2)
+    {
+        refractiveProjectPoints(points, Mat(truth.R), truth.T, truth.cameras[1], pixels2);
+        const Measurement m = measureStereo(calibration, pixels1, pixels2, none);
+        for (size_t i = 0; i < points.size(); i++)
+            for (int k = 0; k < 3; k++)
+                honesty.ratios["points"].add((Vec3d(m.points[i]) - Vec3d(points[i]))[k], m.sigma[i][k]);
+        return;
+    }
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const Measurement m = measureOnPlane(calibration, {pixels1[i]}, Vec4d(0, 0, 1, points[i].z), none);
+        for (int k = 0; k < 2; k++)
+            honesty.ratios["points"].add((Vec3d(m.points[0]) - Vec3d(points[i]))[k], m.sigma[0][k]);
+    }
+}
+
+Honesty honestyOf(const Setup& setup, int trials, unsigned salt)
+{
+    Honesty honesty;
+    const Rig truth = trueRig(setup);
+    for (int trial = 0; trial < trials; trial++)
+    {
+        scenes::Random random(salt + trial);
+        const RigData data = takeImages(truth, setup, random);
+        honesty.trials++;
+        try
+        {
+            const Fit fit = calibrate(data, setup, truth);
+            honesty.ratios["noise"].add(fit.sigma - SIGMA, SIGMA / std::sqrt(2. * fit.freedom));
+            compare(fit, truth, honesty);
+            comparePoints(fit, truth, honesty);
+        }
+        catch (const std::exception& e)
+        {
+            honesty.refused++;
+            honesty.why = e.what();
+        }
+    }
+    return honesty;
+}
+
+void print(const Setup& setup, const Honesty& honesty)
+{
+    std::cout << "[numbers] error over stated, " << setup.name() << " (" << honesty.trials << " trials, " << honesty.refused
+              << " refused):";
+    for (const auto& entry : honesty.ratios)
+        std::cout << ' ' << entry.first << format(" %.2f (%.0f%%)", entry.second.value(), 100 * entry.second.within(1.96));
+    std::cout << std::endl;
+    if (honesty.refused)
+        std::cout << "    " << honesty.why << std::endl;
+}
+
+std::vector<Setup> allSetups()
+{
+    std::vector<Setup> setups;
+    for (Flow flow : {Flow::PAIRS, Flow::HAND_HELD, Flow::SEALED, Flow::SHARED_WALL, Flow::ROBUST})
+        for (Medium medium : {Medium::AIR, Medium::HOUSING, Medium::SURFACE, Medium::LAMINATE})
+            for (int cameras : {1, 2})
+                if (flow != Flow::SHARED_WALL || cameras == 2)
+                    setups.push_back({flow, medium, cameras});
+    return setups;
+}
+
+} // namespace
+
+TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
+{
+    const char* trials = std::getenv("TRIALS");
+    for (const Setup& setup : allSetups())
+        print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
+}
