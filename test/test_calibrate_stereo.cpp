@@ -68,7 +68,7 @@ StereoScene makeStereoScene(const StereoRig& rig, int views, Random& random, dou
 
 double calibrate(const StereoScene& scene, StereoRig& rig, int flags, OutputArray covariance = noArray())
 {
-    return stereoCalibrateGlass(scene.object, scene.refracted1, scene.direct1, scene.refracted2, scene.direct2,
+    return stereoCalibrateGlass(scene.object, scene.direct1, scene.refracted1, scene.direct2, scene.refracted2,
                                 rig.camera1, rig.camera2, rig.R, rig.T, noArray(), noArray(), noArray(), covariance,
                                 noArray(), flags);
 }

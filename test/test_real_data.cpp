@@ -132,7 +132,7 @@ Ptr<RefractiveCamera> behindWater(const Ptr<RefractiveCamera>& air, const Boards
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(air->cameraMatrix(), air->distCoeffs(),
                                                                   waterSurface(startDistance));
     std::vector<Mat> rvecs, tvecs;
-    rms = calibrateGlass(boards.object, boards.pixels, noArray(), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
+    rms = calibrateGlass(boards.object, noArray(), boards.pixels, camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
     return camera;
 }
 
@@ -146,7 +146,7 @@ Ptr<RefractiveCamera> jointlyBehindWater(const Ptr<RefractiveCamera>& air, const
     refracted.resize(object.size());
     direct.insert(direct.end(), inAir.pixels.begin(), inAir.pixels.end());
     std::vector<Mat> rvecs, tvecs;
-    calibrateGlass(object, refracted, direct, camera, rvecs, tvecs,
+    calibrateGlass(object, direct, refracted, camera, rvecs, tvecs,
                    GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_ROBUST);
     return camera;
 }
@@ -216,8 +216,8 @@ TEST_CASE("ouc_laser3d: distance of a board in water, its air twin as truth", "[
     {
         const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), waterSurface());
         std::vector<Mat> rvecs, tvecs;
-        calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, image[s[0]]),
-                       std::vector<Pixels>(1, image[s[1]]), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
+        calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, image[s[1]]),
+                       std::vector<Pixels>(1, image[s[0]]), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
         const Ptr<RefractiveCamera> air = RefractiveCamera::create(K, noArray());
         Vec3d rvec, truth, ignored, measured;
         REQUIRE(refractiveSolvePnP(object, image[s[3]], air, rvec, truth) < 1);
@@ -273,7 +273,7 @@ Placed fitWindow(const TankCamera& tank, const Object& object)
     placed.camera = RefractiveCamera::create(tank.K, noArray(),
                                              GlassWindow(tank.nominalNormal, 6, 1.46, tank.nominalDistance, 1.33));
     std::vector<Mat> rvecs, tvecs;
-    calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, tank.pixels), noArray(), placed.camera, rvecs,
+    calibrateGlass(std::vector<Object>(1, object), noArray(), std::vector<Pixels>(1, tank.pixels), placed.camera, rvecs,
                    tvecs, GLASS_FREE_INTRINSICS | GLASS_FIX_PRINCIPAL_POINT);
     placed.rvec = rvecs[0];
     placed.tvec = tvecs[0];

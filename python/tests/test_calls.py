@@ -124,7 +124,7 @@ def test_calibrate_normal(rig, board):
 def test_calibrate_glass(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 21., 1.5437, 50.)
     flags = refract.GLASS_FREE_THICKNESS
-    rms, window, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start,
+    rms, window, rvecs, tvecs = refract.calibrateGlass(board.target, board.direct1, board.glass1, rig.K1, rig.D1, start,
                                                        flags=flags)
     assert rms < 1e-5 and start.thickness[0] == 21.
     np.testing.assert_allclose(window.normal, rig.window1.normal, atol=1e-7)
@@ -133,19 +133,19 @@ def test_calibrate_glass(rig, board):
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
 
     camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
-    rms, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, camera, flags=flags)
+    rms, rvecs, tvecs = refract.calibrateGlass(board.target, board.direct1, board.glass1, camera, flags=flags)
     np.testing.assert_allclose(camera.window().normal, rig.window1.normal, atol=1e-7)
 
 
 def test_calibrate_glass_extended(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
     rms, window, rvecs, tvecs, deviations, covariance, per_view, jacobian = refract.calibrateGlassExtended(
-        board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
+        board.target, board.direct1, board.glass1, rig.K1, rig.D1, start)
     parameters = 9 + 8
     assert deviations.shape == (parameters, 1) and covariance.shape == (parameters, parameters)
     assert per_view.shape == (8, 2) and jacobian.shape == (2*2*8*30, parameters + 6*8)
     camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
-    result = refract.calibrateGlassExtended(board.target, board.glass1, board.direct1, camera)
+    result = refract.calibrateGlassExtended(board.target, board.direct1, board.glass1, camera)
     np.testing.assert_allclose(result[-1], jacobian, rtol=1e-6, atol=1e-6)
 
 
@@ -155,7 +155,7 @@ def test_calibrate_stereo(rig, board):
     camera2 = refract.RefractiveCamera.create(rig.K2, rig.D2, windows[1])
     from conftest import rotation
     rms, R, T, rvecs, tvecs, deviations, covariance, per_view = refract.stereoCalibrateGlass(
-        board.target, board.glass1, board.direct1, board.glass2, board.direct2, camera1, camera2,
+        board.target, board.direct1, board.glass1, board.direct2, board.glass2, camera1, camera2,
         rotation(rig.R), rig.T.reshape(3, 1))
     assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
     np.testing.assert_allclose(camera1.window().normal, rig.window1.normal, atol=1e-7)
@@ -168,7 +168,7 @@ def test_calibrate_rig(rig, board):
     def call(flags=0, rvecs=(), tvecs=(), **more):
         cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
         result = refract.calibrateGlassRig(
-            board.target, [board.glass1, board.glass2], [board.direct1, board.direct2], cameras, [0, 1],
+            board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [0, 1],
             [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, flags=flags, **more)
         for camera, window in zip(cameras, (rig.window1, rig.window2)):
             np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-6)
@@ -190,7 +190,7 @@ def test_calibrate_rig(rig, board):
                                           *board.glass1[1:]]
     result = call(refract.GLASS_ROBUST)
     board.glass1 = glass1
-    np.testing.assert_array_equal(np.flatnonzero(result[9][0] == 0), np.arange(4, 30, 4))
+    np.testing.assert_array_equal(np.flatnonzero(result[9][1] == 0), np.arange(4, 30, 4))
 
 
 def test_pose(rig, board):

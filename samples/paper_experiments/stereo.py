@@ -69,7 +69,7 @@ class RefractivePair:
         starts = [normals.fit_closed(*views, lens) for views, lens in zip(pairs, direct.lenses)]
         self.cameras = [refract.RefractiveCamera.create(*lens, sim.make_window(normal))
                         for lens, normal in zip(direct.lenses, starts)]
-        _, self.R, self.T, *_ = refract.stereoCalibrateGlass([sim.BOARD]*len(glass1), glass1, direct1, glass2, direct2,
+        _, self.R, self.T, *_ = refract.stereoCalibrateGlass([sim.BOARD]*len(glass1), direct1, glass1, direct2, glass2,
                                                              *self.cameras, direct.R, direct.T)
 
     def matching_error(self, pixels1, pixels2):

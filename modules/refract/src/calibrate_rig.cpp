@@ -222,8 +222,8 @@ void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
 } // namespace
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints,
-                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
                          const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
                          const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
                          InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
                          InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
@@ -237,8 +237,8 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     if (count == 0)
         CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
     checkCount(windowOfCamera.size(), count, "windowOfCamera", false);
-    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
     checkCount(imagePointsDirect.size(), count, "imagePointsDirect", true);
+    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
 
     RigTask task;
     std::vector<String> names, refractedNames;
@@ -247,9 +247,10 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     {
         names.push_back(numbered("cameras", c));
         refractedNames.push_back(numbered("imagePointsRefracted", c));
-        task.views.cameras.push_back(readCameraViews(imagePointsRefracted[c], refractedNames[c].c_str(),
-                                                     viewsOf(imagePointsDirect, c),
-                                                     numbered("imagePointsDirect", c).c_str(), task.views.object));
+        task.views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c),
+                                                     numbered("imagePointsDirect", c).c_str(),
+                                                     imagePointsRefracted[c], refractedNames[c].c_str(),
+                                                     task.views.object));
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
@@ -273,8 +274,8 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
 }
 
 double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
-                            InputArrayOfArrays imagePointsRefracted1, InputArrayOfArrays imagePointsDirect1,
-                            InputArrayOfArrays imagePointsRefracted2, InputArrayOfArrays imagePointsDirect2,
+                            InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+                            InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
                             const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
                             InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs,
                             OutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
@@ -289,10 +290,10 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
     RigTask task;
     task.views.object = readObjectViews(objectPoints, "objectPoints");
-    task.views.cameras.push_back(readCameraViews(imagePointsRefracted1, "imagePointsRefracted1", imagePointsDirect1,
-                                                 "imagePointsDirect1", task.views.object));
-    task.views.cameras.push_back(readCameraViews(imagePointsRefracted2, "imagePointsRefracted2", imagePointsDirect2,
-                                                 "imagePointsDirect2", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect1, "imagePointsDirect1", imagePointsRefracted1,
+                                                 "imagePointsRefracted1", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect2, "imagePointsDirect2", imagePointsRefracted2,
+                                                 "imagePointsRefracted2", task.views.object));
     checkWindows(rig, task.views, flags, { "imagePointsRefracted1", "imagePointsRefracted2" });
     task.flags = flags;
     task.criteria = criteria;

@@ -71,7 +71,7 @@ void describeImages(const RigProblem& rig, const RigTask& task, const std::vecto
     for (size_t i = 0; i < rig.images().size(); i++)
     {
         const RigImage& image = rig.images()[i];
-        const int column = 2*image.camera + (image.refracted ? 0 : 1), used = image.usedCount();
+        const int column = 2*image.camera + (image.refracted ? 1 : 0), used = image.usedCount();
         const double squares = rig.residuals(image).squaredNorm();
         sum += squares;
         fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
@@ -91,7 +91,7 @@ void markUnusable(const RigTask& task, RigFit& fit)
         for (int column = 0; column < fit.imageStatus.cols; column++)
         {
             const CameraViews& seen = task.views.cameras[column/2];
-            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.refracted : seen.direct)[view];
+            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.direct : seen.refracted)[view];
             uchar& status = fit.imageStatus.at<uchar>(view, column);
             if (status != GLASS_IMAGE_ABSENT || countSeen(pixels) == 0)
                 continue;

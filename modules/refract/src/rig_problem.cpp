@@ -114,7 +114,7 @@ void RigProblem::addImages(const RigViews& views)
 {
     for (int view = 0; view < views.count(); view++)
         for (int c = 0; c < (int)views.cameras.size(); c++)
-            for (bool refracted : { true, false })
+            for (bool refracted : { false, true })
             {
                 const CameraViews& seen = views.cameras[c];
                 RigImage image;

@@ -404,10 +404,10 @@ CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, I
 /** @brief Joint maximum-likelihood refinement of the window and the board poses.
 
 @param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
-@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
-view is allowed where the direct one is not empty.
 @param imagePointsDirect the same points of the same, unmoved target seen without the window: noArray() or an empty view
 where there is none. A NaN point was not seen.
+@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
+view is allowed where the direct one is not empty.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window in: the known values and, for glass-only views, the start of the normal. With pairs the
@@ -421,37 +421,37 @@ start of the normal comes from the data. Out: the estimate.
 Throws where the data cannot determine what is free; the text names the direction that is undetermined. Throws too if
 criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
 */
-CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-        InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
         CV_IN_OUT GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @overload
 The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
 */
-CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-        InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @brief calibrateGlass with what the estimate is worth.
 @param objectPoints as above.
-@param imagePointsRefracted as above.
 @param imagePointsDirect as above.
+@param imagePointsRefracted as above.
 @param camera start and result.
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
 refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex); 0 where fixed.
 @param covariance PxP CV_64F in the same order, scaled by the residuals.
-@param perViewErrors Vx2 CV_64F: RMS of each view through the window and direct; NaN where there is none.
-@param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, refracted before direct;
+@param perViewErrors Vx2 CV_64F: RMS of each view direct and through the window; NaN where there is none.
+@param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, direct before refracted;
 columns parameters, then the pose (rvec, tvec) of each view; fixed parameters are 0.
 @param flags as above.
 @param criteria as above.
 */
 CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
         int flags = 0,
@@ -461,7 +461,7 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 The same for (cameraMatrix, distCoeffs, window).
 */
 CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         InputArray cameraMatrix, InputArray distCoeffs, CV_IN_OUT GlassWindow& window,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
@@ -471,10 +471,10 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 /** @brief calibrateGlass for a rigid pair of cameras: one board pose serves all images of a moment.
 
 @param objectPoints one array of N_i 3-D points per view.
-@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
 @param imagePointsDirect1 per view, camera 1 without window, or noArray().
-@param imagePointsRefracted2 per view, camera 2 through its window.
+@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
 @param imagePointsDirect2 per view, camera 2 without window, or noArray().
+@param imagePointsRefracted2 per view, camera 2 through its window.
 @param camera1 start and result.
 @param camera2 start and result.
 @param R 3x3, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS.
@@ -483,15 +483,15 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 @param tvecs object -> camera 1 of each view.
 @param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
 @param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx4: RMS of each view: refracted 1, direct 1, refracted 2, direct 2; NaN where there is none.
+@param perViewErrors Vx4: RMS of each view: direct 1, refracted 1, direct 2, refracted 2; NaN where there is none.
 @param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the start and camera 2's
 normal and distance follow from R and T.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels over all observed points.
 */
 CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted1, InputArrayOfArrays imagePointsDirect1,
-        InputArrayOfArrays imagePointsRefracted2, InputArrayOfArrays imagePointsDirect2,
+        InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+        InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
@@ -513,10 +513,10 @@ it: one prior residual, weighed against the pixels' own noise, which is estimate
 known, one view determines the normal.
 
 @param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
-@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
-view was not taken, an empty list holds no view.
 @param imagePointsDirect per camera, per view: the same points of the same, unmoved target seen without the window; may be
 empty altogether.
+@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
+view was not taken, an empty list holds no view.
 @param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
 @param windowOfCamera per camera: which window it looks through; equal numbers share one. The first camera of a shared
 window brings its start, what the others see of it follows from R and T.
@@ -528,7 +528,7 @@ nothing is left.
 @param tvecs object -> camera 1 translation of each view; as rvecs.
 @param stdDeviations Px1: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
 @param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx2C CV_64F: RMS of each image: refracted and direct of camera 1, of camera 2, ...; NaN where there is
+@param perViewErrors Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN where there is
 none or it was left out.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
@@ -546,8 +546,8 @@ exact; noArray(): all are exact.
 Throws as calibrateGlass, and with GLASS_ROBUST if fewer than half of all points fit.
 */
 CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
-        const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,

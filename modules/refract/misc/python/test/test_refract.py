@@ -226,7 +226,7 @@ class refract_test(NewOpenCVTests):
         boards = [make_board()]*5
         direct, refracted = make_views(cv.refract.RefractiveCamera.create(K, D)), make_views(self.camera1)
         start = cv.refract.GlassWindow((0, 0, 1), 15, 1.5437, 50)
-        rms, window, rvecs, tvecs = cv.refract.calibrateGlass(boards, refracted, direct, K, D, start,
+        rms, window, rvecs, tvecs = cv.refract.calibrateGlass(boards, direct, refracted, K, D, start,
                                                               flags=cv.refract.GLASS_FREE_THICKNESS)
         self.assertLess(rms, 1e-6)
         self.assertClose(make_window().normal, window.normal, 1e-6)
@@ -235,7 +235,7 @@ class refract_test(NewOpenCVTests):
 
         camera = cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
         rms, rvecs, tvecs, deviations, covariance, per_view, jacobian = cv.refract.calibrateGlassExtended(
-            boards, refracted, None, camera)
+            boards, None, refracted, camera)
         self.assertLess(rms, 1e-6)
         self.assertClose(make_window().normal, camera.window().normal, 1e-6)
         self.assertEqual(((16, 1), (16, 16), (5, 2)), (deviations.shape, covariance.shape, per_view.shape))
@@ -245,8 +245,8 @@ class refract_test(NewOpenCVTests):
         bare = cv.refract.RefractiveCamera.create(K, D)
         first, second = (cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
                          for _ in range(2))
-        result = cv.refract.stereoCalibrateGlass(boards, make_views(self.camera1), make_views(bare),
-                                                 make_views(self.camera2, True), make_views(bare, True),
+        result = cv.refract.stereoCalibrateGlass(boards, make_views(bare), make_views(self.camera1),
+                                                 make_views(bare, True), make_views(self.camera2, True),
                                                  first, second, R.copy(), T.copy())
         self.assertLess(result[0], 1e-6)
         self.assertClose(make_window().normal, first.window().normal, 1e-6)
@@ -257,8 +257,8 @@ class refract_test(NewOpenCVTests):
         cameras = [cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
                    for _ in range(2)]
         result = cv.refract.calibrateGlassRig(
-            [make_board()]*5, [make_views(self.camera1), make_views(self.camera2, True)],
-            [make_views(bare), make_views(bare, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
+            [make_board()]*5, [make_views(bare), make_views(bare, True)],
+            [make_views(self.camera1), make_views(self.camera2, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
             [], [], flags=cv.refract.GLASS_ROBUST)
         self.assertEqual(11, len(result))
         self.assertLess(result[0], 1e-6)
