@@ -131,7 +131,9 @@ double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
     for (const auto& view : views)
     {
         Vec3d rvec, tvec;
-        squares += std::pow(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec), 2);
+        std::vector<double> error;
+        REQUIRE(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec, false, error));
+        squares += 2*error[0]*error[0];
     }
     return std::sqrt(squares / views.size());
 }

@@ -97,18 +97,65 @@ TEST_CASE("What is free is found", "[calibrate_glass]")
         CHECK(found->window().distance == Approx(80).epsilon(1e-5));
         CHECK(found->window().outerIndex == Approx(1.333).epsilon(1e-6));
     }
-    SECTION("the lens, pairs; zero coefficients stay")
+    SECTION("the lens, pairs; all coefficients, though they start at 0")
+    {
+        const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+        const CalibrationScene scene = makeScene(camera, 12, random, 0);
+        const Ptr<RefractiveCamera> found = RefractiveCamera::create(
+            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>(4, 0.), straight(paperWindow()));
+        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS) < 1e-5);
+        CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
+        CHECK(angleBetween(found->window().normal, camera->window().normal) < 1e-3);
+    }
+    SECTION("the lens, pairs; what the flags fix stays")
     {
         const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
         const CalibrationScene scene = makeScene(camera, 12, random, 0);
         const Ptr<RefractiveCamera> found = RefractiveCamera::create(
             Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>{ -0.3, 0.1, 0, 0 }, straight(paperWindow()));
-        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS) < 1e-5);
+        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST) < 1e-5);
         CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
         CHECK(found->distCoeffs().at<double>(2) == 0);
         CHECK(found->distCoeffs().at<double>(3) == 0);
         CHECK(angleBetween(found->window().normal, camera->window().normal) < 1e-3);
     }
+}
+
+TEST_CASE("Each flag fixes what it names, and nothing else", "[calibrate_glass]")
+{
+    Random random(315);
+    struct Fix { int flag; std::vector<int> columns; };
+    const std::vector<Fix> opencv = { { GLASS_FIX_FOCAL_LENGTH, { 0, 1 } }, { GLASS_FIX_PRINCIPAL_POINT, { 2, 3 } },
+                                      { GLASS_FIX_K1, { 4 } }, { GLASS_FIX_K2, { 5 } }, { GLASS_FIX_TANGENT_DIST, { 6, 7 } },
+                                      { GLASS_FIX_K3, { 8 } }, { GLASS_FIX_K4, { 9 } }, { GLASS_FIX_K5, { 10 } },
+                                      { GLASS_FIX_K6, { 11 } }, { GLASS_FIX_S1_S2_S3_S4, { 12, 13, 14, 15 } },
+                                      { GLASS_FIX_TAUX_TAUY, { 16, 17 } } };
+    const std::vector<Fix> fisheye = { { GLASS_FIX_FOCAL_LENGTH, { 0, 1 } }, { GLASS_FIX_PRINCIPAL_POINT, { 2, 3 } },
+                                       { GLASS_FIX_K1, { 4 } }, { GLASS_FIX_K2, { 5 } }, { GLASS_FIX_K3, { 6 } },
+                                       { GLASS_FIX_K4, { 7 } } };
+    int all = 0;
+    for (const Fix& fix : opencv)
+        all |= fix.flag;
+    // All at once the boards do not determine: everything is fixed but what one flag names.
+    const auto check = [&](const Ptr<RefractiveCamera>& camera, const Fix& fix)
+    {
+        const CalibrationScene scene = makeScene(camera, 8, random, 0.1);
+        const Mat before = camera->lensParameters();
+        calibrate(scene, true, camera, GLASS_FREE_INTRINSICS | (all & ~fix.flag));
+        const Mat after = camera->lensParameters();
+        for (int i = 0; i < after.rows; i++)
+        {
+            CAPTURE(camera->lensModel(), fix.flag, i);
+            const bool isFree = std::find(fix.columns.begin(), fix.columns.end(), i) != fix.columns.end();
+            CHECK((after.at<double>(i) != before.at<double>(i)) == isFree);
+        }
+    };
+    const Mat K = paperCamera(GlassWindow())->cameraMatrix();
+    for (const Fix& fix : opencv)
+        check(RefractiveCamera::create(K, std::vector<double>(14, 0.), paperWindow()), fix);
+    for (const Fix& fix : fisheye)
+        check(RefractiveCamera::createFisheye(K, std::vector<double>(4, 0.), paperWindow()), fix);
+    check(RefractiveCamera::create(K, noArray(), paperWindow()), { GLASS_FIX_K1, {} });     // a lens that has no k1
 }
 
 TEST_CASE("Any target, each view its own, points missing, views half missing", "[calibrate_glass]")

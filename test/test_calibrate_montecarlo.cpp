@@ -15,8 +15,8 @@ static Vec3d paperNormal(const CalibrationScene& scene, const Ptr<RefractiveCame
     for (size_t view = 0; view < scene.direct.size(); view++)
     {
         std::vector<Point2d> from, to;
-        refractiveUndistortPoints(scene.direct[view], from, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow());
-        refractiveUndistortPoints(scene.refracted[view], to, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow());
+        refractiveUndistortPoints(scene.direct[view], from, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow(), noArray());
+        refractiveUndistortPoints(scene.refracted[view], to, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow(), noArray());
         for (size_t i = 0; i < from.size(); i++)
         {
             const Vec2d across = normalize(Vec2d(to[i].y - from[i].y, from[i].x - to[i].x));

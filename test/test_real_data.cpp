@@ -103,8 +103,9 @@ double heldOutRms(const Boards& boards, const Ptr<RefractiveCamera>& camera)
     for (size_t i = 0; i < boards.object.size(); ++i)
     {
         Vec3d rvec, tvec;
-        const double rms = refractiveSolvePnP(boards.object[i], boards.pixels[i], camera, rvec, tvec);
-        sum += rms*rms*boards.object[i].size();
+        std::vector<double> error;
+        REQUIRE(refractiveSolvePnP(boards.object[i], boards.pixels[i], camera, rvec, tvec, false, error));
+        sum += 2*error[0]*error[0]*boards.object[i].size();
         count += boards.object[i].size();
     }
     return std::sqrt(sum/count);
@@ -220,9 +221,13 @@ TEST_CASE("ouc_laser3d: distance of a board in water, its air twin as truth", "[
                        std::vector<Pixels>(1, image[s[0]]), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
         const Ptr<RefractiveCamera> air = RefractiveCamera::create(K, noArray());
         Vec3d rvec, truth, ignored, measured;
-        REQUIRE(refractiveSolvePnP(object, image[s[3]], air, rvec, truth) < 1);
-        REQUIRE(refractiveSolvePnP(object, image[s[2]], air, rvec, ignored) < 5);
-        REQUIRE(refractiveSolvePnP(object, image[s[2]], camera, rvec, measured) < 2);
+        std::vector<double> inAir, inWater, modelled;
+        REQUIRE(refractiveSolvePnP(object, image[s[3]], air, rvec, truth, false, inAir));
+        REQUIRE(refractiveSolvePnP(object, image[s[2]], air, rvec, ignored, false, inWater));
+        REQUIRE(refractiveSolvePnP(object, image[s[2]], camera, rvec, measured, false, modelled));
+        REQUIRE(inAir[0] < 1/std::sqrt(2.));
+        REQUIRE(inWater[0] < 5/std::sqrt(2.));
+        REQUIRE(modelled[0] < 2/std::sqrt(2.));
         const double errorIgnored = norm(ignored)/norm(truth) - 1, error = norm(measured)/norm(truth) - 1;
         std::cout << "[numbers] ouc_laser3d pair " << s[2] << "-" << s[3] << ", distance of the board from the water image: "
                   << "refraction ignored " << 100*errorIgnored << " %, fitted on the other pair " << 100*error << " %"

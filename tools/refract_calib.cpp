@@ -5,8 +5,8 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
       --direct='direct/*.png' --glass='glass/*.png' --thickness=20 --index=1.5437 --out=calib.yml --report=report.html
 
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
-and extension) the target must not have moved between them: such pairs determine the window best. All direct images serve
-the lens, unless --camera gives it; with pairs it is refined together with the window. With --direct2 and --glass2 the same
+and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
+or more direct images in all: these serve the lens, unless --camera gives it, and with pairs refine it together with the window. With --direct2 and --glass2 the same
 name means the same moment in both cameras.
 
 Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
@@ -69,8 +69,8 @@ ErrorLimit parseErrorLimit(const std::string& text)
 {
     const std::vector<std::string> parts = CLI::detail::split(text, ':');
     ErrorLimit limit;
-    if (parts.size() != 2 || !CLI::detail::lexical_cast(parts[0], limit.range) || !(limit.range > 0) ||
-        !CLI::detail::lexical_cast(parts[1], limit.error) || !(limit.error > 0))
+    if (parts.size() != 2 || !parseNumber(parts[0], limit.range) || !(limit.range > 0) ||
+        !parseNumber(parts[1], limit.error) || !(limit.error > 0))
         throw Failure("--max-error-at=" + text + ": give RANGE:ERROR, two numbers more than 0, as in --max-error-at=600:0.05");
     return limit;
 }

@@ -29,7 +29,7 @@ class CentralPair:
     def row_difference(self, pixels1, pixels2):
         """The paper's matching error: rows in the rectified images, px (N)."""
         R1, R2, P1, P2 = self.rectified
-        rows = [refract.refractiveUndistortPoints(pixels, *lens, sim.NO_WINDOW, R=R, P=P)[0][:, 0, 1]
+        rows = [refract.refractiveUndistortPoints(pixels, *lens, sim.NO_WINDOW, None, R=R, P=P)[0][:, 0, 1]
                 for pixels, lens, R, P in zip((pixels1, pixels2), self.lenses, (R1, R2), (P1, P2))]
         return rows[0] - rows[1]
 

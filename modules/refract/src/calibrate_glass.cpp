@@ -26,7 +26,7 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
     task.flags = flags;
     task.criteria = criteria;
     task.wantsJacobian = jacobian.needed();
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     cameraOf(camera) = rig.cameras[0];
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.jacobian, jacobian);

@@ -66,11 +66,16 @@ std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles
     return cameras;
 }
 
-//! The first camera that looks through the same window; as many layers as it are given to the others.
+//! The first camera that looks through the same window; as many layers as it are given to the others. Empty: each its own.
 void setOwners(Rig& rig, const std::vector<int>& windowOfCamera)
 {
     for (int c = 0; c < rig.count(); c++)
     {
+        if (windowOfCamera.empty())
+        {
+            rig.owner.push_back(c);
+            continue;
+        }
         rig.owner.push_back((int)(std::find(windowOfCamera.begin(), windowOfCamera.end(), windowOfCamera[c]) -
                                   windowOfCamera.begin()));
         rig.cameras[c].setWindow(rig.cameras[rig.owner[c]].window());
@@ -103,6 +108,7 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
 
 std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
+    const double ROUNDING = 1e-6;
     std::vector<Pose> extrinsics(1);
     if (cameras == 1)
         return extrinsics;
@@ -114,8 +120,9 @@ std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, i
     for (int c = 0; c < cameras; c++)
     {
         const Pose pose = readPose(R[c], T[c], numbered("Rs", c), numbered("Ts", c));
-        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > 0)
-            CV_Error(Error::StsBadArg, "Rs[0] and Ts[0] are not the identity and 0; they are those of camera 1 itself");
+        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > ROUNDING)
+            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
+                                         "be the identity and 0", norm(pose.rvec), norm(pose.tvec)));
         if (c > 0)
             extrinsics.push_back(pose);
     }
@@ -221,22 +228,17 @@ void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
 
 } // namespace
 
-double calibrateGlassRig(InputArrayOfArrays objectPoints,
-                         const std::vector<std::vector<Mat> >& imagePointsDirect,
-                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
-                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
-                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
+//! What both forms do, but for the results beside cameras, Rs and Ts.
+static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
+                        InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
 {
-    CV_INSTRUMENT_REGION();
-
     const int count = (int)cameras.size();
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
     if (count == 0)
         CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
-    checkCount(windowOfCamera.size(), count, "windowOfCamera", false);
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     checkCount(imagePointsDirect.size(), count, "imagePointsDirect", true);
     checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
 
@@ -262,14 +264,46 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     task.flags = flags;
     task.criteria = criteria;
 
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
     if (flags & GLASS_FREE_EXTRINSICS)
         writeExtrinsics(rig, Rs, Ts);
+    return fit;
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints,
+                         const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
+                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 rvecs, tvecs, flags, poseCovariances, criteria);
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
     writeMat(fit.otherMinima, otherMinima);
+    return fit.rms;
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, OutputArrayOfArrays rvecs,
+                         OutputArrayOfArrays tvecs, int flags, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 noArray(), noArray(), flags, noArray(), criteria);
+    writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
     return fit.rms;
 }
 
@@ -298,7 +332,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     task.flags = flags;
     task.criteria = criteria;
 
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, { camera1, camera2 });
     if (flags & GLASS_FREE_EXTRINSICS)
     {

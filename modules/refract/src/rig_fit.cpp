@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "rig_fit.hpp"
+#include "arrays.hpp"
 #include "covariance.hpp"
 #include "information.hpp"
 #include "rig_robust.hpp"
@@ -169,27 +170,12 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     return fit;
 }
 
-//! One array of vectors, as calib3d writes them.
 static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, OutputArrayOfArrays out)
 {
-    if (!out.needed())
-        return;
-    const int count = (int)poses.size();
-    Mat all(count, 1, CV_64FC3, Scalar::all(NaN));
-    for (int i = 0; i < count; i++)
-        if (poses[i].found)
-            all.at<Vec3d>(i) = poses[i].*member;
-    if (!out.isMatVector())
-    {
-        all.copyTo(out);
-        return;
-    }
-    out.create(count, 1, CV_64FC3);
-    for (int i = 0; i < count; i++)
-    {
-        out.create(3, 1, CV_64F, i, true);
-        Mat(all.at<Vec3d>(i)).copyTo(out.getMat(i));
-    }
+    std::vector<Vec3d> vectors;
+    for (const Pose& pose : poses)
+        vectors.push_back(pose.found ? pose.*member : Vec3d::all(NaN));
+    writeVectors(vectors, out);
 }
 
 void writeMat(const Mat& from, OutputArray to)

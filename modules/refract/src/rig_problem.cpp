@@ -36,15 +36,18 @@ std::vector<bool> freeMedia(int layers, int flags)
     return isFree;
 }
 
-//! Coefficients that are exactly 0 stay 0.
-std::vector<bool> freeLens(const std::vector<double>& lens, int flags)
+//! GlassCalibrationFlags -> which lens parameters are free.
+std::vector<bool> freeLens(const Camera& camera, int flags)
 {
-    std::vector<bool> isFree(lens.size(), (flags & GLASS_FREE_INTRINSICS) != 0);
-    if (flags & GLASS_FIX_PRINCIPAL_POINT)
-        isFree[2] = isFree[3] = false;
-    for (size_t i = 4; i < lens.size(); i++)
-        if (lens[i] == 0)
-            isFree[i] = false;
+    const int F = GLASS_FIX_FOCAL_LENGTH, C = GLASS_FIX_PRINCIPAL_POINT, P = GLASS_FIX_TANGENT_DIST,
+              S = GLASS_FIX_S1_S2_S3_S4, TAU = GLASS_FIX_TAUX_TAUY;
+    const int opencv[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, P, P, GLASS_FIX_K3, GLASS_FIX_K4, GLASS_FIX_K5,
+                           GLASS_FIX_K6, S, S, S, S, TAU, TAU };
+    const int fisheye[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, GLASS_FIX_K3, GLASS_FIX_K4 };
+    const int* fixedBy = camera.lensModel() == "fisheye" ? fisheye : opencv;
+    std::vector<bool> isFree;
+    for (int i = 0; i < camera.lensCount(); i++)
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(flags & fixedBy[i]));
     return isFree;
 }
 
@@ -76,7 +79,7 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
         const std::vector<double> all = camera.parameters();
         const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
         const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
-        addBlock(RigBlock::LENS, c, lens, freeLens(lens, flags));
+        addBlock(RigBlock::LENS, c, lens, freeLens(camera, flags));
         if (!rig_.owns(c))
             continue;
         addBlock(RigBlock::NORMAL, c, std::vector<double>(lensEnd, lensEnd + 3), std::vector<bool>(3, true));
