@@ -427,6 +427,30 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
     CHECK(mentions(r.err, "no/folder"));
 }
 
+TEST_CASE("refract_calib says that direct and glass images are swapped, or no pairs", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 6;
+    writeScene(f, options, 113);
+    const std::string out = PANE + lens(f) + " --out=" + f / "calib.yml";
+    const ToolResult swapped = runTool("refract_calib" + std::string(TARGET) + " --direct=" + f / "glass1.vnl" + " --glass="
+                                       + f / "direct1.vnl" + out);
+    INFO(swapped.err);
+    CHECK(swapped.code == 1);
+    CHECK(mentions(swapped.err, "the --direct images and the --glass images are swapped"));
+
+    const TemporaryFolder other;
+    writeScene(other, options, 114);
+    const ToolResult moved = runTool("refract_calib" + std::string(TARGET) + " --direct=" + other / "direct1.vnl" + " --glass="
+                                     + f / "glass1.vnl" + " --no-robust" + out);
+    INFO(moved.err);
+    CHECK(moved.code == 1);
+    CHECK(mentions(moved.err, "must show the same target"));
+    CHECK(mentions(moved.err, "--unpaired"));
+    CHECK(f.count() == 6);
+}
+
 TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
 {
     const TemporaryFolder f;

@@ -97,13 +97,18 @@ TEST_CASE("A fit that is bad for other reasons is returned", "[pair_check]")
     SECTION("a wrong thickness")
     {
         for (const GlassWindow& window : { STRAIGHT, SLANTED, HOUSING })
-            for (double factor : { 0.9, 1.1 })
+            for (double factor : { 0.5, 0.9, 1.1, 2. })
             {
                 Mono mono(window);
                 CAPTURE(window.normal, window.outerIndex, factor);
                 CHECK(mono.why(mono.scene.direct, mono.scene.refracted, 0, factor) == "");
                 CHECK(mono.rms > 0.1);
             }
+        GlassWindow laminate({ -0.2483, 0.0961, 1 }, 10, 1.52, 50);
+        laminate.thickness = { 10, 1.52, 10 };
+        laminate.index = { 1.52, 1.48, 1.52 };
+        Mono mono(laminate);
+        CHECK(mono.why(mono.scene.direct, mono.scene.refracted, 0, 2.) == "");
     }
     SECTION("corners of 2 px")
     {

@@ -30,6 +30,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <regex>
 
 using namespace cv::refract;
 using namespace tools;
@@ -204,7 +205,14 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
         c.start = startRig(c.data, c.options, c.lensSources);
     progress.step();
-    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    try
+    {
+        c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(inOptions(e.err));
+    }
     c.residuals = residualsOf(c.data, c.fit);
     progress.step();
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);
@@ -217,6 +225,18 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!o.report.empty())
         c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
     return c;
+}
+
+//! The module names its arguments; here they came from options.
+std::string inOptions(std::string text)
+{
+    const std::pair<const char*, const char*> words[] = {{R"(imagePointsDirect(\[\w+\])*)", "the --direct images"},
+                                                         {R"(imagePointsRefracted(\[\w+\])*)", "the --glass images"}};
+    for (const auto& word : words)
+        text = std::regex_replace(text, std::regex(word.first), word.second);
+    if (text.find("same target") != std::string::npos)
+        text += "; of a hand-held board say --unpaired";
+    return text;
 }
 
 //! What would fail at the end, after all the work.
