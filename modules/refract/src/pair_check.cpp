@@ -223,6 +223,28 @@ void checkPairs(const Rig& start, const Rig& fitted, const RigTask& task, const 
                                      residual, apart));
 }
 
+//! Pairs that are none may leave a fit without answer: says so if they do.
+void explainRefusal(const Rig& start, RigTask task)
+{
+    if (pairsOf(task.views).empty())
+        return;
+    const double swapped = swappedRms(start, task);
+    if (std::isfinite(swapped))
+        throwSwapped(swapped, "not at all");
+    task.flags &= ~(GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX);
+    Rig fitted = start;
+    RigFit fit;
+    try
+    {
+        fit = fitRig(fitted, task);
+    }
+    catch (const cv::Exception&)
+    {
+        return;
+    }
+    checkPairs(start, fitted, task, fit);
+}
+
 } // namespace
 
 RigFit fitCheckingPairs(Rig& rig, const RigTask& task)
@@ -235,9 +257,7 @@ RigFit fitCheckingPairs(Rig& rig, const RigTask& task)
     }
     catch (const cv::Exception&)
     {
-        const double swapped = pairsOf(task.views).empty() ? std::numeric_limits<double>::infinity() : swappedRms(start, task);
-        if (std::isfinite(swapped))
-            throwSwapped(swapped, "not at all");
+        explainRefusal(start, task);
         throw;
     }
     checkPairs(start, rig, task, fit);
