@@ -41,7 +41,7 @@ Ptr<RefractiveCamera> Boards::startCamera() const
 void Boards::calibrateGlass(int flags) const
 {
     std::vector<Mat> rvecs, tvecs;
-    refract::calibrateGlass(object, refracted, direct, startCamera(), rvecs, tvecs, flags);
+    refract::calibrateGlass(object, direct, refracted, startCamera(), rvecs, tvecs, flags);
 }
 
 double Boards::normalError(int flags) const
@@ -49,7 +49,7 @@ double Boards::normalError(int flags) const
     const Ptr<RefractiveCamera> camera = startCamera();
     std::vector<Mat> rvecs, tvecs;
     Mat deviations;
-    refract::calibrateGlass(object, refracted, direct, camera, rvecs, tvecs, deviations, noArray(), noArray(),
+    refract::calibrateGlass(object, direct, refracted, camera, rvecs, tvecs, deviations, noArray(), noArray(),
                             noArray(), flags);
     const int first = (int)camera->lensParameters().total();
     return norm(camera->window().normal - normalize(scene.window.normal))/norm(deviations.rowRange(first, first + 3));

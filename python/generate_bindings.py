@@ -1,6 +1,6 @@
-"""Runs OpenCV's bindings generator on refract.hpp alone.
+"""Runs OpenCV's bindings generator on refract.hpp, and on core's persistence.hpp for the files that cameras are written to.
 
-    generate_bindings.py GENERATOR OUTPUT HEADER [CUSTOM_HEADER...]
+    generate_bindings.py GENERATOR OUTPUT PERSISTENCE_HEADER HEADER [CUSTOM_HEADER...]
 
 Writes the C++ that native.cpp includes, and the typed stubs of the package. Of OpenCV only the array, vector and
 criteria types are wanted, so what the generator does for other modules is switched off here: overloads for UMat and
@@ -14,7 +14,7 @@ from pathlib import Path
 LOOSER_TYPES = [
     (r"\w+", "distCoeffs[12]?", "None"),
     ("refractiveUndistortPoints|initRefractiveUndistortRectifyMap", "depth", "float"),
-    ("initRefractiveUndistortRectifyMap", "depth|R|newCameraMatrix", "None"),
+    ("initRefractiveUndistortRectifyMap", "R|newCameraMatrix", "None"),
     ("refractiveSolvePnP", "rvec|tvec", "None"),
     ("triangulateRefractiveExtended", "calibrationCovariance", "None"),
     (r"\w*[cC]alibrateGlass(?:Extended)?", "imagePointsDirect[12]?", "None"),
@@ -59,7 +59,10 @@ def loosen(stub):
 def write_stubs(output):
     """The stubs speak of cv2.refract and cv2.typing; cv2 need not be there, nor be new enough to have types."""
     stubs = (output / "cv2" / "refract" / "__init__.pyi").read_text()
-    stubs = "\n".join(map(loosen, stubs.split("\n")))
+    files = (output / "cv2" / "__init__.pyi").read_text()
+    stubs += files[files.index("FileStorage_READ"):]        # after the imports
+    stubs = re.sub(r"\bcv2\.(FileNode|FileStorage)", r"\1", "\n".join(map(loosen, stubs.split("\n"))))
+    stubs = stubs.replace("import cv2\n", "")
     (output / "__init__.pyi").write_text(stubs.replace("cv2.typing", "opencv_refract.typing")
                                          + "\nerror: type[Exception]\n__version__: str\n")
     types = (output / "cv2" / "typing" / "__init__.py").read_text()
@@ -67,10 +70,10 @@ def write_stubs(output):
     (output / "typing.py").write_text('"""Types of the arguments and results of opencv_refract."""\n' + types)
 
 
-def main(generator, output, header, *custom_headers):
+def main(generator, output, persistence, header, *custom_headers):
     output = Path(output)
     output.mkdir(parents=True, exist_ok=True)
-    load_generator(generator).gen([header], str(output))
+    load_generator(generator).gen([persistence, header], str(output))
     includes = "".join(f'#include "{path}"\n' for path in custom_headers)
     (output / "pyopencv_custom_headers.h").write_text(includes)
     write_stubs(output)

@@ -61,7 +61,8 @@ inline std::vector<cv::Point2d> seen(const std::vector<cv::Point3d>& object, con
 inline CalibrationScene makeScene(const cv::Ptr<RefractiveCamera>& camera, const ObjectViews& targets, Random& random,
                                   double sigma, double near = 560, double far = 660)
 {
-    cv::Ptr<RefractiveCamera> bare = RefractiveCamera::create(camera->cameraMatrix(), camera->distCoeffs());
+    const cv::Ptr<RefractiveCamera> bare = camera->clone();      // of whatever lens
+    bare->setWindow(GlassWindow());
     CalibrationScene scene;
     scene.object = targets;
     for (const std::vector<cv::Point3d>& target : targets)

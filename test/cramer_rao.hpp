@@ -22,7 +22,7 @@ inline cv::Mat cramerRaoBound(const CalibrationScene& perfect, bool paired, cons
     const int P = 16, NORMAL = 8, THICKNESS = 12, views = (int)perfect.object.size();
     cv::Ptr<RefractiveCamera> found = makeCamera(allLenses()[1], camera->window());
     cv::Mat jacobian;
-    cv::refract::calibrateGlass(perfect.object, perfect.refracted, paired ? perfect.direct : PixelViews(), found,
+    cv::refract::calibrateGlass(perfect.object, paired ? perfect.direct : PixelViews(), perfect.refracted, found,
                                 cv::noArray(), cv::noArray(), cv::noArray(), cv::noArray(), cv::noArray(), jacobian, flags);
     const bool thickness = (flags & cv::refract::GLASS_FREE_THICKNESS) != 0;
     cv::Mat basis = cv::Mat::zeros(P, thickness ? 3 : 2, CV_64F);

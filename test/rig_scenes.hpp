@@ -146,7 +146,7 @@ struct RigCall
 
     double run(int flags)
     {
-        return cv::refract::calibrateGlassRig(object, refracted, direct, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
+        return cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                               covariance, perViewErrors, imageStatus, inliers, otherMinima, flags,
                                               poseCovariances);
     }

@@ -157,7 +157,7 @@ TEST_CASE("Outputs of a fixed type keep it", "[arrays]")
     CHECK(std::isnan(points32[9].x));
 
     std::vector<Vec2f> undistorted;
-    refractiveUndistortPoints(pixels64, undistorted, c);
+    refractiveUndistortPoints(pixels64, undistorted, c, 700.);
     CHECK(undistorted.size() == (size_t)N);
     std::vector<std::vector<Point2f>> lines;
     computeRefractiveEpilines(pixels64, 1, c, c, Matx33d::eye(), Vec3d(-100, 0, 0), Vec2d(300, 900), lines);
@@ -167,20 +167,20 @@ TEST_CASE("Outputs of a fixed type keep it", "[arrays]")
 
     Mat row(1, N, CV_64FC2);       // of the right size, lying down
     const uchar* data = row.data;
-    refractiveUndistortPoints(pixels64, row, c);
+    refractiveUndistortPoints(pixels64, row, c, 700.);
     CHECK(row.data == data);
     CHECK((float)row.at<Vec2d>(3)[0] == undistorted[3][0]);
     Mat inPlace = Mat(pixels64, true);
-    refractiveUndistortPoints(inPlace, inPlace, c);
+    refractiveUndistortPoints(inPlace, inPlace, c, 700.);
     CHECK(largestDifference(inPlace, row) == 0);
 
     // Integers cannot hold NaN.
     std::vector<Point> integers;
-    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, integers, c); }) != "");
+    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, integers, c, 700.); }) != "");
     Mat_<uchar> bytes;
-    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, bytes, c); }) != "");
+    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, bytes, c, 700.); }) != "");
     std::vector<Point3f> three;
-    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, three, c); }) != "");
+    CHECK(thrown([&] { refractiveUndistortPoints(pixels64, three, c, 700.); }) != "");
 }
 
 TEST_CASE("Outputs into a column of a larger matrix", "[arrays]")
@@ -188,9 +188,9 @@ TEST_CASE("Outputs into a column of a larger matrix", "[arrays]")
     const Ptr<RefractiveCamera> c = camera();
     const std::vector<Point2d> pixels = { { 100, 200 }, { 300, 400 } };
     std::vector<Point2d> expected;
-    refractiveUndistortPoints(pixels, expected, c);
+    refractiveUndistortPoints(pixels, expected, c, 700.);
     Mat big(2, 3, CV_64FC2, Scalar::all(-1)), column = big.col(1);
-    const std::string text = thrown([&] { refractiveUndistortPoints(pixels, column, c); });
+    const std::string text = thrown([&] { refractiveUndistortPoints(pixels, column, c, 700.); });
     if (text.empty())
         CHECK(largestDifference(column, expected) == 0);
     else
@@ -250,7 +250,7 @@ TEST_CASE("Wrong types and shapes are refused by name and value", "[arrays]")
             CHECK_THAT(text, Contains(argument) && Contains(wrong.value));
         };
         check("imagePoints", thrown([&] { refractiveUnprojectPoints(wrong.pixels, a, b, c); }));
-        check("src", thrown([&] { refractiveUndistortPoints(wrong.pixels, a, c); }));
+        check("src", thrown([&] { refractiveUndistortPoints(wrong.pixels, a, c, 700.); }));
         check("imagePoints", thrown([&] { refractivePointsOnPlane(wrong.pixels, a, c, Vec4d(0, 0, 1, 5)); }));
         check("points1", thrown([&] { triangulateRefractive(c, c, R, T, wrong.pixels, good, a); }));
         check("points2", thrown([&] { triangulateRefractive(c, c, R, T, good, wrong.pixels, a); }));

@@ -131,7 +131,9 @@ double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
     for (const auto& view : views)
     {
         Vec3d rvec, tvec;
-        squares += std::pow(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec), 2);
+        std::vector<double> error;
+        REQUIRE(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec, false, error));
+        squares += 2*error[0]*error[0];
     }
     return std::sqrt(squares / views.size());
 }
@@ -423,6 +425,30 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
                                  + f / "glass1.vnl" + PANE + lens(f) + " --out=" + f / "no/folder/calib.yml");
     CHECK(r.code == 1);
     CHECK(mentions(r.err, "no/folder"));
+}
+
+TEST_CASE("refract_calib says that direct and glass images are swapped, or no pairs", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 6;
+    writeScene(f, options, 113);
+    const std::string out = PANE + lens(f) + " --out=" + f / "calib.yml";
+    const ToolResult swapped = runTool("refract_calib" + std::string(TARGET) + " --direct=" + f / "glass1.vnl" + " --glass="
+                                       + f / "direct1.vnl" + out);
+    INFO(swapped.err);
+    CHECK(swapped.code == 1);
+    CHECK(mentions(swapped.err, "the --direct images and the --glass images are swapped"));
+
+    const TemporaryFolder other;
+    writeScene(other, options, 114);
+    const ToolResult moved = runTool("refract_calib" + std::string(TARGET) + " --direct=" + other / "direct1.vnl" + " --glass="
+                                     + f / "glass1.vnl" + " --no-robust" + out);
+    INFO(moved.err);
+    CHECK(moved.code == 1);
+    CHECK(mentions(moved.err, "must show the same target"));
+    CHECK(mentions(moved.err, "--unpaired"));
+    CHECK(f.count() == 6);
 }
 
 TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")

@@ -24,7 +24,7 @@ static GlassWindow straight(GlassWindow window)
 
 static double calibrate(const CalibrationScene& scene, bool paired, const Ptr<RefractiveCamera>& camera, int flags = 0)
 {
-    return calibrateGlass(scene.object, scene.refracted, paired ? scene.direct : PixelViews(), camera, noArray(),
+    return calibrateGlass(scene.object, paired ? scene.direct : PixelViews(), scene.refracted, camera, noArray(),
                           noArray(), flags);
 }
 
@@ -97,18 +97,66 @@ TEST_CASE("What is free is found", "[calibrate_glass]")
         CHECK(found->window().distance == Approx(80).epsilon(1e-5));
         CHECK(found->window().outerIndex == Approx(1.333).epsilon(1e-6));
     }
-    SECTION("the lens, pairs; zero coefficients stay")
+    SECTION("the lens, pairs; all coefficients, though they start at 0")
+    {
+        const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+        const CalibrationScene scene = makeScene(camera, 12, random, 0);
+        const Ptr<RefractiveCamera> found = RefractiveCamera::create(
+            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>(4, 0.), straight(paperWindow()));
+        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS) < 1e-5);
+        CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
+        CHECK(angleBetween(found->window().normal, camera->window().normal) < 1e-3);
+    }
+    SECTION("the lens, pairs; what the flags fix stays")
     {
         const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
         const CalibrationScene scene = makeScene(camera, 12, random, 0);
         const Ptr<RefractiveCamera> found = RefractiveCamera::create(
             Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>{ -0.3, 0.1, 0, 0 }, straight(paperWindow()));
-        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS) < 1e-5);
+        CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST) < 1e-5);
         CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
         CHECK(found->distCoeffs().at<double>(2) == 0);
         CHECK(found->distCoeffs().at<double>(3) == 0);
         CHECK(angleBetween(found->window().normal, camera->window().normal) < 1e-3);
     }
+}
+
+TEST_CASE("Each flag fixes what it names, and nothing else", "[calibrate_glass]")
+{
+    Random random(315);
+    struct Fix { int flag; std::vector<int> columns; };
+    const std::vector<Fix> opencv = { { GLASS_FIX_FOCAL_LENGTH, { 0, 1 } }, { GLASS_FIX_PRINCIPAL_POINT, { 2, 3 } },
+                                      { GLASS_FIX_K1, { 4 } }, { GLASS_FIX_K2, { 5 } }, { GLASS_FIX_TANGENT_DIST, { 6, 7 } },
+                                      { GLASS_FIX_K3, { 8 } }, { GLASS_FIX_K4, { 9 } }, { GLASS_FIX_K5, { 10 } },
+                                      { GLASS_FIX_K6, { 11 } }, { GLASS_FIX_S1_S2_S3_S4, { 12, 13, 14, 15 } },
+                                      { GLASS_FIX_TAUX_TAUY, { 16, 17 } } };
+    const std::vector<Fix> fisheye = { { GLASS_FIX_FOCAL_LENGTH, { 0, 1 } }, { GLASS_FIX_PRINCIPAL_POINT, { 2, 3 } },
+                                       { GLASS_FIX_K1, { 4 } }, { GLASS_FIX_K2, { 5 } }, { GLASS_FIX_K3, { 6 } },
+                                       { GLASS_FIX_K4, { 7 } } };
+    int all = 0;
+    for (const Fix& fix : opencv)
+        all |= fix.flag;
+    // All at once the boards do not determine: everything is fixed but what one flag names.
+    const auto check = [&](const Ptr<RefractiveCamera>& camera, const Fix& fix)
+    {
+        CAPTURE(camera->lensModel(), fix.flag);
+        const CalibrationScene scene = makeScene(camera, 8, random, 0.1);
+        const Mat before = camera->lensParameters();
+        calibrate(scene, true, camera, GLASS_FREE_INTRINSICS | (all & ~fix.flag));
+        const Mat after = camera->lensParameters();
+        for (int i = 0; i < after.rows; i++)
+        {
+            CAPTURE(i);
+            const bool isFree = std::find(fix.columns.begin(), fix.columns.end(), i) != fix.columns.end();
+            CHECK((after.at<double>(i) != before.at<double>(i)) == isFree);
+        }
+    };
+    const Mat K = paperCamera(GlassWindow())->cameraMatrix();
+    for (const Fix& fix : opencv)
+        check(RefractiveCamera::create(K, std::vector<double>(14, 0.), paperWindow()), fix);
+    for (const Fix& fix : fisheye)
+        check(RefractiveCamera::createFisheye(K, std::vector<double>(4, 0.), paperWindow()), fix);
+    check(RefractiveCamera::create(K, noArray(), paperWindow()), { GLASS_FIX_K1, {} });     // a lens that has no k1
 }
 
 TEST_CASE("Any target, each view its own, points missing, views half missing", "[calibrate_glass]")
@@ -127,7 +175,7 @@ TEST_CASE("Any target, each view its own, points missing, views half missing", "
     const Ptr<RefractiveCamera> found = startCamera(camera, straight(camera->window()));
     std::vector<Mat> rvecs, tvecs;
     Mat deviations, covariance, errors, jacobian;
-    const double rms = calibrateGlass(scene.object, scene.refracted, scene.direct, found, rvecs, tvecs, deviations,
+    const double rms = calibrateGlass(scene.object, scene.direct, scene.refracted, found, rvecs, tvecs, deviations,
                                       covariance, errors, jacobian);
     CHECK(rms == Approx(0.05*std::sqrt(2.)).epsilon(0.15));
     CHECK(angleBetween(found->window().normal, camera->window().normal) < 0.1);
@@ -137,8 +185,8 @@ TEST_CASE("Any target, each view its own, points missing, views half missing", "
         CHECK(norm(rvecs[i], Mat(scene.rvecs[i])) < 0.01);
     }
     REQUIRE(errors.size() == Size(2, 5));
-    CHECK(std::isnan(errors.at<double>(1, 1)));
-    CHECK(std::isnan(errors.at<double>(3, 0)));
+    CHECK(std::isnan(errors.at<double>(1, 0)));
+    CHECK(std::isnan(errors.at<double>(3, 1)));
     CHECK(errors.at<double>(0, 0) > 0);
 
     const int P = 16, points = 22 + 22 + 30 + 12 + 12 + 36 + 30 + 30;
@@ -153,7 +201,7 @@ TEST_CASE("Any target, each view its own, points missing, views half missing", "
 
     std::vector<Vec3d> rvecs2, tvecs2;
     GlassWindow window = straight(camera->window());
-    const double rms2 = calibrateGlass(scene.object, scene.refracted, scene.direct, camera->cameraMatrix(),
+    const double rms2 = calibrateGlass(scene.object, scene.direct, scene.refracted, camera->cameraMatrix(),
                                        camera->distCoeffs(), window, rvecs2, tvecs2);
     CHECK(rms2 == rms);
     CHECK(window.normal == found->window().normal);
@@ -168,16 +216,16 @@ TEST_CASE("Jacobian and covariance are those of refractiveProjectPoints and of t
     const Ptr<RefractiveCamera> found = startCamera(camera, straight(camera->window()));
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations, covariance, errors, jacobian;
-    const double rms = calibrateGlass(scene.object, scene.refracted, scene.direct, found, rvecs, tvecs, deviations,
+    const double rms = calibrateGlass(scene.object, scene.direct, scene.refracted, found, rvecs, tvecs, deviations,
                                       covariance, errors, jacobian, GLASS_FREE_THICKNESS | GLASS_FREE_INTRINSICS);
     const int P = 16, views = 3, n = 30;
     REQUIRE(jacobian.size() == Size(P + 6*views, 4*n*views));
 
     Mat byProjection;
     refractiveProjectPoints(scene.object[1], rvecs[1], tvecs[1], found, noArray(), noArray(), byProjection);
-    const Mat rows = jacobian.rowRange(4*n, 6*n);       // view 1 through the window
+    const Mat rows = jacobian.rowRange(6*n, 8*n);       // view 1 through the window
     CHECK(largestDifference(rows.colRange(P + 6, P + 12), byProjection.colRange(0, 6)) < 1e-8);
-    for (int column : { 0, 1, 2, 3, 4, 5, 8, 9, 10, 12 })
+    for (int column : { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12 })
         CHECK(largestDifference(rows.col(column), byProjection.col(6 + column)) < 1e-8);
 
     // rms^2 of all points from those of the views
@@ -187,9 +235,9 @@ TEST_CASE("Jacobian and covariance are those of refractiveProjectPoints and of t
     // The pseudo-inverse of the whole information; the normal has no length and fixed columns are 0.
     Mat inverse;
     invert(jacobian.t()*jacobian, inverse, DECOMP_SVD);
-    const double variance = rms*rms*2*n*views/(4*n*views - (6 + 2 + 1) - 6*views);
+    const double variance = rms*rms*2*n*views/(4*n*views - (8 + 2 + 1) - 6*views);
     const Mat expected = variance*inverse(Rect(0, 0, P, P));
-    for (int i : { 0, 1, 2, 3, 4, 5, 8, 9, 12 })
+    for (int i : { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12 })
     {
         CAPTURE(i);
         CHECK(covariance.at<double>(i, i) == Approx(expected.at<double>(i, i)).epsilon(1e-3));
@@ -208,7 +256,7 @@ TEST_CASE("The predicted uncertainty is the sampled one", "[calibrate_glass]")
         const CalibrationScene scene = makeScene(camera, 2, random, 0.1);
         const Ptr<RefractiveCamera> found = paperCamera(paperWindow());
         Mat covariance, inverse;
-        const double error = calibrateGlass(scene.object, scene.refracted, scene.direct, found, noArray(), noArray(),
+        const double error = calibrateGlass(scene.object, scene.direct, scene.refracted, found, noArray(), noArray(),
                                             noArray(), covariance, noArray(), noArray(), GLASS_FREE_THICKNESS);
         rms += error*error/runs;
         Mat difference(5, 1, CV_64F);
@@ -238,7 +286,7 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
     water.outerIndex = 1.333;
     CHECK_THAT(whyNot(scene, true, startCamera(camera, water), GLASS_FREE_INDEX), Catch::Contains("no layer"));
     GlassWindow window = camera->window();
-    CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.refracted, scene.direct, camera->cameraMatrix(),
+    CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, camera->cameraMatrix(),
                                            camera->distCoeffs(), window, noArray(), noArray(), GLASS_FREE_INTRINSICS); }),
                Catch::Contains("GLASS_FREE_INTRINSICS needs"));
 
@@ -297,17 +345,17 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
     SECTION("too few iterations")
     {
         const Ptr<RefractiveCamera> start = startCamera(camera, straight(paperWindow()));
-        CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.refracted, scene.direct, start, noArray(), noArray(), 0,
+        CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(), 0,
                                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1, 1e-12)); }),
                    Catch::Contains("did not converge in 1 iterations"));
         CHECK(start->window().normal == Vec3d(0, 0, 1));
         for (const TermCriteria& bad : { TermCriteria(0, 10, 1e-9), TermCriteria(TermCriteria::COUNT, 0, 0),
                                          TermCriteria(TermCriteria::EPS, 0, -1) })
-            CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.refracted, scene.direct, start, noArray(), noArray(),
+            CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(),
                                                    0, bad); }), Catch::Contains("criteria."));
-        calibrateGlass(scene.object, scene.refracted, scene.direct, startCamera(camera, paperWindow()), noArray(),
+        calibrateGlass(scene.object, scene.direct, scene.refracted, startCamera(camera, paperWindow()), noArray(),
                        noArray(), 0, TermCriteria(TermCriteria::EPS, 0, 1e-9));
-        calibrateGlass(scene.object, scene.refracted, scene.direct, start, noArray(), noArray(), 0,
+        calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(), 0,
                        TermCriteria(TermCriteria::COUNT, 1, 0));
     }
     CHECK(camera->window().normal == before);       // a refusal leaves the start alone

@@ -15,8 +15,8 @@ static Vec3d paperNormal(const CalibrationScene& scene, const Ptr<RefractiveCame
     for (size_t view = 0; view < scene.direct.size(); view++)
     {
         std::vector<Point2d> from, to;
-        refractiveUndistortPoints(scene.direct[view], from, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow());
-        refractiveUndistortPoints(scene.refracted[view], to, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow());
+        refractiveUndistortPoints(scene.direct[view], from, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow(), noArray());
+        refractiveUndistortPoints(scene.refracted[view], to, camera->cameraMatrix(), camera->distCoeffs(), GlassWindow(), noArray());
         for (size_t i = 0; i < from.size(); i++)
         {
             const Vec2d across = normalize(Vec2d(to[i].y - from[i].y, from[i].x - to[i].x));
@@ -63,7 +63,7 @@ void tryOnce(const Case& c, int run, int runs, Statistics& statistics)
     }
     const Mat bound = sigma*sigma*cramerRaoBound(perfect, c.paired, camera, c.flags & ~GLASS_ROBUST);
     Mat deviations, covariance;
-    calibrateGlass(scene.object, scene.refracted, c.paired ? scene.direct : PixelViews(), found, noArray(), noArray(),
+    calibrateGlass(scene.object, c.paired ? scene.direct : PixelViews(), scene.refracted, found, noArray(), noArray(),
                    deviations, covariance, noArray(), noArray(), c.flags);
 
     const Vec3d truth = camera->window().normal, n = found->window().normal;
@@ -219,7 +219,7 @@ static void printPrediction(int views, bool paired, int flags, const char* free)
     const std::string what = std::to_string(views) + (paired ? " pairs" : " glass-only views") + ", free " + free;
     const std::string refusal = thrown([&]
     {
-        calibrateGlass(scene.object, scene.refracted, paired ? scene.direct : PixelViews(), camera, noArray(), noArray(),
+        calibrateGlass(scene.object, paired ? scene.direct : PixelViews(), scene.refracted, camera, noArray(), noArray(),
                        deviations, covariance, noArray(), noArray(), flags);
     });
     if (!refusal.empty())

@@ -28,10 +28,10 @@ TEST_CASE("Four cameras behind three windows, R and T free, from perfect data", 
         const Matx33d R(call.Rs[2]);
         CHECK(norm(R*call.cameras[0]->window().normal - call.cameras[2]->window().normal) < 1e-12);
         CHECK(call.imageStatus.size() == Size(8, 8));
-        CHECK(call.imageStatus.at<uchar>(0, 1) == (paired ? GLASS_IMAGE_USED : GLASS_IMAGE_ABSENT));
+        CHECK(call.imageStatus.at<uchar>(0, 0) == (paired ? GLASS_IMAGE_USED : GLASS_IMAGE_ABSENT));
         CHECK(call.perViewErrors.size() == Size(8, 8));
         REQUIRE(call.inliers.size() == 64);
-        CHECK(countNonZero(call.inliers[0]) == 30);
+        CHECK(countNonZero(call.inliers[1]) == 30);
     }
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("One camera: the rig is calibrateGlass; the stereo pair is stereoCalib
     RigCall start(truth, scene, true);
     Mat R = start.Rs[1], T = start.Ts[1];
     Mat covariance;
-    CHECK(stereoCalibrateGlass(scene.object, scene.refracted[0], scene.direct[0], scene.refracted[1], scene.direct[1],
+    CHECK(stereoCalibrateGlass(scene.object, scene.direct[0], scene.refracted[0], scene.direct[1], scene.refracted[1],
                                start.cameras[0], start.cameras[1], R, T, noArray(), noArray(), noArray(), covariance,
                                noArray(), GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS) == rms);
     CHECK(norm(T, rig.Ts[1]) == 0);
@@ -93,7 +93,7 @@ TEST_CASE("One camera: the rig is calibrateGlass; the stereo pair is stereoCalib
     keepFirst(one, seenByOne);
     RigCall single(one, seenByOne, true), again(one, seenByOne, true);
     const double alone = single.run(GLASS_FREE_THICKNESS);
-    CHECK(calibrateGlass(scene.object, scene.refracted[0], scene.direct[0], again.cameras[0], noArray(), noArray(),
+    CHECK(calibrateGlass(scene.object, scene.direct[0], scene.refracted[0], again.cameras[0], noArray(), noArray(),
                          GLASS_FREE_THICKNESS) == alone);
     CHECK(again.cameras[0]->window().normal == single.cameras[0]->window().normal);
 }
@@ -233,7 +233,7 @@ TEST_CASE("A sealed camera: lens and normal from views through the window alone"
         call.cameras[0]->setLensParameters(std::vector<double>{ 2430, 2430, 640, 505, -0.4, 0.4, 0, 0 });
         if (outerIndex != 1)
             call.cameras[0]->setWindow(GlassWindow({ 0, 0, 1 }, 20, 1.5437, 80, outerIndex));
-        CHECK(call.run(GLASS_FREE_INTRINSICS) == Approx(0.1*std::sqrt(2.)).epsilon(0.1));
+        CHECK(call.run(GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST) == Approx(0.1*std::sqrt(2.)).epsilon(0.1));
         const Vec3d n = call.cameras[0]->window().normal - truth.cameras[0]->window().normal;
         std::vector<double> errors;
         std::vector<int> rows;

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <type_traits>
 
 using namespace cv;
 using namespace cv::refract;
@@ -172,6 +173,61 @@ TEST_CASE("A written camera is read back to the last bit", "[camera]")
     CHECK(largestDifference(back->lensParameters(), camera->lensParameters()) == 0);
     CHECK(largestDifference(back->cameraMatrix(), camera->cameraMatrix()) == 0);
     CHECK(largestDifference(someProjections(back), someProjections(camera)) < 1e-12);
+}
+
+TEST_CASE("Nobody else can make a kind of camera", "[camera]")
+{
+    struct Outsider : RefractiveCamera
+    {
+        Outsider() = default;
+        Outsider(const Outsider&) = default;
+    };
+    CHECK(!std::is_default_constructible<Outsider>::value);
+    CHECK(!std::is_copy_constructible<Outsider>::value);
+    CHECK(!std::is_copy_assignable<RefractiveCamera>::value);
+}
+
+TEST_CASE("A clone is a camera of its own", "[camera]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    const Ptr<RefractiveCamera> camera = makeCamera(kind, someWindow());
+    camera->setImageSize(Size(1280, 1024));
+    const std::vector<Vec2d> before = someProjections(camera);
+    const Ptr<RefractiveCamera> copy = camera->clone();
+    CHECK(copy != camera);
+    CHECK(copy->lensModel() == camera->lensModel());
+    CHECK(copy->imageSize() == Size(1280, 1024));
+    CHECK(largestDifference(someProjections(copy), before) == 0);
+
+    copy->setWindow(GlassWindow());
+    Mat parameters = copy->lensParameters();
+    parameters.at<double>(2) += 3;
+    copy->setLensParameters(parameters);
+    copy->setImageSize(Size());
+    CHECK(largestDifference(someProjections(camera), before) == 0);
+    CHECK(camera->imageSize() == Size(1280, 1024));
+    LensKind moved = kind;
+    moved.K(0, 2) += 3;
+    CHECK(largestDifference(someProjections(copy), someProjections(makeCamera(moved, GlassWindow()))) == 0);
+}
+
+TEST_CASE("Cameras in maps of one's own file", "[camera]")
+{
+    const std::vector<LensKind> kinds = allLenses();
+    const Ptr<FileStorage> out = makePtr<FileStorage>(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    *out << "rig" << "{";
+    makeCamera(kinds[1], someWindow())->write(out, "left");
+    makeCamera(kinds[7], GlassWindow())->write(out, "right");
+    *out << "}";
+    const FileStorage in(out->releaseAndGetString(), FileStorage::READ | FileStorage::MEMORY);
+    const Ptr<RefractiveCamera> left = RefractiveCamera::read(in["rig"]["left"]);
+    CHECK(largestDifference(someProjections(left), someProjections(makeCamera(kinds[1], someWindow()))) < 1e-12);
+    CHECK(RefractiveCamera::read(in["rig"]["right"])->lensModel() == "fisheye");
+    CHECK_THAT(thrown([&] { RefractiveCamera::read(in["rig"]["middle"]); }), Contains("node is not a map"));
+    CHECK_THAT(thrown([&] { RefractiveCamera::read(in["rig"]); }), Contains("rig has no camera_matrix"));
+    CHECK_THAT(thrown([&] { left->write(Ptr<FileStorage>()); }), Contains("fs is not open"));
+    CHECK_THAT(thrown([&] { left->write(out); }), Contains("fs is not open"));
 }
 
 TEST_CASE("A camera of mrcal's models is read back as such", "[camera]")

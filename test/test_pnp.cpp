@@ -16,9 +16,9 @@ TEST_CASE("The pose of a perfectly seen target is exact, whatever lens and windo
                 const Ptr<RefractiveCamera> camera = makeCamera(lens, makeWindow(kind, random));
                 const std::vector<Point3d> object = planar ? board() : cloud(random);
                 const Vec3d rvec(0.3, -0.4, 0.2), tvec(20, -10, 600);
-                Mat r, t;
-                const double rms = refractiveSolvePnP(object, seen(object, rvec, tvec, camera, random, 0), camera, r, t);
-                CHECK(rms < 1e-7);
+                Mat r, t, error;
+                REQUIRE(refractiveSolvePnP(object, seen(object, rvec, tvec, camera, random, 0), camera, r, t, false, error));
+                CHECK(error.at<double>(0) < 1e-7);
                 largest = std::max(largest, std::max(norm(t, Mat(tvec))/norm(tvec), norm(r, Mat(rvec))));
                 CHECK(norm(t, Mat(tvec)) < 1e-6*norm(tvec));
                 CHECK(norm(r, Mat(rvec)) < 1e-6);
@@ -33,8 +33,9 @@ TEST_CASE("A wide lens sees the target beyond 90 degrees", "[pnp]")
     const Ptr<RefractiveCamera> camera = makeCamera(fisheye, GlassWindow());
     const std::vector<Point3d> object = board();
     const Vec3d rvec(0, 1.5, 0), tvec(500, 30, 40);
-    Mat r, t;
-    CHECK(refractiveSolvePnP(object, seen(object, rvec, tvec, camera, random, 0), camera, r, t) < 1e-7);
+    Mat r, t, error;
+    REQUIRE(refractiveSolvePnP(object, seen(object, rvec, tvec, camera, random, 0), camera, r, t, false, error));
+    CHECK(error.at<double>(0) < 1e-7);
     CHECK(norm(t, Mat(tvec)) < 1e-4);
 }
 
@@ -46,21 +47,25 @@ TEST_CASE("Noise, missing points and a guess", "[pnp]")
     const Vec3d rvec(0.3, -0.4, 0.2), tvec(20, -10, 600);
     std::vector<Point2d> pixels = seen(object, rvec, tvec, camera, random, 0.1);
     Mat r, t, r2, t2;
-    const double rms = refractiveSolvePnP(object, pixels, camera, r, t);
-    CHECK(rms == Approx(0.1*std::sqrt(2.)).epsilon(0.25));
+    std::vector<double> error, error2;
+    REQUIRE(refractiveSolvePnP(object, pixels, camera, r, t, false, error));
+    REQUIRE(error.size() == 1);
+    CHECK(error[0] == Approx(0.1).epsilon(0.25));
     CHECK(norm(t, Mat(tvec)) < 1);
 
     SECTION("the overload agrees")
     {
-        CHECK(refractiveSolvePnP(object, pixels, camera->cameraMatrix(), camera->distCoeffs(), camera->window(), r2, t2)
-              == rms);
+        CHECK(refractiveSolvePnP(object, pixels, camera->cameraMatrix(), camera->distCoeffs(), camera->window(), r2, t2,
+                                 false, error2));
+        CHECK(error2 == error);
         CHECK(largestDifference(t, t2) == 0);
     }
     SECTION("a guess leads to the same minimum")
     {
         r2 = r + 0.02;
         t2 = t + 3;
-        CHECK(refractiveSolvePnP(object, pixels, camera, r2, t2, true) == Approx(rms).epsilon(1e-9));
+        REQUIRE(refractiveSolvePnP(object, pixels, camera, r2, t2, true, error2));
+        CHECK(error2[0] == Approx(error[0]).epsilon(1e-9));
         CHECK(largestDifference(t, t2) < 1e-5);
     }
     SECTION("points that were not seen are left out")
@@ -78,21 +83,72 @@ TEST_CASE("Noise, missing points and a guess", "[pnp]")
         const std::vector<Point3d> three = { object[0], object[5], object[25] };
         r2 = r + 0.001;
         t2 = t + 0.1;
-        CHECK(refractiveSolvePnP(three, std::vector<Point2d>{ pixels[0], pixels[5], pixels[25] }, camera, r2, t2, true)
-              < 1e-6);
+        REQUIRE(refractiveSolvePnP(three, std::vector<Point2d>{ pixels[0], pixels[5], pixels[25] }, camera, r2, t2, true,
+                                   error2));
+        CHECK(error2[0] < 1e-6);
     }
 }
 
-TEST_CASE("No pose is NaN, bad arguments are named", "[pnp]")
+TEST_CASE("The error is the one that cv::solvePnPGeneric returns", "[pnp]")
+{
+    Random random(225);
+    const Ptr<RefractiveCamera> camera = paperCamera(GlassWindow());
+    const std::vector<Point3d> object = board();
+    const std::vector<Point2d> pixels = seen(object, Vec3d(0.3, -0.4, 0.2), Vec3d(20, -10, 600), camera, random, 0.1);
+    std::vector<Mat> rvecs, tvecs, rvecs2, tvecs2;
+    std::vector<double> errors, errors2;
+    const Mat K = camera->cameraMatrix(), D = camera->distCoeffs();
+    REQUIRE(refractiveSolvePnPGeneric(object, pixels, K, D, GlassWindow(), rvecs, tvecs, false, noArray(), noArray(),
+                                      errors) > 0);
+    REQUIRE(solvePnPGeneric(object, pixels, K, D, rvecs2, tvecs2, true, SOLVEPNP_ITERATIVE, rvecs[0], tvecs[0],
+                            errors2) == 1);
+    CHECK(errors[0] == Approx(errors2[0]).epsilon(1e-4));
+    CHECK(largestDifference(tvecs[0], tvecs2[0]) < 1e-2);
+}
+
+TEST_CASE("Both poses of a flat target", "[pnp]")
+{
+    Random random(226);
+    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const std::vector<Point3d> flat = board();
+    const Vec3d rvec(0.3, -0.4, 0.2), tvec(20, -10, 1500);
+    const std::vector<Point2d> pixels = seen(flat, rvec, tvec, camera, random, 0.1);
+    std::vector<Vec3d> rvecs, tvecs;
+    std::vector<double> errors;
+    REQUIRE(refractiveSolvePnPGeneric(flat, pixels, camera, rvecs, tvecs, false, noArray(), noArray(), errors) == 2);
+    REQUIRE(rvecs.size() == 2);
+    REQUIRE(tvecs.size() == 2);
+    REQUIRE(errors.size() == 2);
+    CHECK(errors[0] < errors[1]);
+    CHECK(norm(rvecs[0] - rvec) < 0.02);
+    CHECK(norm(rvecs[1] - rvec) > 0.2);
+    CHECK(norm(tvecs[1] - tvec) < 30);
+
+    Mat r, t;
+    REQUIRE(refractiveSolvePnP(flat, pixels, camera, r, t));
+    CHECK(norm(t, Mat(tvecs[0])) == 0);
+    // From the second pose's neighbourhood the second is found.
+    std::vector<Mat> one, oneT;
+    REQUIRE(refractiveSolvePnPGeneric(flat, pixels, camera, one, oneT, true, rvecs[1] + Vec3d(0.01, 0, 0), tvecs[1]) == 1);
+    CHECK(norm(oneT[0], Mat(tvecs[1])) < 1e-3);
+    // A solid has one.
+    const std::vector<Point3d> solid = cloud(random);
+    CHECK(refractiveSolvePnPGeneric(solid, seen(solid, rvec, tvec, camera, random, 0.1), camera, one, oneT) == 1);
+    CHECK(refractiveSolvePnPGeneric(flat, std::vector<Point2d>(flat.size(), Point2d(NaN, NaN)), camera, one, oneT, false,
+                                    noArray(), noArray(), errors) == 0);
+    CHECK((one.empty() && oneT.empty() && errors.empty()));
+}
+
+TEST_CASE("No pose is false, bad arguments are named", "[pnp]")
 {
     Random random(230);
     const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
     const std::vector<Point3d> object = board();
     const std::vector<Point2d> pixels = seen(object, Vec3d(), Vec3d(0, 0, 600), camera, random, 0);
-    Mat r, t;
+    Mat r = Mat(Vec3d(1, 2, 3), true), t;
+    std::vector<double> error(3);
     const auto nothing = [&](const std::vector<Point3d>& o, const std::vector<Point2d>& p)
-    { return std::isnan(refractiveSolvePnP(o, p, camera, r, t)) && std::isnan(t.at<double>(2)) &&
-             std::isnan(r.at<double>(0)); };
+    { return !refractiveSolvePnP(o, p, camera, r, t, false, error) && t.empty() && r.at<double>(2) == 3 && error.empty(); };
 
     CHECK(nothing({ object.begin(), object.begin() + 6 }, { pixels.begin(), pixels.begin() + 6 }));     // one row
     CHECK(nothing(std::vector<Point3d>(6, object[0]), std::vector<Point2d>(6, pixels[0])));

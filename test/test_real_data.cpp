@@ -103,8 +103,9 @@ double heldOutRms(const Boards& boards, const Ptr<RefractiveCamera>& camera)
     for (size_t i = 0; i < boards.object.size(); ++i)
     {
         Vec3d rvec, tvec;
-        const double rms = refractiveSolvePnP(boards.object[i], boards.pixels[i], camera, rvec, tvec);
-        sum += rms*rms*boards.object[i].size();
+        std::vector<double> error;
+        REQUIRE(refractiveSolvePnP(boards.object[i], boards.pixels[i], camera, rvec, tvec, false, error));
+        sum += 2*error[0]*error[0]*boards.object[i].size();
         count += boards.object[i].size();
     }
     return std::sqrt(sum/count);
@@ -132,7 +133,7 @@ Ptr<RefractiveCamera> behindWater(const Ptr<RefractiveCamera>& air, const Boards
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(air->cameraMatrix(), air->distCoeffs(),
                                                                   waterSurface(startDistance));
     std::vector<Mat> rvecs, tvecs;
-    rms = calibrateGlass(boards.object, boards.pixels, noArray(), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
+    rms = calibrateGlass(boards.object, noArray(), boards.pixels, camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
     return camera;
 }
 
@@ -146,7 +147,7 @@ Ptr<RefractiveCamera> jointlyBehindWater(const Ptr<RefractiveCamera>& air, const
     refracted.resize(object.size());
     direct.insert(direct.end(), inAir.pixels.begin(), inAir.pixels.end());
     std::vector<Mat> rvecs, tvecs;
-    calibrateGlass(object, refracted, direct, camera, rvecs, tvecs,
+    calibrateGlass(object, direct, refracted, camera, rvecs, tvecs,
                    GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_ROBUST);
     return camera;
 }
@@ -216,13 +217,17 @@ TEST_CASE("ouc_laser3d: distance of a board in water, its air twin as truth", "[
     {
         const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), waterSurface());
         std::vector<Mat> rvecs, tvecs;
-        calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, image[s[0]]),
-                       std::vector<Pixels>(1, image[s[1]]), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
+        calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, image[s[1]]),
+                       std::vector<Pixels>(1, image[s[0]]), camera, rvecs, tvecs, GLASS_FREE_DISTANCE);
         const Ptr<RefractiveCamera> air = RefractiveCamera::create(K, noArray());
         Vec3d rvec, truth, ignored, measured;
-        REQUIRE(refractiveSolvePnP(object, image[s[3]], air, rvec, truth) < 1);
-        REQUIRE(refractiveSolvePnP(object, image[s[2]], air, rvec, ignored) < 5);
-        REQUIRE(refractiveSolvePnP(object, image[s[2]], camera, rvec, measured) < 2);
+        std::vector<double> inAir, inWater, modelled;
+        REQUIRE(refractiveSolvePnP(object, image[s[3]], air, rvec, truth, false, inAir));
+        REQUIRE(refractiveSolvePnP(object, image[s[2]], air, rvec, ignored, false, inWater));
+        REQUIRE(refractiveSolvePnP(object, image[s[2]], camera, rvec, measured, false, modelled));
+        REQUIRE(inAir[0] < 1/std::sqrt(2.));
+        REQUIRE(inWater[0] < 5/std::sqrt(2.));
+        REQUIRE(modelled[0] < 2/std::sqrt(2.));
         const double errorIgnored = norm(ignored)/norm(truth) - 1, error = norm(measured)/norm(truth) - 1;
         std::cout << "[numbers] ouc_laser3d pair " << s[2] << "-" << s[3] << ", distance of the board from the water image: "
                   << "refraction ignored " << 100*errorIgnored << " %, fitted on the other pair " << 100*error << " %"
@@ -273,7 +278,7 @@ Placed fitWindow(const TankCamera& tank, const Object& object)
     placed.camera = RefractiveCamera::create(tank.K, noArray(),
                                              GlassWindow(tank.nominalNormal, 6, 1.46, tank.nominalDistance, 1.33));
     std::vector<Mat> rvecs, tvecs;
-    calibrateGlass(std::vector<Object>(1, object), std::vector<Pixels>(1, tank.pixels), noArray(), placed.camera, rvecs,
+    calibrateGlass(std::vector<Object>(1, object), noArray(), std::vector<Pixels>(1, tank.pixels), placed.camera, rvecs,
                    tvecs, GLASS_FREE_INTRINSICS | GLASS_FIX_PRINCIPAL_POINT);
     placed.rvec = rvecs[0];
     placed.tvec = tvecs[0];

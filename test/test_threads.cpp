@@ -37,6 +37,45 @@ Answers ask(const Ptr<RefractiveCamera>& camera, const std::vector<Vec2d>& pixel
 
 } // namespace
 
+TEST_CASE("Many threads ask one camera while others change clones of it", "[camera][threads]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
+    CAPTURE(kind.name, seed());
+    Random random;
+    std::vector<Vec2d> pixels;
+    for (int i = 0; i < 100; ++i)
+        pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
+    const Answers expected = ask(makeCamera(kind, window), pixels);
+    const Mat parameters = makeCamera(kind, window)->lensParameters();
+
+    const Ptr<RefractiveCamera> camera = makeCamera(kind, window);
+    std::atomic<int> wrong(0);
+    const auto work = [&](bool changes)
+    {
+        for (int round = 0; round < 200; ++round)
+        {
+            if (changes)
+            {
+                const Ptr<RefractiveCamera> own = camera->clone();
+                own->setWindow(GlassWindow());
+                Mat other = own->lensParameters();
+                other.at<double>(2) += round;
+                own->setLensParameters(other);
+            }
+            else
+                wrong += !(ask(camera, pixels) == expected) || norm(camera->lensParameters(), parameters) != 0 ||
+                         camera->window().normal != window.normal;
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 8; ++i)
+        threads.emplace_back(work, i % 4 == 3);
+    for (std::thread& thread : threads)
+        thread.join();
+    CHECK(wrong == 0);
+}
+
 TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera][threads]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));

@@ -99,7 +99,7 @@ TEST_CASE("Without window and depth only the lens is undone: converged cv::undis
         points.push_back(randomNormal(random, std::min(30., kind.halfField)));
     refractiveProjectPoints(points, Vec3d(), Vec3d(), makeCamera(kind, GlassWindow()), pixels);
     std::vector<Vec2d> ours, theirs;
-    refractiveUndistortPoints(pixels, ours, kind.K, kind.coefficients, GlassWindow());
+    refractiveUndistortPoints(pixels, ours, kind.K, kind.coefficients, GlassWindow(), INF);
     undistortPoints(pixels, theirs, kind.K, kind.coefficients, noArray(), noArray(),
                     TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-13));
     CHECK(largestDifference(ours, theirs) < 1e-11);
@@ -109,16 +109,14 @@ TEST_CASE("Infinitely far: a window with equal media does nothing, water outside
 {
     const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
     const std::vector<Vec2d> pixels = { { 640, 480 }, { 100, 200 }, { 1200, 900 } };
-    std::vector<Vec2d> none, pane, omitted, deep, water;
-    refractiveUndistortPoints(pixels, none, K, noArray(), GlassWindow());
+    std::vector<Vec2d> none, pane, deep, water;
+    refractiveUndistortPoints(pixels, none, K, noArray(), GlassWindow(), INF);
     const GlassWindow glass(Vec3d(0.2, -0.1, 1), 20, 1.5, 30);
     refractiveUndistortPoints(pixels, pane, K, noArray(), glass, std::vector<double>{ INF });
-    refractiveUndistortPoints(pixels, omitted, K, noArray(), glass);
     refractiveUndistortPoints(pixels, deep, K, noArray(), glass, std::vector<double>{ 1e15 });
     CHECK(largestDifference(pane, none) < 1e-15);
-    CHECK(largestDifference(omitted, pane) == 0);
     CHECK(largestDifference(deep, pane) < 1e-12);
-    refractiveUndistortPoints(pixels, water, K, noArray(), GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 30, 1.333));
+    refractiveUndistortPoints(pixels, water, K, noArray(), GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 30, 1.333), INF);
     CHECK(norm(water[0]) < 1e-15);
     const double r = norm(none[1]), sine = r/std::sqrt(1 + r*r)/1.333;
     CHECK(norm(water[1]) == Approx(sine/std::sqrt(1 - sine*sine)).epsilon(1e-13));
@@ -148,6 +146,23 @@ TEST_CASE("One depth serves all points, N depths one each", "[undistort]")
     CHECK(norm(mixed[2] - Vec2d(0.56, 0.42)) < 1e-15);
 }
 
+TEST_CASE("A number as Python hands it over is no guess for four points; without window depth may be left out", "[undistort]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const GlassWindow glass(Vec3d(0.2, -0.1, 1), 20, 1.5, 30);
+    const std::vector<Vec2d> pixels = { { 640, 480 }, { 100, 200 }, { 1200, 900 }, { 30, 10 } };
+    std::vector<Vec2d> out, same;
+    CHECK_THAT(thrown([&] { refractiveUndistortPoints(pixels, out, K, noArray(), glass, Scalar(600)); }),
+               Contains("depth is (600, 0, 0, 0) for four points"));
+    refractiveUndistortPoints(pixels, out, K, noArray(), glass, 600.);
+    refractiveUndistortPoints(pixels, same, K, noArray(), glass, Scalar::all(600));
+    CHECK(largestDifference(out, same) == 0);
+
+    refractiveUndistortPoints(pixels, out, K, noArray(), GlassWindow(), noArray());
+    refractiveUndistortPoints(pixels, same, K, noArray(), GlassWindow(), 600.);
+    CHECK(largestDifference(out, same) < 1e-15);
+}
+
 TEST_CASE("Depths with no point have a status", "[undistort]")
 {
     const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
@@ -174,19 +189,21 @@ TEST_CASE("Depths with no point have a status", "[undistort]")
 TEST_CASE("Bad arguments of refractiveUndistortPoints are named", "[undistort]")
 {
     const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const GlassWindow glass(Vec3d(0, 0, 1), 20, 1.5, 30);
     const std::vector<Vec2d> pixels(3, Vec2d(700, 500));
     const auto undistort = [&](InputArray depth, InputArray R, InputArray P)
     {
         std::vector<Vec2d> out;
-        return thrown([&] { refractiveUndistortPoints(pixels, out, K, noArray(), GlassWindow(), depth, R, P); });
+        return thrown([&] { refractiveUndistortPoints(pixels, out, K, noArray(), glass, depth, R, P); });
     };
-    CHECK(undistort(noArray(), noArray(), noArray()) == "");
+    CHECK(undistort(500., noArray(), noArray()) == "");
+    CHECK_THAT(undistort(noArray(), noArray(), noArray()), Contains("depth is empty"));
     CHECK_THAT(undistort(std::vector<double>(2, 500.), noArray(), noArray()), Contains("depth") && Contains("2"));
     CHECK_THAT(undistort(std::vector<double>(1, -5.), noArray(), noArray()), Contains("depth") && Contains("-5"));
     CHECK_THAT(undistort(std::vector<double>(1, NaN), noArray(), noArray()), Contains("depth") && Contains("nan"));
     CHECK_THAT(undistort(Mat(3, 1, CV_32S), noArray(), noArray()), Contains("depth") && Contains("32SC1"));
-    CHECK_THAT(undistort(noArray(), Matx22d::eye(), noArray()), Contains("R is 2x2"));
-    CHECK_THAT(undistort(noArray(), Matx33d::eye()*3, noArray()), Contains("R is not a rotation"));
-    CHECK_THAT(undistort(noArray(), noArray(), Matx22d::eye()), Contains("P is 2x2"));
-    CHECK_THAT(undistort(noArray(), noArray(), Matx33d(1, 0, INF, 0, 1, 0, 0, 0, 1)), Contains("P[2]") && Contains("inf"));
+    CHECK_THAT(undistort(500., Matx22d::eye(), noArray()), Contains("R is 2x2"));
+    CHECK_THAT(undistort(500., Matx33d::eye()*3, noArray()), Contains("R is not a rotation"));
+    CHECK_THAT(undistort(500., noArray(), Matx22d::eye()), Contains("P is 2x2"));
+    CHECK_THAT(undistort(500., noArray(), Matx33d(1, 0, INF, 0, 1, 0, 0, 0, 1)), Contains("P[2]") && Contains("inf"));
 }

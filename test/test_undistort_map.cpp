@@ -109,10 +109,10 @@ TEST_CASE("An empty new camera matrix is the camera's, a projection matrix' left
     CHECK(largestDifference(mapOf(pane(), depth, noArray(), P), mapOf(pane(), depth, noArray(), newK)) == 0);
 }
 
-TEST_CASE("No depth is infinitely far; a plane's sign and scale mean nothing", "[undistort_map]")
+TEST_CASE("Infinitely far; a plane's sign and scale mean nothing", "[undistort_map]")
 {
-    const Mat far = mapOf(pane(), noArray());
-    CHECK(largestDifference(far, mapOf(pane(), std::vector<double>{ INF })) == 0);
+    const Mat far = mapOf(pane(), std::vector<double>{ INF });
+    CHECK(largestDifference(far, mapOf(pane(), Scalar(INF))) == 0);      // as a number comes from Python
     CHECK(largestDifference(far, mapOf(pane(), std::vector<double>{ 1e12 })) < 1e-4);
     CHECK(largestDifference(far, mapOf(GlassWindow(), noArray())) < 5e-5);     // equal media: no change of direction
     const Mat plane = mapOf(pane(), Vec4d(0.2, -0.1, 1, 700));
@@ -177,15 +177,16 @@ TEST_CASE("Bad arguments of the map are named", "[undistort_map]")
     {
         return thrown([&] { initRefractiveUndistortRectifyMap(K, D, pane(), depth, noArray(), newCameraMatrix, size, type, a, b); });
     };
-    CHECK(init(noArray(), noArray(), SIZE, CV_32FC1) == "");
+    CHECK(init(Scalar(500), noArray(), SIZE, CV_32FC1) == "");
+    CHECK_THAT(init(noArray(), noArray(), SIZE, CV_32FC1), Contains("depth is empty"));
     CHECK_THAT(init(std::vector<double>(3, 1.), noArray(), SIZE, CV_32FC1), Contains("depth") && Contains("3"));
     CHECK_THAT(init(std::vector<double>(1, 0.), noArray(), SIZE, CV_32FC1), Contains("depth") && Contains("0"));
     CHECK_THAT(init(Vec4d(0, 0, 0, 5), noArray(), SIZE, CV_32FC1), Contains("depth") && Contains("(0, 0, 0, 5)"));
     CHECK_THAT(init(Vec4d(0, NaN, 1, 5), noArray(), SIZE, CV_32FC1), Contains("depth") && Contains("nan"));
-    CHECK_THAT(init(noArray(), Matx22d::eye(), SIZE, CV_32FC1), Contains("newCameraMatrix") && Contains("2x2"));
-    CHECK_THAT(init(noArray(), Matx33d::zeros(), SIZE, CV_32FC1), Contains("newCameraMatrix"));
-    CHECK_THAT(init(noArray(), noArray(), Size(-4, 5), CV_32FC1), Contains("size") && Contains("-4"));
-    CHECK_THAT(init(noArray(), noArray(), SIZE, CV_8UC3), Contains("m1type") && Contains("8UC3"));
-    CHECK(init(noArray(), noArray(), Size(), CV_32FC1) == "");
+    CHECK_THAT(init(500., Matx22d::eye(), SIZE, CV_32FC1), Contains("newCameraMatrix") && Contains("2x2"));
+    CHECK_THAT(init(500., Matx33d::zeros(), SIZE, CV_32FC1), Contains("newCameraMatrix"));
+    CHECK_THAT(init(500., noArray(), Size(-4, 5), CV_32FC1), Contains("size") && Contains("-4"));
+    CHECK_THAT(init(500., noArray(), SIZE, CV_8UC3), Contains("m1type") && Contains("8UC3"));
+    CHECK(init(500., noArray(), Size(), CV_32FC1) == "");
     CHECK(a.empty());
 }

@@ -13,7 +13,7 @@ in_tree="python3-pip python3-dev python3-numpy"
 
 case "${1:-build}" in
   build) wanted=$build ;;
-  test) wanted="$build $test_libraries" ;;
+  test) wanted="$build $test_libraries locales" ;;
   in-tree) wanted="$build $in_tree" ;;
   aarch64) wanted="$build g++-aarch64-linux-gnu qemu-user" ;;
   libraries) echo "$libraries $test_libraries"; exit 0 ;;

@@ -5,8 +5,8 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
       --direct='direct/*.png' --glass='glass/*.png' --thickness=20 --index=1.5437 --out=calib.yml --report=report.html
 
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
-and extension) the target must not have moved between them: such pairs determine the window best. All direct images serve
-the lens, unless --camera gives it; with pairs it is refined together with the window. With --direct2 and --glass2 the same
+and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
+or more direct images in all: these serve the lens, unless --camera gives it, and with pairs refine it together with the window. With --direct2 and --glass2 the same
 name means the same moment in both cameras.
 
 Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
@@ -30,6 +30,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <regex>
 
 using namespace cv::refract;
 using namespace tools;
@@ -69,8 +70,8 @@ ErrorLimit parseErrorLimit(const std::string& text)
 {
     const std::vector<std::string> parts = CLI::detail::split(text, ':');
     ErrorLimit limit;
-    if (parts.size() != 2 || !CLI::detail::lexical_cast(parts[0], limit.range) || !(limit.range > 0) ||
-        !CLI::detail::lexical_cast(parts[1], limit.error) || !(limit.error > 0))
+    if (parts.size() != 2 || !parseNumber(parts[0], limit.range) || !(limit.range > 0) ||
+        !parseNumber(parts[1], limit.error) || !(limit.error > 0))
         throw Failure("--max-error-at=" + text + ": give RANGE:ERROR, two numbers more than 0, as in --max-error-at=600:0.05");
     return limit;
 }
@@ -204,7 +205,14 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
         c.start = startRig(c.data, c.options, c.lensSources);
     progress.step();
-    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    try
+    {
+        c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(inOptions(e.err));
+    }
     c.residuals = residualsOf(c.data, c.fit);
     progress.step();
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);
@@ -217,6 +225,18 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!o.report.empty())
         c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
     return c;
+}
+
+//! The module names its arguments; here they came from options.
+std::string inOptions(std::string text)
+{
+    const std::pair<const char*, const char*> words[] = {{R"(imagePointsDirect(\[\w+\])*)", "the --direct images"},
+                                                         {R"(imagePointsRefracted(\[\w+\])*)", "the --glass images"}};
+    for (const auto& word : words)
+        text = std::regex_replace(text, std::regex(word.first), word.second);
+    if (text.find("same target") != std::string::npos)
+        text += "; of a hand-held board say --unpaired";
+    return text;
 }
 
 //! What would fail at the end, after all the work.

@@ -106,8 +106,8 @@ def test_none_is_nothing(rig):
     np.testing.assert_allclose(plain[:, 0], expected[:, :2]/expected[:, 2:], rtol=1e-13)
     empty, status = refract.refractiveProjectPoints(None, zero, zero, *rig.lens1)
     assert empty is None and status is None
-    far, _ = refract.refractiveUndistortPoints(rig.pixels1, *rig.lens1, depth=None, R=None, P=None)
-    infinite, _ = refract.refractiveUndistortPoints(rig.pixels1, *rig.lens1, depth=np.inf)
+    far, _ = refract.refractiveUndistortPoints(rig.pixels1, rig.K1, rig.D1, None, depth=None, R=None, P=None)
+    infinite, _ = refract.refractiveUndistortPoints(rig.pixels1, rig.K1, rig.D1, None, depth=np.inf)
     np.testing.assert_array_equal(far, infinite)
 
 
@@ -159,7 +159,7 @@ def test_bad_arguments_are_named(rig):
     with pytest.raises(refract.error, match="points2"):
         refract.triangulateRefractive(rig.camera1, rig.camera2, rig.R, rig.T, rig.pixels1, rig.pixels2[:-1])
     with pytest.raises(refract.error, match="(?i)camera"):
-        refract.refractiveUndistortPoints(rig.pixels1, None)
+        refract.refractiveUndistortPoints(rig.pixels1, None, 600.)
     with pytest.raises(refract.error, match="GLASS_FREE_DISTANCE|distance"):
         refract.calibrateGlass([rig.points], [rig.pixels1], [rig.pixels1], rig.K1, rig.D1, rig.window1,
                                flags=refract.GLASS_FREE_DISTANCE)

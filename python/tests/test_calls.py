@@ -124,7 +124,7 @@ def test_calibrate_normal(rig, board):
 def test_calibrate_glass(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 21., 1.5437, 50.)
     flags = refract.GLASS_FREE_THICKNESS
-    rms, window, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start,
+    rms, window, rvecs, tvecs = refract.calibrateGlass(board.target, board.direct1, board.glass1, rig.K1, rig.D1, start,
                                                        flags=flags)
     assert rms < 1e-5 and start.thickness[0] == 21.
     np.testing.assert_allclose(window.normal, rig.window1.normal, atol=1e-7)
@@ -133,19 +133,19 @@ def test_calibrate_glass(rig, board):
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
 
     camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
-    rms, rvecs, tvecs = refract.calibrateGlass(board.target, board.glass1, board.direct1, camera, flags=flags)
+    rms, rvecs, tvecs = refract.calibrateGlass(board.target, board.direct1, board.glass1, camera, flags=flags)
     np.testing.assert_allclose(camera.window().normal, rig.window1.normal, atol=1e-7)
 
 
 def test_calibrate_glass_extended(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
     rms, window, rvecs, tvecs, deviations, covariance, per_view, jacobian = refract.calibrateGlassExtended(
-        board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
+        board.target, board.direct1, board.glass1, rig.K1, rig.D1, start)
     parameters = 9 + 8
     assert deviations.shape == (parameters, 1) and covariance.shape == (parameters, parameters)
     assert per_view.shape == (8, 2) and jacobian.shape == (2*2*8*30, parameters + 6*8)
     camera = refract.RefractiveCamera.create(rig.K1, rig.D1, start)
-    result = refract.calibrateGlassExtended(board.target, board.glass1, board.direct1, camera)
+    result = refract.calibrateGlassExtended(board.target, board.direct1, board.glass1, camera)
     np.testing.assert_allclose(result[-1], jacobian, rtol=1e-6, atol=1e-6)
 
 
@@ -155,7 +155,7 @@ def test_calibrate_stereo(rig, board):
     camera2 = refract.RefractiveCamera.create(rig.K2, rig.D2, windows[1])
     from conftest import rotation
     rms, R, T, rvecs, tvecs, deviations, covariance, per_view = refract.stereoCalibrateGlass(
-        board.target, board.glass1, board.direct1, board.glass2, board.direct2, camera1, camera2,
+        board.target, board.direct1, board.glass1, board.direct2, board.glass2, camera1, camera2,
         rotation(rig.R), rig.T.reshape(3, 1))
     assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
     np.testing.assert_allclose(camera1.window().normal, rig.window1.normal, atol=1e-7)
@@ -167,8 +167,8 @@ def test_calibrate_rig(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
     def call(flags=0, rvecs=(), tvecs=(), **more):
         cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
-        result = refract.calibrateGlassRig(
-            board.target, [board.glass1, board.glass2], [board.direct1, board.direct2], cameras, [0, 1],
+        result = refract.calibrateGlassRigExtended(
+            board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [0, 1],
             [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, flags=flags, **more)
         for camera, window in zip(cameras, (rig.window1, rig.window2)):
             np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-6)
@@ -190,15 +190,54 @@ def test_calibrate_rig(rig, board):
                                           *board.glass1[1:]]
     result = call(refract.GLASS_ROBUST)
     board.glass1 = glass1
-    np.testing.assert_array_equal(np.flatnonzero(result[9][0] == 0), np.arange(4, 30, 4))
+    np.testing.assert_array_equal(np.flatnonzero(result[9][1] == 0), np.arange(4, 30, 4))
+
+
+def test_calibrate_rig_in_short(rig, board):
+    from conftest import rotation
+    start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
+    cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
+    rms, Rs, Ts, rvecs, tvecs = refract.calibrateGlassRig(
+        board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [],
+        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], flags=refract.GLASS_FREE_EXTRINSICS)
+    assert rms < 1e-5
+    np.testing.assert_allclose(np.squeeze(Ts[1]), rig.T, atol=1e-4)
+    np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
+
+
+def test_swapped_pairs_are_refused(rig, board):
+    start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
+    with pytest.raises(refract.error, match="swapped"):
+        refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
+
+
+def test_a_number_for_four_points_is_no_guess(rig):
+    with pytest.raises(refract.error, match="four points"):
+        refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, 600.)
+    one, _ = refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, np.array([600.]))
+    five, _ = refract.refractiveUndistortPoints(rig.pixels1[:5], rig.camera1, 600.)
+    np.testing.assert_array_equal(one, five[:4])
+    with pytest.raises(refract.error, match="depth is empty"):
+        refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, None)
+
+
+def test_both_poses_of_a_board(rig, board):
+    for camera in (rig.lens1, (rig.camera1,)):
+        count, rvecs, tvecs, errors = refract.refractiveSolvePnPGeneric(board.target[0], board.glass1[0], *camera)
+        assert count == len(rvecs) == len(tvecs) == len(errors) and 1 <= count <= 2
+        np.testing.assert_allclose(tvecs[0].ravel(), board.tvecs[0], atol=1e-5)
+    unseen = np.full_like(board.glass1[0], np.nan)
+    assert refract.refractiveSolvePnPGeneric(board.target[0], unseen, rig.camera1)[0] == 0
+    found, rvec, _, _ = refract.refractiveSolvePnP(board.target[0], unseen, rig.camera1, None, None)
+    assert found is False and rvec is None
 
 
 def test_pose(rig, board):
     for camera in (rig.lens1, (rig.camera1,)):
-        rms, rvec, tvec = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)
-        assert rms < 1e-6
+        found, rvec, tvec, error = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)
+        assert found is True and error.shape == (1, 1) and error < 1e-6
         np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)
         np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-5)
-    rms, rvec, tvec = refract.refractiveSolvePnP(board.target[0], board.glass1[0], rig.camera1, board.rvecs[0] + 0.01,
-                                                 board.tvecs[0] + 1., useExtrinsicGuess=True)
+    _, rvec, tvec, _ = refract.refractiveSolvePnP(board.target[0], board.glass1[0], rig.camera1, board.rvecs[0] + 0.01,
+                                                  board.tvecs[0] + 1., useExtrinsicGuess=True)
     np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)

@@ -114,6 +114,27 @@ glass_window: { normal: [ 0., 0.6, 0.8 ], distance: 5., thickness: [ 20. ], inde
         refract.RefractiveCamera.read(str(tmp_path / "missing.yml"))
 
 
+def test_a_clone_is_a_camera_of_its_own():
+    camera = refract.RefractiveCamera.create(K, None, refract.GlassWindow((0.3, 0., 0.4), 20., 1.5))
+    copy = camera.clone()
+    copy.setWindow(refract.GlassWindow())
+    copy.setLensParameters(copy.lensParameters() + 1.)
+    assert list(camera.window().thickness) == [20.]
+    np.testing.assert_array_equal(camera.cameraMatrix(), K)
+
+
+def test_a_camera_in_a_file_of_ones_own():
+    camera = refract.RefractiveCamera.create(K, np.array([-0.1, 0.01, 0, 0]), refract.GlassWindow((0.3, 0., 0.4), 20., 1.5))
+    storage = refract.FileStorage(".json", refract.FILE_STORAGE_WRITE | refract.FILE_STORAGE_MEMORY)
+    camera.write(storage, "left")
+    storage = refract.FileStorage(storage.releaseAndGetString(), refract.FILE_STORAGE_READ | refract.FILE_STORAGE_MEMORY)
+    back = refract.RefractiveCamera.read(storage.getNode("left"))
+    np.testing.assert_array_equal(back.lensParameters(), camera.lensParameters())
+    assert back.window().normal == camera.window().normal
+    with pytest.raises(refract.error, match="node is not a map"):
+        refract.RefractiveCamera.read(storage.getNode("right"))
+
+
 def test_a_saved_camera_is_read_back(tmp_path):
     window = refract.GlassWindow((0.1, 0.05, 1), 20, 1.5437, 50)
     camera = refract.RefractiveCamera.create(K, np.array([-0.1, 0.01, 0, 0]), window)

@@ -26,7 +26,7 @@ def paper_method():
 
 
 def ideal(pixels, K, D):
-    return refract.refractiveUndistortPoints(pixels, K, D, refract.GlassWindow(), P=K)[0][:, 0]
+    return refract.refractiveUndistortPoints(pixels, K, D, refract.GlassWindow(), None, P=K)[0][:, 0]
 
 
 @pytest.mark.parametrize("camera", [1, 2])

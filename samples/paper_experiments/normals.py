@@ -31,7 +31,7 @@ def fit_closed(direct, glass, lens):
 
 def fit_joint(direct, glass, lens, normal=(0, 0, 1)):
     """calibrateGlass: the board's geometry, thickness and index are known."""
-    _, window, *_ = refract.calibrateGlass([sim.BOARD]*len(direct), glass, direct, *lens, sim.make_window(normal))
+    _, window, *_ = refract.calibrateGlass([sim.BOARD]*len(direct), direct, glass, *lens, sim.make_window(normal))
     return np.array(window.normal)
 
 

@@ -63,7 +63,7 @@ def calibration_boards(rng, cameras, count=25):
 
 def undistorted(pixels, lens):
     """Ideal pixels (N, 2): the lens undone, the window not."""
-    return refract.refractiveUndistortPoints(pixels, *lens, NO_WINDOW, P=lens[0])[0][:, 0]
+    return refract.refractiveUndistortPoints(pixels, *lens, NO_WINDOW, None, P=lens[0])[0][:, 0]
 
 
 def calibrate_lens(views, flags=cv2.CALIB_ZERO_TANGENT_DIST + cv2.CALIB_FIX_K3):

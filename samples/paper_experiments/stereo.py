@@ -29,7 +29,7 @@ class CentralPair:
     def row_difference(self, pixels1, pixels2):
         """The paper's matching error: rows in the rectified images, px (N)."""
         R1, R2, P1, P2 = self.rectified
-        rows = [refract.refractiveUndistortPoints(pixels, *lens, sim.NO_WINDOW, R=R, P=P)[0][:, 0, 1]
+        rows = [refract.refractiveUndistortPoints(pixels, *lens, sim.NO_WINDOW, None, R=R, P=P)[0][:, 0, 1]
                 for pixels, lens, R, P in zip((pixels1, pixels2), self.lenses, (R1, R2), (P1, P2))]
         return rows[0] - rows[1]
 
@@ -69,7 +69,7 @@ class RefractivePair:
         starts = [normals.fit_closed(*views, lens) for views, lens in zip(pairs, direct.lenses)]
         self.cameras = [refract.RefractiveCamera.create(*lens, sim.make_window(normal))
                         for lens, normal in zip(direct.lenses, starts)]
-        _, self.R, self.T, *_ = refract.stereoCalibrateGlass([sim.BOARD]*len(glass1), glass1, direct1, glass2, direct2,
+        _, self.R, self.T, *_ = refract.stereoCalibrateGlass([sim.BOARD]*len(glass1), direct1, glass1, direct2, glass2,
                                                              *self.cameras, direct.R, direct.T)
 
     def matching_error(self, pixels1, pixels2):

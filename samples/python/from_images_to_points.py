@@ -80,8 +80,7 @@ for (K, D), without, through in zip(lenses, direct, glass):
     pairs = [without[name] for name in through], list(through.values())
     _, normal, *_ = refract.calibrateGlassNormal(*pairs, K, D)
     start = refract.GlassWindow(normal, THICKNESS, INDEX)
-    rms, window, *_, deviations, _, _, _ = refract.calibrateGlassExtended([BOARD]*len(through), pairs[1], pairs[0],
-                                                                          K, D, start)
+    rms, window, *_, deviations, _, _, _ = refract.calibrateGlassExtended([BOARD]*len(through), *pairs, K, D, start)
     at = 4 + D.size     # the normal's place among the parameters
     print(f"normal {np.round(window.normal, 4)}, {np.degrees(np.arccos(window.normal[2])):.2f} degrees from the axis, "
           f"+- {np.degrees(np.linalg.norm(deviations[at:at + 3])/np.sqrt(2)):.3f} degrees; {rms:.3f} px RMS")

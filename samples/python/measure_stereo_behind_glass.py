@@ -51,8 +51,8 @@ single = [[view.astype(np.float32) for view in views] for views in (air1, air2)]
 K1, D1 = cv2.calibrateCamera(boards, single[0], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 K2, D2 = cv2.calibrateCamera(boards, single[1], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 R, T, E, F = cv2.stereoCalibrate(boards, *single, K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)[5:9]
-w1, w2 = (refract.calibrateGlass([BOARD]*6, glass, air, K, D, refract.GlassWindow((0, 0, 1), 20, 1.5437))[1]
-          for glass, air, K, D in ((corners("glass1"), air1[-6:], K1, D1), (corners("glass2"), air2[-6:], K2, D2)))
+w1, w2 = (refract.calibrateGlass([BOARD]*6, air, glass, K, D, refract.GlassWindow((0, 0, 1), 20, 1.5437))[1]
+          for air, glass, K, D in ((air1[-6:], corners("glass1"), K1, D1), (air2[-6:], corners("glass2"), K2, D2)))
 P1, P2 = K1 @ np.eye(3, 4), K2 @ np.hstack((R, T))
 
 lengths, beside, fit = [], [], []

@@ -113,7 +113,7 @@ static void printCalibration()
 
     GlassWindow window = pane(0);
     std::vector<Mat> rvecs, tvecs;
-    rms = calibrateGlass(boards, refracted, direct, K, D, window, rvecs, tvecs, GLASS_FREE_THICKNESS,
+    rms = calibrateGlass(boards, direct, refracted, K, D, window, rvecs, tvecs, GLASS_FREE_THICKNESS,
                          TermCriteria(TermCriteria::COUNT, 50, 0));
     print("calibrateGlass.rms", &rms, 1);
     print("calibrateGlass.normal", window.normal.val, 3);

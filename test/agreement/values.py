@@ -91,7 +91,7 @@ def show_calibration():
     show('calibrateGlassNormal.center', center, 2)
 
     rms, window, rvecs, tvecs = refract.calibrateGlass(
-        [board]*4, refracted, direct, K, D, pane(0), flags=refract.GLASS_FREE_THICKNESS,
+        [board]*4, direct, refracted, K, D, pane(0), flags=refract.GLASS_FREE_THICKNESS,
         criteria=(cv2.TERM_CRITERIA_COUNT, 50, 0))
     show('calibrateGlass.rms', rms, 1)
     show('calibrateGlass.normal', np.array(window.normal), 3)

@@ -27,7 +27,7 @@ Mat calibratedCovariance(const Rig& rig, const std::vector<Point3d>& object, sce
         glass.push_back(m.glass[0]);
     }
     Rig found = rig.clone();
-    rms = calibrateGlass(objects, glass, direct, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
+    rms = calibrateGlass(objects, direct, glass, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
                          noArray());
     return covariance * (2. * SIGMA * SIGMA / (rms * rms));
 }

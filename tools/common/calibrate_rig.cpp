@@ -56,7 +56,7 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
         rigFlags |= GLASS_FREE_EXTRINSICS;
     }
     fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(moments.size(), data.objectPoints),
-                                imagesOf(data, moments, true), imagesOf(data, moments, false), fit.rig.cameras, windows, Rs, Ts,
+                                imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras, windows, Rs, Ts,
                                 fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
                                 fit.inliers, fit.otherMinima, rigFlags, noArray(),
                                 TermCriteria(TermCriteria::COUNT + TermCriteria::EPS,

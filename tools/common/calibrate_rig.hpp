@@ -41,7 +41,7 @@ struct Fit
     std::vector<int> moments;                   //!< that took part, as indices into RigData::moments
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
     cv::Mat stdDeviations, covariance;
-    cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: glass 1, direct 1 (, glass 2, direct 2)
+    cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: direct 1, glass 1 (, direct 2, glass 2)
     std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
     cv::Mat otherMinima;                        //!< a row each camera, see calibrateGlassRig
     double rms = 0.;

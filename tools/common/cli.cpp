@@ -1,8 +1,10 @@
 #include "cli.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
+#include <charconv>
 #include <cmath>
 #include <iostream>
+#include <locale>
 #include <sstream>
 
 namespace tools {
@@ -89,9 +91,18 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     return CANNOT;
 }
 
+bool parseNumber(const std::string& text, double& number)
+{
+    const char* const end = text.data() + text.size();
+    const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-');
+    const std::from_chars_result result = std::from_chars(begin, end, number);
+    return result.ec == std::errc() && result.ptr == end;
+}
+
 cv::Size parseSize(const std::string& text, const std::string& option)
 {
     std::istringstream in(text);
+    in.imbue(std::locale::classic());
     cv::Size size;
     char x = 0, rest;
     if (!(in >> size.width >> x >> size.height) || (x != 'x' && x != 'X') || in >> rest
@@ -106,7 +117,7 @@ std::vector<double> parseNumbers(const std::string& text, const std::string& opt
     for (const std::string& item : CLI::detail::split(text, ','))
     {
         double number;
-        if (!CLI::detail::lexical_cast(item, number) || !std::isfinite(number))
+        if (!parseNumber(CLI::detail::trim_copy(item), number) || !std::isfinite(number))
             throw Failure(option + "=" + text + ": '" + item + "' is not a number; give numbers with commas between");
         numbers.push_back(number);
     }

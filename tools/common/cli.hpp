@@ -59,6 +59,9 @@ private:
 //! Runs the body; turns every exception into exit code 1 and one sentence on stderr.
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body);
 
+//! Takes all of the text, or nothing; whatever the user's locale says about decimal commas.
+bool parseNumber(const std::string& text, double& number);
+
 //! "6x5" -> Size(6, 5); `option` names the option in the error text.
 cv::Size parseSize(const std::string& text, const std::string& option);
 
@@ -67,7 +70,7 @@ inline CLI::Validator moreThanZero()
 {
     return CLI::Validator([](std::string& text) {
         double number;
-        return CLI::detail::lexical_cast(text, number) && number > 0 ? std::string()
+        return parseNumber(text, number) && number > 0 ? std::string()
                                                                      : "give a number more than 0, not " + text;
     }, "> 0");
 }

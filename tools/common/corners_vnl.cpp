@@ -56,9 +56,9 @@ cv::Point2d pointOf(const std::vector<std::string>& row, const Columns& columns,
         return none;
     cv::Point2d point;
     double weight = 1.;
-    if (!CLI::detail::lexical_cast(row[columns.x], point.x) || !CLI::detail::lexical_cast(row[columns.y], point.y)
+    if (!parseNumber(row[columns.x], point.x) || !parseNumber(row[columns.y], point.y)
         || !std::isfinite(point.x) || !std::isfinite(point.y)
-        || (columns.weight >= 0 && !CLI::detail::lexical_cast(row[columns.weight], weight)))
+        || (columns.weight >= 0 && !parseNumber(row[columns.weight], weight)))
         throw Failure(where + ": x, y and weight or level must be numbers or '-'");
     return columns.byWeight && weight <= 0 ? none : point;
 }

@@ -105,7 +105,7 @@ void addLengths(const RigData& data, const Rig& rig, const Moment& m, Pool& leng
 void addTransfer(const RigData& data, const Ptr<RefractiveCamera>& camera, const Moment& m, int c, Pool& errors)
 {
     Vec3d rvec, tvec;
-    if (!m.isPair(c) || !(refractiveSolvePnP(data.objectPoints, m.direct[c], withWindow(camera, GlassWindow()), rvec, tvec) >= 0))
+    if (!m.isPair(c) || !refractiveSolvePnP(data.objectPoints, m.direct[c], withWindow(camera, GlassWindow()), rvec, tvec))
         return;
     std::vector<Point2d> predicted;
     refractiveProjectPoints(data.objectPoints, rvec, tvec, camera, predicted);

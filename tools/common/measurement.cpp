@@ -104,7 +104,7 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
 {
     const auto& camera = calibration.cameras[0].camera;
     Vec3d rvec, tvec;
-    if (!(cv::refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec) >= 0))
+    if (!cv::refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec))
         throw Failure("no pose of the target explains its points: check --size and --square");
     std::vector<Point3d> seenPoints;
     for (size_t i = 0; i < pixels.size(); ++i)

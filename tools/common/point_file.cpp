@@ -52,8 +52,8 @@ std::vector<cv::Point2d> readPixels(const std::string& path)
             continue;
         }
         cv::Point2d pixel;
-        if (std::max(u, v) >= cells.size() || !CLI::detail::lexical_cast(cells[u], pixel.x)
-            || !CLI::detail::lexical_cast(cells[v], pixel.y))
+        if (std::max(u, v) >= cells.size() || !parseNumber(cells[u], pixel.x)
+            || !parseNumber(cells[v], pixel.y))
             throw Failure("'" + path + "' line " + std::to_string(number) + ": two numbers u v are needed");
         if (std::isfinite(pixel.x) && std::isfinite(pixel.y))       // nan: not seen
             pixels.push_back(pixel);

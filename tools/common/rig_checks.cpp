@@ -54,9 +54,10 @@ void PooledRms::add(const std::vector<Point3d>& object, const std::vector<Point2
     if (pixels.empty())
         return;
     Vec3d rvec, tvec;
-    const double rms = refractiveSolvePnP(object, pixels, camera, rvec, tvec);
+    std::vector<double> error;
+    const bool found = refractiveSolvePnP(object, pixels, camera, rvec, tvec, false, error);
     const int n = (int)std::count_if(pixels.begin(), pixels.end(), seen);
-    sum_ += rms * rms * n;      // a view without a pose makes the whole NaN
+    sum_ += found ? 2. * error[0] * error[0] * n : NONE;      // a view without a pose makes the whole NaN
     count_ += n;
 }
 

@@ -116,7 +116,7 @@ bool solveView(const RigData& data, const Ptr<RefractiveCamera>& camera, const s
     if (pixels.empty())
         return false;
     Vec3d rvec;
-    if (std::isnan(refractiveSolvePnP(data.objectPoints, pixels, camera, rvec, t)))
+    if (!refractiveSolvePnP(data.objectPoints, pixels, camera, rvec, t))
         return false;
     Rodrigues(rvec, R);
     return true;
@@ -182,18 +182,14 @@ Rig Rig::clone() const
 {
     Rig copy = *this;
     for (Ptr<RefractiveCamera>& camera : copy.cameras)
-        camera = withWindow(camera, camera->window());
+        camera = camera->clone();
     return copy;
 }
 
 Ptr<RefractiveCamera> withWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)
 {
-    const String model = camera->lensModel();
-    Ptr<RefractiveCamera> copy =
-        model == "opencv" ? RefractiveCamera::create(camera->cameraMatrix(), camera->distCoeffs(), window) :
-        model == "fisheye" ? RefractiveCamera::createFisheye(camera->cameraMatrix(), camera->distCoeffs(), window) :
-        RefractiveCamera::createMrcal(model, camera->lensParameters(), window);
-    copy->setImageSize(camera->imageSize());
+    const Ptr<RefractiveCamera> copy = camera->clone();
+    copy->setWindow(window);
     return copy;
 }
 

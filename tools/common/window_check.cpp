@@ -36,7 +36,7 @@ bool startPose(const Rig& rig, const std::vector<Point3d>& object, const Moment&
         {
             const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
             const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : withWindow(rig.cameras[c], GlassWindow());
-            if (pixels.empty() || !(refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec) >= 0))
+            if (pixels.empty() || !refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec))
                 continue;
             if (c == 1)
             {

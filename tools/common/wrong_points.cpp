@@ -60,7 +60,7 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
             for (bool glass : {true, false})
             {
                 Moment& m = data.moments[i];
-                const int column = 2 * c + !glass;
+                const int column = 2 * c + glass;
                 Dropped dropped{m.stem, c, glass, 0, false, ""};
                 if (clean(glass ? m.glass[c] : m.direct[c], fit.imageStatus.at<uchar>(i, column),
                           fit.inliers[fit.imageStatus.cols * i + column], dropped))

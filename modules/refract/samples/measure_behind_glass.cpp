@@ -1,4 +1,5 @@
-// Two cameras behind tilted panes measure a bar of 100 mm: the panes ignored, and taken into account. Needs no images.
+// Two cameras behind tilted panes measure a bar of 100 mm: the panes ignored, and taken into account. Then the first pane is
+// calibrated. Needs no images.
 
 #include <opencv2/refract.hpp>
 #include <iostream>
@@ -38,5 +39,34 @@ int main()
               << "panes ignored " << norm(ignored[0] - ignored[1]) << ", the bar off by "
               << norm(ignored[0] - bar[0]) << "\n"
               << "corrected     " << norm(points[0] - points[1]) << std::endl;
-    return std::abs(norm(points[0] - points[1]) - 100) < 1e-6 ? 0 : 1;
+
+    //! [pairs]
+    std::vector<Point3f> board;
+    for (int i = 0; i < 54; i++)
+        board.push_back(Point3f(20.f*(i % 9) - 80, 20.f*(i/9) - 50, 0));
+    const Vec3d tilts[] = { Vec3d(0.4, 0, 0), Vec3d(-0.4, 0, 0.2), Vec3d(0, 0.4, 0), Vec3d(0, -0.4, -0.2) };
+    const Ptr<refract::RefractiveCamera> withoutWindow = refract::RefractiveCamera::create(K, D);
+    std::vector<std::vector<Point3f> > boards(4, board);
+    std::vector<std::vector<Point2f> > direct(4), refracted(4);
+    RNG random(1);
+    for (int pair = 0; pair < 4; pair++)
+    {
+        refract::refractiveProjectPoints(board, tilts[pair], Vec3d(0, 0, 550 + 30*pair), withoutWindow, direct[pair]);
+        refract::refractiveProjectPoints(board, tilts[pair], Vec3d(0, 0, 550 + 30*pair), camera1, refracted[pair]);
+        for (size_t i = 0; i < board.size(); i++)
+        {
+            direct[pair][i] += Point2f((float)random.gaussian(0.1), (float)random.gaussian(0.1));
+            refracted[pair][i] += Point2f((float)random.gaussian(0.1), (float)random.gaussian(0.1));
+        }
+    }
+    //! [pairs]
+
+    //! [calibrate]
+    refract::GlassWindow window(Vec3d(0, 0, 1), 20, 1.54, 50);      // how it is tilted is not known
+    std::vector<Mat> rvecs, tvecs;
+    const double rms = refract::calibrateGlass(boards, direct, refracted, K, D, window, rvecs, tvecs);
+    //! [calibrate]
+    std::cout << "true normal   " << window1.normal << "\n"
+              << "calibrated    " << window.normal << ", " << rms << " px RMS" << std::endl;
+    return std::abs(norm(points[0] - points[1]) - 100) < 1e-6 && norm(window.normal - window1.normal) < 1e-3 ? 0 : 1;
 }

@@ -201,10 +201,14 @@ std::vector<double> readNumbers(InputArray a, const char* name)
     return numbers;
 }
 
-DepthReader::DepthReader(InputArray depth, const char* name) : size_(1), one_(std::numeric_limits<double>::infinity())
+DepthReader::DepthReader(InputArray depth, const char* name, int points, bool isNeeded)
+    : size_(1), one_(std::numeric_limits<double>::infinity())
 {
-    if (depth.empty())
+    if (depth.empty() && (!isNeeded || points == 0))
         return;
+    if (depth.empty())
+        CV_Error_(Error::StsBadArg, ("%s is empty; it must say how far the scene is, as the window's effect depends on it "
+                                     "(infinity, where that is meant)", name));
     depths_ = depth.getMat();
     checkFloat(depths_, name);
     if (!depths_.isContinuous())
@@ -212,7 +216,13 @@ DepthReader::DepthReader(InputArray depth, const char* name) : size_(1), one_(st
     size_ = (int)depths_.total()*depths_.channels();
     // One number comes from Python as cv::Scalar, (d, 0, 0, 0): 0 is no depth, and (d, 0, 0, 0) no plane one can see.
     if (size_ == 4 && at(1) == 0 && at(2) == 0 && at(3) == 0)
+    {
+        if (points == 4)
+            CV_Error_(Error::StsBadArg, ("%s is (%g, 0, 0, 0) for four points: one number for all, as Python hands it over, or a "
+                                         "depth each, of which three are 0; give an array, of one number or of four", name,
+                                         at(0)));
         size_ = 1;
+    }
     one_ = at(0);
     if (size_ == 1 && !(one_ > 0))
         CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, one_));
@@ -305,5 +315,25 @@ static std::vector<Double> readPoints(InputArray a, int channels, const char* na
 
 std::vector<Point2d> readPoints2(InputArray a, const char* name) { return readPoints<Point2f, Point2d>(a, 2, name); }
 std::vector<Point3d> readPoints3(InputArray a, const char* name) { return readPoints<Point3f, Point3d>(a, 3, name); }
+
+void writeVectors(const std::vector<Vec3d>& vectors, OutputArrayOfArrays out)
+{
+    if (!out.needed())
+        return;
+    const int count = (int)vectors.size();
+    if (!out.isMatVector())
+    {
+        Mat all(count, 1, CV_64FC3);
+        std::copy(vectors.begin(), vectors.end(), all.begin<Vec3d>());
+        all.copyTo(out);
+        return;
+    }
+    out.create(count, 1, CV_64FC3);
+    for (int i = 0; i < count; i++)
+    {
+        out.create(3, 1, CV_64F, i, true);
+        Mat(vectors[i]).copyTo(out.getMat(i));
+    }
+}
 
 }} // namespace

@@ -52,12 +52,13 @@ private:
     Mat status_;
 };
 
-//! z of the scene points: none = infinity, one for all, or many. One number must be positive; among many a bad one is
-//! that point's own problem.
+//! z of the scene points: one for all, or many. One number must be positive; among many a bad one is that point's own
+//! problem.
 class DepthReader
 {
 public:
-    DepthReader(InputArray depth, const char* name);
+    //! Empty = infinity, if it is not needed or there are no points.
+    DepthReader(InputArray depth, const char* name, int points, bool isNeeded);
     int size() const { return size_; }
     double at(int i) const;
     void load(int begin, int n, double* depth) const;
@@ -96,6 +97,9 @@ std::vector<double> readNumbers(InputArray a, const char* name);        //!< any
 //! A vector of points (N x 3 or N x 2 coordinates) as plain structures; NaN allowed.
 std::vector<Point2d> readPoints2(InputArray a, const char* name);
 std::vector<Point3d> readPoints3(InputArray a, const char* name);
+
+//! As calib3d writes them: a 3x1 array each, or one array of 3-vectors; nothing if they are not wanted.
+void writeVectors(const std::vector<Vec3d>& vectors, OutputArrayOfArrays out);
 
 }} // namespace
 

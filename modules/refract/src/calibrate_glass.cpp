@@ -8,8 +8,8 @@
 
 namespace cv { namespace refract {
 
-double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-                      InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
+double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+                      InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
                       OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
                       OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian, int flags,
                       TermCriteria criteria)
@@ -20,31 +20,31 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
     Rig rig = { { cameraOf(camera) }, { 0 }, { Pose() } };
     RigTask task;
     task.views.object = readObjectViews(objectPoints, "objectPoints");
-    task.views.cameras.push_back(readCameraViews(imagePointsRefracted, "imagePointsRefracted", imagePointsDirect,
-                                                 "imagePointsDirect", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect, "imagePointsDirect", imagePointsRefracted,
+                                                 "imagePointsRefracted", task.views.object));
     checkWindows(rig, task.views, flags, { "imagePointsRefracted" });
     task.flags = flags;
     task.criteria = criteria;
     task.wantsJacobian = jacobian.needed();
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     cameraOf(camera) = rig.cameras[0];
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.jacobian, jacobian);
     return fit.rms;
 }
 
-double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-                      InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
+double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+                      InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
                       OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags, TermCriteria criteria)
 {
     CV_INSTRUMENT_REGION();
 
-    return calibrateGlass(objectPoints, imagePointsRefracted, imagePointsDirect, camera, rvecs, tvecs, noArray(),
+    return calibrateGlass(objectPoints, imagePointsDirect, imagePointsRefracted, camera, rvecs, tvecs, noArray(),
                           noArray(), noArray(), noArray(), flags, criteria);
 }
 
-double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-                      InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
+double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+                      InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
                       GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
                       OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
                       OutputArray jacobian, int flags, TermCriteria criteria)
@@ -55,20 +55,20 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
         CV_Error_(Error::StsBadFlag, ("flags is %d; GLASS_FREE_INTRINSICS needs the overload with RefractiveCamera, which "
                                       "returns the lens", flags));
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(cameraMatrix, distCoeffs, window);
-    const double rms = calibrateGlass(objectPoints, imagePointsRefracted, imagePointsDirect, camera, rvecs, tvecs,
+    const double rms = calibrateGlass(objectPoints, imagePointsDirect, imagePointsRefracted, camera, rvecs, tvecs,
                                       stdDeviations, covariance, perViewErrors, jacobian, flags, criteria);
     window = camera->window();
     return rms;
 }
 
-double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-                      InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
+double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+                      InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
                       GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags,
                       TermCriteria criteria)
 {
     CV_INSTRUMENT_REGION();
 
-    return calibrateGlass(objectPoints, imagePointsRefracted, imagePointsDirect, cameraMatrix, distCoeffs, window, rvecs,
+    return calibrateGlass(objectPoints, imagePointsDirect, imagePointsRefracted, cameraMatrix, distCoeffs, window, rvecs,
                           tvecs, noArray(), noArray(), noArray(), noArray(), flags, criteria);
 }
 

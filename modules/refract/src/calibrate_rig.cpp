@@ -66,11 +66,16 @@ std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles
     return cameras;
 }
 
-//! The first camera that looks through the same window; as many layers as it are given to the others.
+//! The first camera that looks through the same window; as many layers as it are given to the others. Empty: each its own.
 void setOwners(Rig& rig, const std::vector<int>& windowOfCamera)
 {
     for (int c = 0; c < rig.count(); c++)
     {
+        if (windowOfCamera.empty())
+        {
+            rig.owner.push_back(c);
+            continue;
+        }
         rig.owner.push_back((int)(std::find(windowOfCamera.begin(), windowOfCamera.end(), windowOfCamera[c]) -
                                   windowOfCamera.begin()));
         rig.cameras[c].setWindow(rig.cameras[rig.owner[c]].window());
@@ -103,6 +108,7 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
 
 std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
+    const double ROUNDING = 1e-6;
     std::vector<Pose> extrinsics(1);
     if (cameras == 1)
         return extrinsics;
@@ -114,8 +120,9 @@ std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, i
     for (int c = 0; c < cameras; c++)
     {
         const Pose pose = readPose(R[c], T[c], numbered("Rs", c), numbered("Ts", c));
-        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > 0)
-            CV_Error(Error::StsBadArg, "Rs[0] and Ts[0] are not the identity and 0; they are those of camera 1 itself");
+        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > ROUNDING)
+            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
+                                         "be the identity and 0", norm(pose.rvec), norm(pose.tvec)));
         if (c > 0)
             extrinsics.push_back(pose);
     }
@@ -196,6 +203,33 @@ void readKnownPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArr
     }
 }
 
+//! LxL or PxP of each camera, or nothing.
+void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
+{
+    if (covariances.empty())
+        return;
+    std::vector<Mat> all;
+    covariances.getMatVector(all);
+    checkCount(all.size(), (int)cameras.size(), "cameraCovariances", false);
+    for (int c = 0; c < (int)all.size(); c++)
+    {
+        const String name = numbered("cameraCovariances", c);
+        const std::vector<double> numbers = readNumbers(all[c], name.c_str());
+        const int lens = cameras[c].lensCount(), both = cameras[c].parameterCount(), side = all[c].rows;
+        if (!numbers.empty() && ((side != lens && side != both) || (int)numbers.size() != side*side))
+            CV_Error_(Error::StsBadSize, ("%s is %dx%d; it must be %dx%d (lens), %dx%d (lens and window) or empty",
+                                          name.c_str(), all[c].rows, all[c].cols, lens, lens, both, both));
+        CameraKnowledge knowledge;
+        if (!numbers.empty())
+            knowledge.covariance = Eigen::Map<const RowMajorMatrix>(numbers.data(), side, side);
+        for (int i = 0; i < knowledge.covariance.rows(); i++)
+            if (!(knowledge.covariance(i, i) >= 0))
+                CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
+                                             knowledge.covariance(i, i), i));
+        task.cameras.push_back(knowledge);
+    }
+}
+
 //! As the arrays have them: an empty list is no view.
 std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
 {
@@ -221,24 +255,20 @@ void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
 
 } // namespace
 
-double calibrateGlassRig(InputArrayOfArrays objectPoints,
-                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
-                         const std::vector<std::vector<Mat> >& imagePointsDirect,
-                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
-                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
+//! What both forms do, but for the results beside cameras, Rs and Ts.
+static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
+                        InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                        InputArrayOfArrays cameraCovariances)
 {
-    CV_INSTRUMENT_REGION();
-
     const int count = (int)cameras.size();
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
     if (count == 0)
         CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
-    checkCount(windowOfCamera.size(), count, "windowOfCamera", false);
-    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     checkCount(imagePointsDirect.size(), count, "imagePointsDirect", true);
+    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
 
     RigTask task;
     std::vector<String> names, refractedNames;
@@ -247,9 +277,10 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     {
         names.push_back(numbered("cameras", c));
         refractedNames.push_back(numbered("imagePointsRefracted", c));
-        task.views.cameras.push_back(readCameraViews(imagePointsRefracted[c], refractedNames[c].c_str(),
-                                                     viewsOf(imagePointsDirect, c),
-                                                     numbered("imagePointsDirect", c).c_str(), task.views.object));
+        task.views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c),
+                                                     numbered("imagePointsDirect", c).c_str(),
+                                                     imagePointsRefracted[c], refractedNames[c].c_str(),
+                                                     task.views.object));
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
@@ -258,13 +289,32 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
         readKnownPoses(rvecs, tvecs, poseCovariances, task);
+    readCameraKnowledge(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
 
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
     if (flags & GLASS_FREE_EXTRINSICS)
         writeExtrinsics(rig, Rs, Ts);
+    return fit;
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints,
+                         const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
+                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                         InputArrayOfArrays cameraCovariances)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances);
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
@@ -272,9 +322,24 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     return fit.rms;
 }
 
+double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, OutputArrayOfArrays rvecs,
+                         OutputArrayOfArrays tvecs, int flags, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 noArray(), noArray(), flags, noArray(), criteria, noArray());
+    writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
+    return fit.rms;
+}
+
 double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
-                            InputArrayOfArrays imagePointsRefracted1, InputArrayOfArrays imagePointsDirect1,
-                            InputArrayOfArrays imagePointsRefracted2, InputArrayOfArrays imagePointsDirect2,
+                            InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+                            InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
                             const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
                             InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs,
                             OutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
@@ -289,15 +354,15 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
     RigTask task;
     task.views.object = readObjectViews(objectPoints, "objectPoints");
-    task.views.cameras.push_back(readCameraViews(imagePointsRefracted1, "imagePointsRefracted1", imagePointsDirect1,
-                                                 "imagePointsDirect1", task.views.object));
-    task.views.cameras.push_back(readCameraViews(imagePointsRefracted2, "imagePointsRefracted2", imagePointsDirect2,
-                                                 "imagePointsDirect2", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect1, "imagePointsDirect1", imagePointsRefracted1,
+                                                 "imagePointsRefracted1", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect2, "imagePointsDirect2", imagePointsRefracted2,
+                                                 "imagePointsRefracted2", task.views.object));
     checkWindows(rig, task.views, flags, { "imagePointsRefracted1", "imagePointsRefracted2" });
     task.flags = flags;
     task.criteria = criteria;
 
-    const RigFit fit = fitRig(rig, task);
+    const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, { camera1, camera2 });
     if (flags & GLASS_FREE_EXTRINSICS)
     {

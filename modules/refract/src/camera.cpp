@@ -99,12 +99,14 @@ void Camera::setLensParameters(InputArray parameters)
 
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name)
 {
-    Camera* implementation = dynamic_cast<Camera*>(camera.get());
-    if (!implementation)
+    if (!camera)
         CV_Error_(Error::StsNullPtr, ("%s is empty; make one with RefractiveCamera::create", name));
-    return *implementation;
+    return static_cast<Camera&>(*camera);
 }
 
+RefractiveCamera::RefractiveCamera() {}
+RefractiveCamera::RefractiveCamera(const RefractiveCamera&) {}
+RefractiveCamera& RefractiveCamera::operator=(const RefractiveCamera&) { return *this; }
 RefractiveCamera::~RefractiveCamera() {}
 
 Ptr<RefractiveCamera> RefractiveCamera::create(InputArray cameraMatrix, InputArray distCoeffs,

@@ -44,6 +44,8 @@ public:
     uchar projectJacobian(const Vec3d& point, Vec2d& pixel,
                           double* dPixel_dPoint, double* dPixel_dParameters) const;
 
+    //! False: no window, so that the depth of what is seen plays no part.
+    bool refracts() const { return !window_.thickness.empty() || window_.innerIndex != window_.outerIndex; }
     const Lens& lens() const { return *lens_; }
     const Layers& layers() const { return layers_; }
     //! All parameters, in the order of the columns of dPixel_dParameters; setParameters normalises the normal.
@@ -51,6 +53,7 @@ public:
     void setParameters(const std::vector<double>& parameters);
 
     // RefractiveCamera
+    Ptr<RefractiveCamera> clone() const CV_OVERRIDE { return makePtr<Camera>(*this); }
     void write(FileStorage& fs) const CV_OVERRIDE;
     Mat cameraMatrix() const CV_OVERRIDE { return lens_->cameraMatrix(); }
     Mat distCoeffs() const CV_OVERRIDE { return lens_->distCoeffs(); }
@@ -69,7 +72,7 @@ private:
     Size size_;
 };
 
-//! The implementation behind the public handle; throws if it is empty, naming the argument.
+//! The implementation behind the public handle, which nobody else derives from; throws if it is empty, naming the argument.
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");
 
 }} // namespace

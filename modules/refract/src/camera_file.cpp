@@ -7,6 +7,10 @@
 #include "cameramodel.hpp"
 #include <cstdio>
 #include <fstream>
+#ifdef _WIN32
+#define NOMINMAX
+#include <windows.h>
+#endif
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -64,6 +68,15 @@ static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filena
     return camera;
 }
 
+Ptr<RefractiveCamera> RefractiveCamera::read(const FileNode& node)
+{
+    CV_INSTRUMENT_REGION();
+
+    if (!node.isMap())
+        CV_Error(Error::StsBadArg, "node is not a map; it must hold camera_matrix and distortion_coefficients");
+    return readNode(node, node.isNamed() ? node.name() : String("node"));
+}
+
 Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const String& name)
 {
     CV_INSTRUMENT_REGION();
@@ -108,6 +121,29 @@ static String partName(const String& filename)
     return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
 }
 
+void RefractiveCamera::write(const Ptr<FileStorage>& fs, const String& name) const
+{
+    CV_INSTRUMENT_REGION();
+
+    if (!fs || !fs->isOpened())
+        CV_Error(Error::StsBadArg, "fs is not open for writing");
+    if (!name.empty())
+        *fs << name << "{";
+    write(*fs);
+    if (!name.empty())
+        *fs << "}";
+}
+
+//! In one step where the system has one.
+static bool moveOver(const String& from, const String& to)
+{
+#ifdef _WIN32
+    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+#else
+    return std::rename(from.c_str(), to.c_str()) == 0;
+#endif
+}
+
 void RefractiveCamera::save(const String& filename) const
 {
     CV_INSTRUMENT_REGION();
@@ -119,7 +155,7 @@ void RefractiveCamera::save(const String& filename) const
     FileStorage fs(part, FileStorage::WRITE);
     write(fs);
     fs.release();
-    if (std::rename(part.c_str(), filename.c_str()) != 0)
+    if (!moveOver(part, filename))
     {
         std::remove(part.c_str());
         CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));

@@ -3,8 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "cameramodel.hpp"
-#include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <locale>
 #include <sstream>
 
 namespace cv { namespace refract {
@@ -101,11 +102,14 @@ private:
     double number()
     {
         space();
-        char* end;
-        const double value = std::strtod(p_, &end);
-        if (end == p_)
+        const char* begin = p_;
+        while (*p_ && std::strchr("+-.0123456789eE", *p_))
+            ++p_;
+        std::istringstream text(std::string(begin, p_));
+        text.imbue(std::locale::classic());     // the user's may have a decimal comma
+        double value;
+        if (!(text >> value) || !text.eof())
             fail("a number is expected");
-        p_ = end;
         return value;
     }
 

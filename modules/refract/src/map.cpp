@@ -169,15 +169,15 @@ void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
 
 } // namespace
 
-//! The scene of the map: one number z, four numbers of a plane, nothing = infinitely far.
-static Vec4d scenePlane(InputArray depth)
+//! The scene of the map: one number z, or four numbers of a plane.
+static Vec4d scenePlane(InputArray depth, bool isNeeded)
 {
     const double infinity = std::numeric_limits<double>::infinity();
-    const DepthReader d(depth, "depth");
+    const DepthReader d(depth, "depth", 1, isNeeded);
     if (d.size() == 1)
         return planeOfDepth(d.at(0), "depth");
     if (d.size() != 4)
-        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane), or be empty", d.size()));
+        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane)", d.size()));
     const Vec4d plane(d.at(0), d.at(1), d.at(2), d.at(3));
     checkPlane(plane, "depth");
     return plane[3] == -infinity ? -plane : plane;
@@ -197,7 +197,7 @@ void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, Inpu
                                                 typeToString(m1type).c_str()));
     if (size.width < 0 || size.height < 0)
         CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
-    const Vec4d plane = scenePlane(depth);
+    const Vec4d plane = scenePlane(depth, cam.refracts());
     const Matx33d R = readRotation(R_, "R");
     const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
                                               : readProjection(newCameraMatrix, "newCameraMatrix");

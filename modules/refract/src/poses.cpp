@@ -239,30 +239,51 @@ Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
     return pose;
 }
 
+namespace {
+
+//! A minimum of the reprojection error.
+struct Minimum
+{
+    Pose pose;
+    double rms;
+};
+
+bool isSame(const Pose& a, const Pose& b)
+{
+    const double ROUNDING = 1e-6;
+    return norm(rotationMatrix(a.rvec) - rotationMatrix(b.rvec)) < ROUNDING && norm(a.tvec - b.tvec) < ROUNDING*norm(b.tvec);
+}
+
+//! All minima that the starts lead to, the smallest first.
+std::vector<Minimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
+{
+    std::vector<Minimum> minima;
+    if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
+        return minima;
+    for (const Pose& candidate : start.found ? std::vector<Pose>(1, start) : closedFormPoses(camera, points))
+    {
+        Minimum minimum = { candidate, 0 };
+        minimum.rms = refinePose(camera, points, minimum.pose);
+        if (!std::isnan(minimum.rms) && std::none_of(minima.begin(), minima.end(), [&](const Minimum& other)
+                                                     { return isSame(other.pose, minimum.pose); }))
+            minima.push_back(minimum);
+    }
+    std::stable_sort(minima.begin(), minima.end(), [](const Minimum& a, const Minimum& b) { return a.rms < b.rms; });
+    return minima;
+}
+
+} // namespace
+
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms)
 {
-    const ImagePoints points = observed(objectPoints, imagePoints);
-    Pose best;
-    rms = NaN;
-    if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
-        return best;
-    std::vector<Pose> candidates(1, start);
-    if (!start.found)
-        candidates = closedFormPoses(camera, points);
-    for (Pose& candidate : candidates)
-    {
-        const double candidateRms = refinePose(camera, points, candidate);
-        if (std::isnan(candidateRms) || (best.found && candidateRms >= rms))
-            continue;
-        best = candidate;
-        rms = candidateRms;
-    }
-    return best;
+    const std::vector<Minimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
+    rms = minima.empty() ? NaN : minima[0].rms;
+    return minima.empty() ? Pose() : minima[0].pose;
 }
 
-static double solvePnP(InputArray objectPoints_, InputArray imagePoints_, const Camera& camera,
-                       InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess)
+static std::vector<Minimum> solvePnP(InputArray objectPoints_, InputArray imagePoints_, const Camera& camera,
+                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
 {
     const std::vector<Point3d> objectPoints = readPoints3(objectPoints_, "objectPoints");
     const std::vector<Point2d> imagePoints = readPoints2(imagePoints_, "imagePoints");
@@ -280,31 +301,80 @@ static double solvePnP(InputArray objectPoints_, InputArray imagePoints_, const 
     Pose start;
     if (useExtrinsicGuess)
         start = makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
-    double rms;
-    Pose pose = solvePose(camera, objectPoints, imagePoints, start, rms);
-    if (!pose.found)
-        pose.rvec = pose.tvec = Vec3d::all(NaN);
-    Mat(pose.rvec).copyTo(rvec);
-    Mat(pose.tvec).copyTo(tvec);
-    return rms;
+    return findMinima(camera, observed(objectPoints, imagePoints), start);
 }
 
-double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
-                          InputArray distCoeffs, const GlassWindow& window, InputOutputArray rvec,
-                          InputOutputArray tvec, bool useExtrinsicGuess)
+//! As cv::solvePnPGeneric's: of coordinates, not of distances.
+static void writeErrors(const std::vector<Minimum>& minima, OutputArray reprojectionError)
+{
+    if (!reprojectionError.needed())
+        return;
+    Mat errors((int)minima.size(), 1, CV_64F);
+    for (int i = 0; i < errors.rows; i++)
+        errors.at<double>(i) = minima[i].rms/std::sqrt(2.);
+    errors.copyTo(reprojectionError);
+}
+
+static void writePoses(const std::vector<Minimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
+{
+    std::vector<Vec3d> r, t;
+    for (const Minimum& minimum : minima)
+    {
+        r.push_back(minimum.pose.rvec);
+        t.push_back(minimum.pose.tvec);
+    }
+    writeVectors(r, rvecs);
+    writeVectors(t, tvecs);
+}
+
+bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
+                        InputArray distCoeffs, const GlassWindow& window, InputOutputArray rvec,
+                        InputOutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
 {
     CV_INSTRUMENT_REGION();
 
     return refractiveSolvePnP(objectPoints, imagePoints, RefractiveCamera::create(cameraMatrix, distCoeffs, window),
-                              rvec, tvec, useExtrinsicGuess);
+                              rvec, tvec, useExtrinsicGuess, reprojectionError);
 }
 
-double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
-                          InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess)
+bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess,
+                        OutputArray reprojectionError)
 {
     CV_INSTRUMENT_REGION();
 
-    return solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    minima.resize(std::min<size_t>(minima.size(), 1));
+    writeErrors(minima, reprojectionError);
+    if (minima.empty())
+        return false;
+    Mat(minima[0].pose.rvec).copyTo(rvec);
+    Mat(minima[0].pose.tvec).copyTo(tvec);
+    return true;
+}
+
+int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                              OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, bool useExtrinsicGuess,
+                              InputArray rvec, InputArray tvec, OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    const std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    writePoses(minima, rvecs, tvecs);
+    writeErrors(minima, reprojectionError);
+    return (int)minima.size();
+}
+
+int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
+                              InputArray distCoeffs, const GlassWindow& window, OutputArrayOfArrays rvecs,
+                              OutputArrayOfArrays tvecs, bool useExtrinsicGuess, InputArray rvec, InputArray tvec,
+                              OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    return refractiveSolvePnPGeneric(objectPoints, imagePoints,
+                                     RefractiveCamera::create(cameraMatrix, distCoeffs, window), rvecs, tvecs,
+                                     useExtrinsicGuess, rvec, tvec, reprojectionError);
 }
 
 }} // namespace

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "rig_fit.hpp"
+#include "arrays.hpp"
 #include "covariance.hpp"
 #include "information.hpp"
 #include "rig_robust.hpp"
@@ -71,7 +72,7 @@ void describeImages(const RigProblem& rig, const RigTask& task, const std::vecto
     for (size_t i = 0; i < rig.images().size(); i++)
     {
         const RigImage& image = rig.images()[i];
-        const int column = 2*image.camera + (image.refracted ? 0 : 1), used = image.usedCount();
+        const int column = 2*image.camera + (image.refracted ? 1 : 0), used = image.usedCount();
         const double squares = rig.residuals(image).squaredNorm();
         sum += squares;
         fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
@@ -91,7 +92,7 @@ void markUnusable(const RigTask& task, RigFit& fit)
         for (int column = 0; column < fit.imageStatus.cols; column++)
         {
             const CameraViews& seen = task.views.cameras[column/2];
-            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.refracted : seen.direct)[view];
+            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.direct : seen.refracted)[view];
             uchar& status = fit.imageStatus.at<uchar>(view, column);
             if (status != GLASS_IMAGE_ABSENT || countSeen(pixels) == 0)
                 continue;
@@ -231,27 +232,12 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     return fit;
 }
 
-//! One array of vectors, as calib3d writes them.
 static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, OutputArrayOfArrays out)
 {
-    if (!out.needed())
-        return;
-    const int count = (int)poses.size();
-    Mat all(count, 1, CV_64FC3, Scalar::all(NaN));
-    for (int i = 0; i < count; i++)
-        if (poses[i].found)
-            all.at<Vec3d>(i) = poses[i].*member;
-    if (!out.isMatVector())
-    {
-        all.copyTo(out);
-        return;
-    }
-    out.create(count, 1, CV_64FC3);
-    for (int i = 0; i < count; i++)
-    {
-        out.create(3, 1, CV_64F, i, true);
-        Mat(all.at<Vec3d>(i)).copyTo(out.getMat(i));
-    }
+    std::vector<Vec3d> vectors;
+    for (const Pose& pose : poses)
+        vectors.push_back(pose.found ? pose.*member : Vec3d::all(NaN));
+    writeVectors(vectors, out);
 }
 
 void writeMat(const Mat& from, OutputArray to)

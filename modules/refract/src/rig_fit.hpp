@@ -27,7 +27,7 @@ struct RigFit
     std::vector<Pose> poses;        //!< object -> camera 1; NaN where a view has no point left
     double rms;
     Mat covariance, stdDeviations;  //!< of the public parameters
-    Mat perViewErrors;              //!< columns: refracted, direct of each camera
+    Mat perViewErrors;              //!< columns: direct, refracted of each camera
     Mat jacobian;                   //!< if wanted
     Mat imageStatus;                //!< GlassImageStatus, as perViewErrors
     std::vector<Mat> inliers;       //!< of each element of perViewErrors, row by row

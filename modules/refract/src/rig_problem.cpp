@@ -37,15 +37,18 @@ std::vector<bool> freeMedia(int layers, int flags)
     return isFree;
 }
 
-//! Coefficients that are exactly 0 stay 0.
-std::vector<bool> freeLens(const std::vector<double>& lens, int flags)
+//! GlassCalibrationFlags -> which lens parameters are free.
+std::vector<bool> freeLens(const Camera& camera, int flags)
 {
-    std::vector<bool> isFree(lens.size(), (flags & GLASS_FREE_INTRINSICS) != 0);
-    if (flags & GLASS_FIX_PRINCIPAL_POINT)
-        isFree[2] = isFree[3] = false;
-    for (size_t i = 4; i < lens.size(); i++)
-        if (lens[i] == 0)
-            isFree[i] = false;
+    const int F = GLASS_FIX_FOCAL_LENGTH, C = GLASS_FIX_PRINCIPAL_POINT, P = GLASS_FIX_TANGENT_DIST,
+              S = GLASS_FIX_S1_S2_S3_S4, TAU = GLASS_FIX_TAUX_TAUY;
+    const int opencv[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, P, P, GLASS_FIX_K3, GLASS_FIX_K4, GLASS_FIX_K5,
+                           GLASS_FIX_K6, S, S, S, S, TAU, TAU };
+    const int fisheye[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, GLASS_FIX_K3, GLASS_FIX_K4 };
+    const int* fixedBy = camera.lensModel() == "fisheye" ? fisheye : opencv;
+    std::vector<bool> isFree;
+    for (int i = 0; i < camera.lensCount(); i++)
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(flags & fixedBy[i]));
     return isFree;
 }
 
@@ -78,7 +81,7 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
         const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
         const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
         const CameraKnowledge ofCamera = knownCameras.empty() ? CameraKnowledge() : knownCameras[c];
-        addBlock(RigBlock::LENS, c, lens, freeLens(lens, flags));
+        addBlock(RigBlock::LENS, c, lens, freeLens(camera, flags));
         setKnown(ofCamera, 0, blocks_.back());
         if (!rig_.owns(c))
             continue;
@@ -152,7 +155,7 @@ void RigProblem::addImages(const RigViews& views)
 {
     for (int view = 0; view < views.count(); view++)
         for (int c = 0; c < (int)views.cameras.size(); c++)
-            for (bool refracted : { true, false })
+            for (bool refracted : { false, true })
             {
                 const CameraViews& seen = views.cameras[c];
                 RigImage image;

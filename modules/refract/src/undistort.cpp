@@ -31,7 +31,7 @@ void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<Refrac
     const PointReader in(src, 2, "src");
     const Matx33d R = readRotation(R_, "R"), H = readProjection(P_, "P")*R;
     const Vec3d axis(R(2, 0), R(2, 1), R(2, 2));
-    const DepthReader depths(depth, "depth");
+    const DepthReader depths(depth, "depth", in.size(), cam.refracts());
     if (depths.size() != 1 && depths.size() != in.size())
         CV_Error_(Error::StsUnmatchedSizes, ("depth has %d values; it must have 1 or one per point (%d)", depths.size(),
                                              in.size()));

@@ -61,15 +61,15 @@ static void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d
                                                  name, (int)i, (int)pixels[i].size(), (int)i, (int)object[i].size()));
 }
 
-CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedName,
-                            InputArrayOfArrays direct, const char* directName,
+CameraViews readCameraViews(InputArrayOfArrays direct, const char* directName,
+                            InputArrayOfArrays refracted, const char* refractedName,
                             const std::vector<std::vector<Point3d> >& object)
 {
     CameraViews views;
-    views.refracted = readPixelViews(refracted, refractedName);
     views.direct = readPixelViews(direct, directName);
-    matchViews(views.refracted, object, refractedName);
+    views.refracted = readPixelViews(refracted, refractedName);
     matchViews(views.direct, object, directName);
+    matchViews(views.refracted, object, refractedName);
     return views;
 }
 

@@ -15,7 +15,7 @@ typedef std::vector<std::vector<Point2d> > PixelViews;
 //! What one camera saw. Both have one entry per view.
 struct CameraViews
 {
-    PixelViews refracted, direct;
+    PixelViews direct, refracted;
 };
 
 //! A calibrator's input: views of targets by one or more cameras.
@@ -33,8 +33,8 @@ std::vector<std::vector<Point3d> > readObjectViews(InputArrayOfArrays a, const c
 
 /** What one camera saw. An optional argument that is absent becomes one empty view per target; every view's size is checked
 against its target's. Throws with the argument's name. */
-CameraViews readCameraViews(InputArrayOfArrays refracted, const char* refractedName,
-                            InputArrayOfArrays direct, const char* directName,
+CameraViews readCameraViews(InputArrayOfArrays direct, const char* directName,
+                            InputArrayOfArrays refracted, const char* refractedName,
                             const std::vector<std::vector<Point3d> >& object);
 
 inline bool isSeen(const Point2d& pixel) { return std::isfinite(pixel.x) && std::isfinite(pixel.y); }

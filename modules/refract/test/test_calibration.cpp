@@ -44,7 +44,7 @@ TEST(Refract_CalibrateGlass, from_pairs)
     GlassWindow window = straight(window1());
     window.thickness[0] = 15;
     std::vector<Vec3d> rvecs, tvecs;
-    const double rms = calibrateGlass(boards(), views(camera1()), views(bare1()), K1(), D1(), window, rvecs, tvecs,
+    const double rms = calibrateGlass(boards(), views(bare1()), views(camera1()), K1(), D1(), window, rvecs, tvecs,
                                       GLASS_FREE_THICKNESS);
     EXPECT_NEAR(0, rms, 1e-6);
     EXPECT_NEAR(0, angle(window.normal, window1().normal), 1e-6);
@@ -58,7 +58,7 @@ TEST(Refract_CalibrateGlass, without_pairs)
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K1(), D1(), straight(window1()));
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations, covariance, perView, jacobian;
-    const double rms = calibrateGlass(boards(), views(camera1()), noArray(), camera, rvecs, tvecs,
+    const double rms = calibrateGlass(boards(), noArray(), views(camera1()), camera, rvecs, tvecs,
                                       deviations, covariance, perView, jacobian);
     EXPECT_NEAR(0, rms, 1e-6);
     EXPECT_NEAR(0, angle(camera->window().normal, window1().normal), 1e-6);
@@ -74,7 +74,7 @@ TEST(Refract_CalibrateGlass, refuses_what_cannot_be_seen)
     GlassWindow window = straight(window1());
     std::vector<Vec3d> rvecs, tvecs;
     const auto why = [&](int flags) { return thrown([&] {
-        calibrateGlass(boards(), views(camera1()), views(bare1()), K1(), D1(), window, rvecs, tvecs, flags); }); };
+        calibrateGlass(boards(), views(bare1()), views(camera1()), K1(), D1(), window, rvecs, tvecs, flags); }); };
     EXPECT_TRUE(contains(why(GLASS_FREE_DISTANCE), "GLASS_FREE_DISTANCE"));     // no effect in air
     EXPECT_TRUE(contains(why(GLASS_FREE_INTRINSICS), "GLASS_FREE_INTRINSICS")); // no camera to return the lens in
     EXPECT_TRUE(contains(why(1 << 20), "flags"));
@@ -87,15 +87,15 @@ TEST(Refract_StereoCalibrateGlass, finds_both_windows)
     Mat rotation(R()), translation(T());
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations, covariance, perView;
-    const double rms = stereoCalibrateGlass(boards(), views(camera1()), views(bare1()), views(camera2(), true),
-                                            views(bare2(), true), first, second, rotation, translation, rvecs, tvecs,
+    const double rms = stereoCalibrateGlass(boards(), views(bare1()), views(camera1()), views(bare2(), true),
+                                            views(camera2(), true), first, second, rotation, translation, rvecs, tvecs,
                                             deviations, covariance, perView);
     EXPECT_NEAR(0, rms, 1e-6);
     EXPECT_NEAR(0, angle(first->window().normal, window1().normal), 1e-6);
     EXPECT_NEAR(0, angle(second->window().normal, window2().normal), 1e-6);
     EXPECT_EQ(Size(4, 5), perView.size());
 
-    EXPECT_REFUSED(stereoCalibrateGlass(boards(), views(camera1()), noArray(), PixelViews(1), noArray(), first,
+    EXPECT_REFUSED(stereoCalibrateGlass(boards(), noArray(), views(camera1()), noArray(), PixelViews(1), first,
                                         second, rotation, translation, rvecs, tvecs, deviations, covariance, perView),
                    "imagePointsRefracted2");
 }
@@ -128,7 +128,7 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
     const std::vector<std::vector<Mat> > glass = asMats(glass1, views(camera2(), true)),
                                          direct = asMats(views(bare1()), views(bare2(), true));
     Mat deviations, covariance, perView, status, others;
-    const double rms = calibrateGlassRig(boards(), glass, direct, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
+    const double rms = calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                          covariance, perView, status, inliers, others, GLASS_ROBUST);
     EXPECT_NEAR(0, rms, 1e-6);
     EXPECT_NEAR(0, angle(cameras[0]->window().normal, window1().normal), 1e-6);
@@ -136,11 +136,17 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
     EXPECT_EQ(Size(4, 5), status.size());
     EXPECT_EQ(0, cv::countNonZero(status));
     ASSERT_EQ(20u, inliers.size());
-    EXPECT_EQ(29, cv::countNonZero(inliers[4*3]));
-    EXPECT_EQ(0, inliers[4*3].at<uchar>(7));
+    EXPECT_EQ(29, cv::countNonZero(inliers[4*3 + 1]));
+    EXPECT_EQ(0, inliers[4*3 + 1].at<uchar>(7));
 
-    windows.pop_back();
-    EXPECT_REFUSED(calibrateGlassRig(boards(), glass, direct, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
+    Rs[0].at<double>(0, 1) = 1e-8;
+    windows.clear();                // each its own
+    EXPECT_NEAR(0, calibrateGlassRig(boards(), direct, asMats(views(camera1()), views(camera2(), true)), cameras, windows,
+                                     Rs, Ts, rvecs, tvecs, GLASS_FREE_EXTRINSICS), 1e-6);
+    EXPECT_NEAR(590, tvecs[0].at<double>(2), 1e-3);
+
+    windows.resize(1);
+    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                      covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");
 }
 
@@ -149,19 +155,33 @@ TEST(Refract_SolvePnP, finds_the_pose)
     const Vec3d rvec(0, 0.2, 0), tvec(10, -5, 620);
     const std::vector<Point2d> pixels = project(board(), camera1(), rotation(0, 0.2), tvec);
     Vec3d r, t, r2 = rvec, t2 = tvec;
-    EXPECT_NEAR(0, refractiveSolvePnP(board(), pixels, K1(), D1(), window1(), r, t), 1e-6);
+    std::vector<double> error;
+    EXPECT_TRUE(refractiveSolvePnP(board(), pixels, K1(), D1(), window1(), r, t, false, error));
+    EXPECT_NEAR(0, error[0], 1e-6);
     EXPECT_NEAR(0, cv::norm(r - rvec), 1e-6);
     EXPECT_NEAR(0, cv::norm(t - tvec), 1e-4);
-    EXPECT_NEAR(0, refractiveSolvePnP(board(), pixels, camera1(), r2, t2, true), 1e-6);
+    EXPECT_TRUE(refractiveSolvePnP(board(), pixels, camera1(), r2, t2, true));
     EXPECT_NEAR(0, cv::norm(t2 - tvec), 1e-4);
 }
 
-TEST(Refract_SolvePnP, no_pose_is_NaN)
+TEST(Refract_SolvePnPGeneric, finds_both_poses_of_a_board)
+{
+    const Vec3d rvec(0, 0.3, 0), tvec(10, -5, 1200);
+    const std::vector<Point2d> pixels = project(board(), camera1(), rotation(0, 0.3), tvec);
+    std::vector<Vec3d> rvecs, tvecs;
+    std::vector<double> errors;
+    EXPECT_EQ(2, refractiveSolvePnPGeneric(board(), pixels, camera1(), rvecs, tvecs, false, noArray(), noArray(), errors));
+    EXPECT_NEAR(0, cv::norm(rvecs[0] - rvec), 1e-5);
+    EXPECT_GT(errors[1], errors[0]);
+    EXPECT_EQ(2, refractiveSolvePnPGeneric(board(), pixels, K1(), D1(), window1(), rvecs, tvecs));
+}
+
+TEST(Refract_SolvePnP, no_pose_is_false)
 {
     const std::vector<Point2d> unseen(board().size(), Point2d(NaN, NaN));
-    Vec3d r, t;
-    EXPECT_TRUE(cvIsNaN(refractiveSolvePnP(board(), unseen, camera1(), r, t)) != 0);
-    EXPECT_TRUE(cvIsNaN(r[0]) && cvIsNaN(t[2]));
+    Vec3d r, t(1, 2, 3);
+    EXPECT_FALSE(refractiveSolvePnP(board(), unseen, camera1(), r, t));
+    EXPECT_EQ(Vec3d(1, 2, 3), t);
     EXPECT_REFUSED(refractiveSolvePnP(board(), std::vector<Point2d>(3), camera1(), r, t), "imagePoints 3");
 }
 

@@ -62,19 +62,34 @@ enum TriangulateFlags {
     TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
 };
 
-//! Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free.
+
+With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is estimated, also where they start at 0: a lens
+without coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. The GLASS_FIX_... flags keep what
+they name at its start, as CALIB_FIX_... do in cv::calibrateCamera and cv::fisheye::calibrate; one that names what the lens
+does not have changes nothing.
+*/
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
     GLASS_FREE_INDEX = 2,           //!< index of every layer
     GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal inner and outer media, where it has no effect
     GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
-    GLASS_FREE_INTRINSICS = 16,     //!< lens parameters (overloads with RefractiveCamera only); coefficients that are
-                                    //!< exactly 0 stay 0
+    GLASS_FREE_INTRINSICS = 16,     //!< all lens parameters (overloads with RefractiveCamera only)
     GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
     GLASS_ROBUST = 256,             //!< leave out wrong points and images; without: pure maximum likelihood of all points
-    GLASS_USE_POSES = 512           //!< the targets' poses are known (calibrateGlassRig only)
+    GLASS_USE_POSES = 512,          //!< the targets' poses are known (calibrateGlassRigExtended's form only)
+    GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
+    GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
+    GLASS_FIX_K2 = 4096,
+    GLASS_FIX_K3 = 8192,
+    GLASS_FIX_K4 = 16384,
+    GLASS_FIX_K5 = 32768,
+    GLASS_FIX_K6 = 65536,
+    GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
+    GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
+    GLASS_FIX_TAUX_TAUY = 524288        //!< the sensor's tilt stays
 };
 
 //! What became of one image in calibrateGlassRig
@@ -122,9 +137,18 @@ public:
 CV_EXPORTS void write(FileStorage& fs, const String& name, const GlassWindow& window);
 CV_EXPORTS void read(const FileNode& node, GlassWindow& window, const GlassWindow& defaultValue = GlassWindow());
 
+class Camera;
+
 /** @brief A lens plus a window.
 
-Made once, used for many calls; every function of the module takes it in place of (cameraMatrix, distCoeffs, window).
+Made once, used for many calls; every function of the module has an overload that takes it in place of (cameraMatrix,
+distCoeffs, window), and the calibrators of several cameras take nothing else.
+
+Ptr copies share one camera; clone() makes another. There are no other implementations: the module needs more of a camera
+than its public functions, so that nobody else can derive from it.
+
+**Threads**: any number of threads may use one camera at a time in const calls and in the module's functions, which leave it
+as it is. The setters, and the calibrators, whose result it is, must have it for themselves; give each thread its clone().
 */
 class CV_EXPORTS_W RefractiveCamera
 {
@@ -160,12 +184,27 @@ public:
     */
     CV_WRAP static Ptr<RefractiveCamera> read(const String& filename, const String& name = String());
 
+    /** @brief Reads a camera from a map of an open file: the keys that write() writes.
+    @param node the map.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> read(const FileNode& node);
+
     virtual ~RefractiveCamera();
+
+    //! A camera of its own with the same lens, window and image size.
+    CV_WRAP virtual Ptr<RefractiveCamera> clone() const = 0;
 
     //! Writes the camera's keys into the map that is open in fs.
     virtual void write(FileStorage& fs) const = 0;
 
-    /** @brief Writes a file that read() reads: the whole of it or, if that fails (which throws), nothing.
+    /** @brief Writes the camera into an open file.
+    @param fs open for writing.
+    @param name of a new map for the camera's keys; empty: they go into the map that is open.
+    */
+    CV_WRAP void write(const Ptr<FileStorage>& fs, const String& name = String()) const;
+
+    /** @brief Writes a file that read() reads: the whole of it or, if that fails (which throws), nothing. A file of that name
+    is replaced.
     @param filename path; its extension chooses the format: .xml, .json, else YAML.
     */
     CV_WRAP void save(const String& filename) const;
@@ -180,6 +219,12 @@ public:
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
     CV_WRAP virtual void setImageSize(Size size) = 0;
+
+private:
+    friend class Camera;
+    RefractiveCamera();
+    RefractiveCamera(const RefractiveCamera&);
+    RefractiveCamera& operator=(const RefractiveCamera&);
 };
 
 /** @brief Projects object points through lens and window.
@@ -244,20 +289,21 @@ As cv::undistortPoints: without P the result is normalised coordinates, with P p
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z of the scene points, camera frame: one number for all, or N numbers; infinity is allowed; omitted =
-infinitely far.
+@param depth z of the scene points, camera frame: one number for all, or N numbers. Infinity is allowed, but must be said: for
+a window between equal media an infinitely far scene needs no correction at all. Python hands a number over as (depth, 0, 0,
+0); for exactly four points, where that could as well be a depth each, it is refused: give an array. It may be empty for a
+camera without window, where it has no effect.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
 */
 CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst,
-        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, InputArray depth = noArray(),
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, InputArray depth,
         InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
 
 //! @overload
 CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
-        InputArray depth = noArray(), InputArray R = noArray(), InputArray P = noArray(),
-        OutputArray status = noArray());
+        InputArray depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
 
 /** @brief Where the refracted rays of pixels meet a plane (@cite Plate2024, section 3.1.3).
 @param imagePoints N raw pixels.
@@ -280,7 +326,9 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth one number: the plane z = depth (camera frame); four numbers: the plane (a, b, c, d); empty: infinitely far.
+@param depth one number: the plane z = depth (camera frame), infinity allowed; four numbers: the plane (a, b, c, d), of which
+(a, 0, 0, 0), a plane through the camera, stands for the number a, as Python hands it over. Empty as in
+refractiveUndistortPoints.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
@@ -404,10 +452,10 @@ CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, I
 /** @brief Joint maximum-likelihood refinement of the window and the board poses.
 
 @param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
-@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
-view is allowed where the direct one is not empty.
 @param imagePointsDirect the same points of the same, unmoved target seen without the window: noArray() or an empty view
 where there is none. A NaN point was not seen.
+@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
+view is allowed where the direct one is not empty.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window in: the known values and, for glass-only views, the start of the normal. With pairs the
@@ -420,38 +468,40 @@ start of the normal comes from the data. Out: the estimate.
 
 Throws where the data cannot determine what is free; the text names the direction that is undetermined. Throws too if
 criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
+Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
+same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
 */
-CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-        InputArrayOfArrays imagePointsDirect, InputArray cameraMatrix, InputArray distCoeffs,
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
         CV_IN_OUT GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @overload
 The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
 */
-CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsRefracted,
-        InputArrayOfArrays imagePointsDirect, const Ptr<RefractiveCamera>& camera,
+CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @brief calibrateGlass with what the estimate is worth.
 @param objectPoints as above.
-@param imagePointsRefracted as above.
 @param imagePointsDirect as above.
+@param imagePointsRefracted as above.
 @param camera start and result.
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
 refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex); 0 where fixed.
 @param covariance PxP CV_64F in the same order, scaled by the residuals.
-@param perViewErrors Vx2 CV_64F: RMS of each view through the window and direct; NaN where there is none.
-@param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, refracted before direct;
+@param perViewErrors Vx2 CV_64F: RMS of each view direct and through the window; NaN where there is none.
+@param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, direct before refracted;
 columns parameters, then the pose (rvec, tvec) of each view; fixed parameters are 0.
 @param flags as above.
 @param criteria as above.
 */
 CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
         int flags = 0,
@@ -461,7 +511,7 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 The same for (cameraMatrix, distCoeffs, window).
 */
 CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted, InputArrayOfArrays imagePointsDirect,
+        InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         InputArray cameraMatrix, InputArray distCoeffs, CV_IN_OUT GlassWindow& window,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
@@ -471,10 +521,10 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 /** @brief calibrateGlass for a rigid pair of cameras: one board pose serves all images of a moment.
 
 @param objectPoints one array of N_i 3-D points per view.
-@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
 @param imagePointsDirect1 per view, camera 1 without window, or noArray().
-@param imagePointsRefracted2 per view, camera 2 through its window.
+@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
 @param imagePointsDirect2 per view, camera 2 without window, or noArray().
+@param imagePointsRefracted2 per view, camera 2 through its window.
 @param camera1 start and result.
 @param camera2 start and result.
 @param R 3x3, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS.
@@ -483,15 +533,15 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 @param tvecs object -> camera 1 of each view.
 @param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
 @param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx4: RMS of each view: refracted 1, direct 1, refracted 2, direct 2; NaN where there is none.
+@param perViewErrors Vx4: RMS of each view: direct 1, refracted 1, direct 2, refracted 2; NaN where there is none.
 @param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the start and camera 2's
 normal and distance follow from R and T.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels over all observed points.
 */
 CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
-        InputArrayOfArrays imagePointsRefracted1, InputArrayOfArrays imagePointsDirect1,
-        InputArrayOfArrays imagePointsRefracted2, InputArrayOfArrays imagePointsDirect2,
+        InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+        InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
@@ -513,22 +563,22 @@ it: one prior residual, weighed against the pixels' own noise, which is estimate
 known, one view determines the normal.
 
 @param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
-@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
-view was not taken, an empty list holds no view.
 @param imagePointsDirect per camera, per view: the same points of the same, unmoved target seen without the window; may be
 empty altogether.
+@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
+view was not taken, an empty list holds no view.
 @param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
-@param windowOfCamera per camera: which window it looks through; equal numbers share one. The first camera of a shared
-window brings its start, what the others see of it follows from R and T.
-@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity. Result with
-GLASS_FREE_EXTRINSICS. Not used for one camera.
+@param windowOfCamera per camera: which window it looks through; equal numbers share one, empty: each has its own. The first
+camera of a shared window brings its start, what the others see of it follows from R and T.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+Result with GLASS_FREE_EXTRINSICS. Not used for one camera.
 @param Ts 3x1, as Rs.
 @param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view of which
 nothing is left.
 @param tvecs object -> camera 1 translation of each view; as rvecs.
 @param stdDeviations Px1: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
 @param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx2C CV_64F: RMS of each image: refracted and direct of camera 1, of camera 2, ...; NaN where there is
+@param perViewErrors Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN where there is
 none or it was left out.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
@@ -541,19 +591,35 @@ and the frame of the normal, is the first camera's of the window.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop.
+@param cameraCovariances what an earlier step or a data sheet knows of each camera: an LxL covariance of its L lens parameters,
+or a PxP one of its P parameters in the order of stdDeviations; empty: nothing. A parameter with a variance is estimated,
+within it, and starts at the known value; a lens parameter without one is exact, whatever the flags; other window parameters
+are as the flags say (rows of the normal are not used). noArray(): nothing is known.
 @return RMS reprojection error in pixels over all points that were used.
 
 Throws as calibrateGlass, and with GLASS_ROBUST if fewer than half of all points fit.
 */
-CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
-        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
         OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
         int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12),
+        InputArrayOfArrays cameraCovariances = noArray());
+
+/** @overload
+The short form: lenses, windows and (with GLASS_FREE_EXTRINSICS) R and T are the result, in cameras, Rs and Ts.
+*/
+CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
+        const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
@@ -565,16 +631,48 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
 @param rvec object -> camera rotation vector.
 @param tvec object -> camera translation.
 @param useExtrinsicGuess rvec, tvec are the start.
-@return RMS reprojection error in pixels; NaN (and rvec, tvec NaN) if no pose was found.
+@param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as cv::solvePnPGeneric has it.
+@return false if there is no pose, as fewer than 4 points (3 with useExtrinsicGuess) were seen, they lie on a line, or no pose
+gives all of them an image; rvec and tvec are then left as they were, reprojectionError is empty.
 */
-CV_EXPORTS_W double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
+CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false);
+        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false,
+        OutputArray reprojectionError = noArray());
 
 //! @overload
-CV_EXPORTS_W double refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
+CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
-        bool useExtrinsicGuess = false);
+        bool useExtrinsicGuess = false, OutputArray reprojectionError = noArray());
+
+/** @brief All poses of a known target that explain what is seen: the minima of the reprojection error, the smallest first.
+
+A flat target has two, of which noise may choose the wrong one when it is small or seen straight on. Where both starts lead to
+one minimum there is one.
+
+@param objectPoints as refractiveSolvePnP.
+@param imagePoints as refractiveSolvePnP.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvecs object -> camera rotation vector of each pose, 3x1 CV_64F.
+@param tvecs object -> camera translation of each pose, 3x1 CV_64F.
+@param useExtrinsicGuess rvec, tvec are the start; the one pose that it leads to is found.
+@param rvec with useExtrinsicGuess.
+@param tvec with useExtrinsicGuess.
+@param reprojectionError Mx1 CV_64F, of each pose, as refractiveSolvePnP.
+@return the number M of poses, 0 if there is none.
+*/
+CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, bool useExtrinsicGuess = false,
+        InputArray rvec = noArray(), InputArray tvec = noArray(), OutputArray reprojectionError = noArray());
+
+//! @overload
+CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
+        bool useExtrinsicGuess = false, InputArray rvec = noArray(), InputArray tvec = noArray(),
+        OutputArray reprojectionError = noArray());
 
 //! @}
 

@@ -100,6 +100,20 @@ class refract_test(NewOpenCVTests):
         mrcal = cv.refract.RefractiveCamera.createMrcal('LENSMODEL_PINHOLE', np.array([2438., 2438, 644, 500]))
         self.assertEqual('LENSMODEL_PINHOLE', mrcal.lensModel())
 
+    def test_camera_is_cloned(self):
+        copy = self.camera1.clone()
+        copy.setWindow(cv.refract.GlassWindow())
+        self.assertEqual(1, len(self.camera1.window().thickness))
+        self.assertClose(copy.lensParameters(), self.camera1.lensParameters(), 0)
+
+    def test_camera_in_a_file_of_ones_own(self):
+        storage = cv.FileStorage('.yml', cv.FILE_STORAGE_WRITE | cv.FILE_STORAGE_MEMORY)
+        self.camera1.write(storage, 'left')
+        storage = cv.FileStorage(storage.releaseAndGetString(), cv.FILE_STORAGE_READ | cv.FILE_STORAGE_MEMORY)
+        camera = cv.refract.RefractiveCamera.read(storage.getNode('left'))
+        self.assertClose(self.camera1.lensParameters(), camera.lensParameters(), 0)
+        self.assertClose(self.camera1.window().normal, camera.window().normal, 1e-15)
+
     def test_camera_is_read(self):
         handle, filename = tempfile.mkstemp('.yml')
         os.close(handle)
@@ -167,7 +181,7 @@ class refract_test(NewOpenCVTests):
         self.assertClose(expected, normalized, 1e-12)
         pixels, status = cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window(), depth=depth, P=K)
         self.assertClose(expected*2438 + (644, 500), pixels, 1e-9)
-        self.assertEqual(30, len(cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window())[0]))
+        self.assertEqual(30, len(cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window(), depth)[0]))
 
     def test_map(self):
         new = np.array([[120., 0, 32], [0, 120, 24], [0, 0, 1]])
@@ -226,7 +240,7 @@ class refract_test(NewOpenCVTests):
         boards = [make_board()]*5
         direct, refracted = make_views(cv.refract.RefractiveCamera.create(K, D)), make_views(self.camera1)
         start = cv.refract.GlassWindow((0, 0, 1), 15, 1.5437, 50)
-        rms, window, rvecs, tvecs = cv.refract.calibrateGlass(boards, refracted, direct, K, D, start,
+        rms, window, rvecs, tvecs = cv.refract.calibrateGlass(boards, direct, refracted, K, D, start,
                                                               flags=cv.refract.GLASS_FREE_THICKNESS)
         self.assertLess(rms, 1e-6)
         self.assertClose(make_window().normal, window.normal, 1e-6)
@@ -235,7 +249,7 @@ class refract_test(NewOpenCVTests):
 
         camera = cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
         rms, rvecs, tvecs, deviations, covariance, per_view, jacobian = cv.refract.calibrateGlassExtended(
-            boards, refracted, None, camera)
+            boards, None, refracted, camera)
         self.assertLess(rms, 1e-6)
         self.assertClose(make_window().normal, camera.window().normal, 1e-6)
         self.assertEqual(((16, 1), (16, 16), (5, 2)), (deviations.shape, covariance.shape, per_view.shape))
@@ -245,8 +259,8 @@ class refract_test(NewOpenCVTests):
         bare = cv.refract.RefractiveCamera.create(K, D)
         first, second = (cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
                          for _ in range(2))
-        result = cv.refract.stereoCalibrateGlass(boards, make_views(self.camera1), make_views(bare),
-                                                 make_views(self.camera2, True), make_views(bare, True),
+        result = cv.refract.stereoCalibrateGlass(boards, make_views(bare), make_views(self.camera1),
+                                                 make_views(bare, True), make_views(self.camera2, True),
                                                  first, second, R.copy(), T.copy())
         self.assertLess(result[0], 1e-6)
         self.assertClose(make_window().normal, first.window().normal, 1e-6)
@@ -256,11 +270,17 @@ class refract_test(NewOpenCVTests):
         bare = cv.refract.RefractiveCamera.create(K, D)
         cameras = [cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
                    for _ in range(2)]
-        result = cv.refract.calibrateGlassRig(
-            [make_board()]*5, [make_views(self.camera1), make_views(self.camera2, True)],
-            [make_views(bare), make_views(bare, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
+        result = cv.refract.calibrateGlassRigExtended(
+            [make_board()]*5, [make_views(bare), make_views(bare, True)],
+            [make_views(self.camera1), make_views(self.camera2, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
             [], [], flags=cv.refract.GLASS_ROBUST)
         self.assertEqual(11, len(result))
+        rms, Rs, Ts, rvecs, tvecs = cv.refract.calibrateGlassRig(
+            [make_board()]*5, [make_views(bare), make_views(bare, True)],
+            [make_views(self.camera1), make_views(self.camera2, True)], [camera.clone() for camera in cameras], [],
+            [np.eye(3), R.copy()], [np.zeros(3), T.copy()])
+        self.assertLess(rms, 1e-6)
+        self.assertEqual((2, 5), (len(Rs), len(tvecs)))
         self.assertLess(result[0], 1e-6)
         self.assertClose(make_window().normal, cameras[0].window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, cameras[1].window().normal, 1e-6)
@@ -269,10 +289,14 @@ class refract_test(NewOpenCVTests):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
         pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
         for args in ((self.camera1,), (K, D, make_window())):
-            rms, rvec, tvec = cv.refract.refractiveSolvePnP(make_board(), pixels, *args, None, None)
-            self.assertLess(rms, 1e-6)
+            found, rvec, tvec, error = cv.refract.refractiveSolvePnP(make_board(), pixels, *args, None, None)
+            self.assertIs(True, found)
+            self.assertLess(error[0, 0], 1e-6)
             self.assertClose(pose[0], rvec, 1e-6)
             self.assertClose(pose[1], tvec, 1e-4)
+            count, rvecs, tvecs, errors = cv.refract.refractiveSolvePnPGeneric(make_board(), pixels, *args)
+            self.assertEqual((count, count, (count, 1)), (len(rvecs), len(tvecs), errors.shape))
+            self.assertClose(pose[1], tvecs[0], 1e-4)
 
 
 if __name__ == '__main__':

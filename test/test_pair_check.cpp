@@ -1,0 +1,141 @@
+// Pairs that are none: swapped arguments, images of different moments. And what must not be taken for it.
+#include "rig_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Contains;
+
+namespace {
+
+//! A camera and what it starts from.
+struct Mono
+{
+    explicit Mono(const GlassWindow& window, int views = 6, double sigma = 0.1, int seedOf = 800)
+        : random(seedOf), truth(paperCamera(window)), scene(makeScene(truth, views, random, sigma)) {}
+
+    std::string why(const PixelViews& direct, const PixelViews& refracted, int flags = 0, double thicknessFactor = 1)
+    {
+        GlassWindow window = truth->window();
+        window.normal = Vec3d(0, 0, 1);
+        for (double& t : window.thickness)
+            t *= thicknessFactor;
+        const Ptr<RefractiveCamera> camera = paperCamera(window);
+        const std::string text = thrown([&] { rms = calibrateGlass(scene.object, direct, refracted, camera, noArray(),
+                                                                   noArray(), flags); });
+        if (!text.empty())
+            CHECK(camera->window().normal == Vec3d(0, 0, 1));       // a refusal leaves the start alone
+        return text;
+    }
+
+    Random random;
+    Ptr<RefractiveCamera> truth;
+    CalibrationScene scene;
+    double rms = -1;
+};
+
+const GlassWindow STRAIGHT({ 0, 0, 1 }, 20, 1.5437, 50), SLANTED({ -0.2483, 0.0961, 1 }, 20, 1.5437, 50),
+                  HOUSING({ -0.1, 0.05, 1 }, 8, 1.49, 30, 1.333);
+
+//! Each view's pixels at another view's place.
+PixelViews rotated(PixelViews views)
+{
+    std::rotate(views.begin(), views.begin() + 1, views.end());
+    return views;
+}
+
+} // namespace
+
+TEST_CASE("Swapped direct and refracted points are named", "[pair_check]")
+{
+    for (const GlassWindow& window : { STRAIGHT, SLANTED, HOUSING })
+        for (int flags : { 0, (int)GLASS_FREE_THICKNESS, (int)GLASS_ROBUST })
+            for (int views : { 1, 6 })
+            {
+                Mono mono(window, views);
+                CAPTURE(window.normal, window.outerIndex, flags, views);
+                CHECK(mono.why(mono.scene.direct, mono.scene.refracted, flags) == "");
+                const std::string text = mono.why(mono.scene.refracted, mono.scene.direct, flags);
+                CAPTURE(mono.rms);
+                CHECK_THAT(text, Contains("swapped") && Contains("imagePointsDirect"));
+            }
+}
+
+TEST_CASE("Swapped points of a pair of cameras, and of a rig, are named", "[pair_check]")
+{
+    Random random(810);
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1);
+    const RigScene scene = makeRigScene(truth, 5, random, 0.1);
+    RigCall call(truth, scene, true);
+    std::swap(call.direct, call.refracted);
+    CHECK_THAT(thrown([&] { call.run(GLASS_FREE_EXTRINSICS); }), Contains("swapped"));
+    RigCall start(truth, scene, true);
+    Mat R = start.Rs[1], T = start.Ts[1];
+    CHECK_THAT(thrown([&] { stereoCalibrateGlass(scene.object, scene.refracted[0], scene.direct[0], scene.refracted[1],
+                                                 scene.direct[1], start.cameras[0], start.cameras[1], R, T, noArray(),
+                                                 noArray(), noArray(), noArray(), noArray()); }), Contains("swapped"));
+}
+
+TEST_CASE("Images of different moments given as pairs are named", "[pair_check]")
+{
+    for (const GlassWindow& window : { STRAIGHT, SLANTED, HOUSING })
+        for (int flags : { 0, (int)GLASS_FREE_THICKNESS, (int)GLASS_ROBUST })
+        {
+            Mono mono(window);
+            CAPTURE(window.normal, window.outerIndex, flags);
+            const std::string text = mono.why(mono.scene.direct, rotated(mono.scene.refracted), flags);
+            CAPTURE(mono.rms);
+            CHECK_THAT(text, !Contains("swapped"));
+            // A robust fit may also find that no pair holds, and do without.
+            if (!(flags & GLASS_ROBUST) || mono.rms < 0 || mono.rms > 0.2)
+                CHECK_THAT(text, Contains("same target"));
+        }
+}
+
+TEST_CASE("A fit that is bad for other reasons is returned", "[pair_check]")
+{
+    SECTION("a wrong thickness")
+    {
+        for (const GlassWindow& window : { STRAIGHT, SLANTED, HOUSING })
+            for (double factor : { 0.5, 0.9, 1.1, 2. })
+            {
+                Mono mono(window);
+                CAPTURE(window.normal, window.outerIndex, factor);
+                CHECK(mono.why(mono.scene.direct, mono.scene.refracted, 0, factor) == "");
+                CHECK(mono.rms > 0.1);
+            }
+        GlassWindow laminate({ -0.2483, 0.0961, 1 }, 10, 1.52, 50);
+        laminate.thickness = { 10, 1.52, 10 };
+        laminate.index = { 1.52, 1.48, 1.52 };
+        Mono mono(laminate);
+        CHECK(mono.why(mono.scene.direct, mono.scene.refracted, 0, 2.) == "");
+    }
+    SECTION("corners of 2 px")
+    {
+        Mono mono(SLANTED, 6, 2.);
+        CHECK(mono.why(mono.scene.direct, mono.scene.refracted) == "");
+        CHECK(mono.rms > 2);
+    }
+    SECTION("a thin window, which moves the corners less than their noise")
+    {
+        for (double thickness : { 0.1, 0.5, 1. })
+        {
+            Mono mono(GlassWindow({ -0.1, 0.05, 1 }, thickness, 1.5, 50), 6, 0.3);
+            CHECK(mono.why(mono.scene.direct, mono.scene.refracted) == "");
+        }
+    }
+    SECTION("wrong corners among right ones")
+    {
+        Mono mono(SLANTED);
+        displace(mono.scene.refracted, 0.3, mono.random);
+        CHECK(mono.why(mono.scene.direct, mono.scene.refracted) == "");
+        CHECK(mono.rms > 2);
+    }
+    SECTION("a robust fit leaves out boards that were moved")
+    {
+        Mono mono(SLANTED);
+        std::swap(mono.scene.refracted[0], mono.scene.refracted[1]);
+        CHECK(mono.why(mono.scene.direct, mono.scene.refracted, GLASS_ROBUST) == "");
+        CHECK(mono.rms < 0.2);
+    }
+}

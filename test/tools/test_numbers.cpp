@@ -1,0 +1,42 @@
+// Numbers in options and point files mean the same where people write a decimal comma.
+#include "german.hpp"
+#include "cli.hpp"
+#include "corners_vnl.hpp"
+#include "point_file.hpp"
+#include <cmath>
+
+using namespace tools;
+
+namespace {
+
+void checkAll()
+{
+    double number = 0;
+    CHECK((parseNumber("1.5", number) && number == 1.5));
+    CHECK((parseNumber("+1.5e2", number) && number == 150));
+    CHECK((parseNumber("nan", number) && std::isnan(number)));
+    for (const char* wrong : {"", "1,5", "1.5x", " 1.5", "+-1", "."})
+        CHECK(!parseNumber(wrong, number));
+    CHECK(parseNumbers("0.1,20.5, 3", "--x") == std::vector<double>{0.1, 20.5, 3});
+    CHECK(parseSize("1280x1024", "--image-size") == cv::Size(1280, 1024));
+    CHECK(moreThanZero()("1.5").empty());
+
+    const TemporaryFolder folder;
+    std::ofstream(folder / "corners.vnl") << "# filename x y level\na.png 100.25 200.5 0\na.png 1.25 2.5 -\n";
+    const auto images = readCornersVnl(folder / "corners.vnl", 2);
+    REQUIRE(images.size() == 1);
+    CHECK(images[0].second[0] == cv::Point2d(100.25, 200.5));
+    std::ofstream(folder / "points.csv") << "u,v\n100.25,200.5\nnan,nan\n";
+    const auto pixels = readPixels(folder / "points.csv");
+    REQUIRE(pixels.size() == 1);
+    CHECK(pixels[0] == cv::Point2d(100.25, 200.5));
+}
+
+} // namespace
+
+TEST_CASE("Numbers are read whatever the locale", "[locale]")
+{
+    checkAll();
+    const German german;
+    checkAll();
+}
