@@ -2,9 +2,10 @@
 #ifndef REFRACT_TEST_GERMAN_HPP
 #define REFRACT_TEST_GERMAN_HPP
 
-#include "run_tool.hpp"
+#include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <clocale>
+#include <cstdlib>
 #include <locale>
 
 struct CommaPoint : std::numpunct<char>

@@ -2,6 +2,8 @@
 #include "german.hpp"
 #include "scenes.hpp"
 
+#include <fstream>
+
 using namespace cv;
 using namespace cv::refract;
 using namespace scenes;

@@ -180,6 +180,18 @@ void readImages(const Options& o, const Target& target, bool quiet, RigCalibrati
     c.data = pairViews(target, sets, o.unpaired);
 }
 
+//! The module names its arguments; here they came from options.
+std::string inOptions(std::string text)
+{
+    const std::pair<const char*, const char*> words[] = {{R"(imagePointsDirect(\[\w+\])*)", "the --direct images"},
+                                                         {R"(imagePointsRefracted(\[\w+\])*)", "the --glass images"}};
+    for (const auto& word : words)
+        text = std::regex_replace(text, std::regex(word.first), word.second);
+    if (text.find("same target") != std::string::npos)
+        text += "; of a hand-held board say --unpaired";
+    return text;
+}
+
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     RigCalibration c;
@@ -225,18 +237,6 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!o.report.empty())
         c.influences = leaveOneOut(c.data, c.fit, c.options.flags, quiet);
     return c;
-}
-
-//! The module names its arguments; here they came from options.
-std::string inOptions(std::string text)
-{
-    const std::pair<const char*, const char*> words[] = {{R"(imagePointsDirect(\[\w+\])*)", "the --direct images"},
-                                                         {R"(imagePointsRefracted(\[\w+\])*)", "the --glass images"}};
-    for (const auto& word : words)
-        text = std::regex_replace(text, std::regex(word.first), word.second);
-    if (text.find("same target") != std::string::npos)
-        text += "; of a hand-held board say --unpaired";
-    return text;
 }
 
 //! What would fail at the end, after all the work.

@@ -4,6 +4,7 @@
 #include "corners_vnl.hpp"
 #include "point_file.hpp"
 #include <cmath>
+#include <fstream>
 
 using namespace tools;
 
