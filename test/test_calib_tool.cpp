@@ -364,7 +364,12 @@ TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the l
     SceneOptions options;
     options.moments = 14;
     writeScene(f, options, 112);
-    const ToolResult r = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
+    const ToolResult refused = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
+    INFO(refused.out << refused.err);
+    CHECK(refused.code == 1);
+    CHECK(mentions(refused.err, "--thickness=20 in place of 40"));
+
+    const ToolResult r = runTool(inputs(f, " --thickness=26 --index=1.5437 --lens=opencv4"));
     INFO(r.out << r.err);
     REQUIRE(r.code == 0);
     CHECK(mentions(r.out, "do not agree"));
@@ -374,6 +379,39 @@ TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the l
     const ToolResult right = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
     CHECK_FALSE(mentions(right.out, "do not agree"));
     CHECK(mentions(right.out, "refined"));
+}
+
+TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 14;
+    writeScene(f, options, 121);
+    const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl", out = " --out=" + f / "calib.yml";
+    const std::string board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
+    const struct { std::string command, says; } cases[] = {
+        {board + " --square=3.9" + images + PANE + known + out, "in place of 3.9"},
+        {board + " --square=39" + images + PANE + known + out + " --outer-index=1.333", "--outer-index=1 in place of 1.333"},
+        {board + " --square=39 --direct=" + f / "glass1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "exchanged"},
+        {board + " --square=39" + images + " --thickness=2 --index=1.5437" + known + out + " --no-robust", "in place of 2,"},
+        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "other.vnl" + PANE + known + out, "--unpaired"},
+        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "one image"},
+    };
+    const std::string glass = readFile(f / "glass1.vnl");       // under other names
+    std::string other;
+    for (char c : glass)
+        other += c == 'v' ? 'w' : c;
+    std::ofstream(f / "other.vnl") << other;
+    const size_t before = f.count();
+    for (const auto& c : cases)
+    {
+        const ToolResult r = runTool(c.command);
+        INFO(c.command << "\n" << r.out << r.err);
+        CHECK(r.code == 1);
+        CHECK(mentions(r.err, c.says));
+        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        CHECK(f.count() == before);
+    }
 }
 
 TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_tool]")

@@ -263,6 +263,7 @@ std::string Findings::verdict() const
 Findings judge(const RigCalibration& calibration, const Assessment& assessment)
 {
     Findings findings;
+    findings.weak = calibration.notices;
     judgeLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {

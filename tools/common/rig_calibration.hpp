@@ -35,6 +35,7 @@ struct RigCalibration
     NearFar nearFar;
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
+    std::vector<std::string> notices;           //!< what is wrong with the images as such, see data_checks.hpp
     WrongPoints wrong;                          //!< points and images, already taken out of data
     std::vector<std::string> inputs;            //!< files that it was made from
     Limits limits;
