@@ -81,10 +81,7 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
     if (equalMedia(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");
-    else if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
-        f.assumed.push_back(of(c, camera) + "the layers' thickness as given; with another medium outside, an error in it is "
-                            "largely taken up by the distance");
-    if (c.data.countPairs(camera) == 0)
+    if (c.data.countPairs(camera) == 0 && std.normalDeg[0] > WEAK_NORMAL_DEG)
         f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
                                "place, so tilt and board poses are partly exchangeable. Pairs are worth 30 to 90 times more "
                                "than such glass-only views");
@@ -212,11 +209,16 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
                          "the +-", c.lensSources[k].views, c.lensSources[k].rms)));
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
-        f.assumed.push_back("thickness as given");
+        f.assumed.push_back(equalMedia(window) ? "thickness as given" : "thickness as given (an error in it is largely taken up by "
+                                                 "the distance, as the media on its two sides differ)");
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX))
         f.assumed.push_back("index as given");
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
         f.assumed.push_back("distance as given");
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.data.countPairs(k))
+            f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not all the "
+                                "same way, which no residual shows");
     if (!c.wrong.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
     f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
