@@ -48,7 +48,7 @@ void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
     {
         const ErrorLimit& limit = limits.errors[i];
         f.limits.push_back({format("--max-error-at=%g:%g", limit.range, limit.error),
-                            format("expected error of the worst point at z = %g", limit.range), limit.error,
+                            format("expected error of the worst point at z = %g %s", limit.range, c.unit.c_str()), limit.error,
                             a.limits[i].worst(), c.unit});
     }
 }
@@ -62,15 +62,15 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
                          + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
     if (std.distance > WEAK_RELATIVE * window.distance)
-        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g. Near, "
+        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
-                                                window.distance, std.distance));
+                                                window.distance, std.distance, c.unit.c_str()));
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         if (std.thickness[i] > WEAK_RELATIVE * window.thickness[i])
-            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g; measure it with a "
-                                                    "caliper and give it by --thickness", window.thickness[i],
-                                                    std.thickness[i]));
+            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
+                                                    "a caliper and give it by --thickness", window.thickness[i],
+                                                    std.thickness[i], c.unit.c_str()));
         if (std.index[i] > WEAK_INDEX)
             f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
@@ -165,8 +165,8 @@ void judgeFit(const RigCalibration& c, int camera, Findings& f)
                                                 "corners too", 100. * covered));
     const Vec3d depth = workingDepth(c, camera);
     if (depth[2] < NARROW_RANGE * depth[0])
-        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g): vary it", depth[0],
-                                                depth[2]));
+        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
+                                                depth[2], c.unit.c_str()));
 }
 
 void judgeViews(const RigCalibration& c, int camera, Findings& f)
