@@ -495,6 +495,37 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
         CHECK_FALSE(mentions(page, outside));
 }
 
+TEST_CASE("refract_calib's report shows the images with their points", "[calib_tool]")
+{
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    {
+        WARN("SKIPPED: gnuplot is not installed");
+        return;
+    }
+    const TemporaryFolder f;
+    const std::string data = REFRACT_BUNDLED_DIR "/stereo";
+    const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --direct='" + data + "/direct1/*.jpg' --glass='" + data
+        + "/glass1/*.jpg'" + PANE + " --no-cross-validation --out=" + f / "calib.yml" + " --report=" + f / "report.html");
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const std::string page = readFile(f / "report.html");
+    size_t photos = 0;
+    for (size_t at = page.find("src=\"data:image/jpeg;base64,/9j/"); at != std::string::npos;
+         at = page.find("src=\"data:image/jpeg;base64,/9j/", at + 1))
+        photos++;
+    CHECK(photos == 24);
+    CHECK(mentions(page, "pair1, through the window: 30 points"));
+    CHECK(mentions(page, "<details"));
+    CHECK_FALSE(mentions(page, "nan"));
+
+    // Nothing that a terminal of 100 columns would break; the sentences below the tables may be longer.
+    std::istringstream lines(r.out);
+    for (std::string line; std::getline(lines, line) && line.compare(0, 8, "RMS over") != 0; )
+        CHECK(line.size() <= 100);
+    CHECK(mentions(r.out, "z = 490.7 mm"));
+    CHECK(mentions(r.out, "moved by 0.1 mm between direct and glass"));
+}
+
 TEST_CASE("refract_calib's summary says for machines what the table says, with the caller's labels", "[calib_tool]")
 {
     const TemporaryFolder f;

@@ -29,6 +29,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "report.hpp"
 #include "summary.hpp"
 #include "summary_json.hpp"
+#include "thumbnails.hpp"
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -182,6 +183,7 @@ void readImages(const Options& o, const Target& target, bool quiet, RigCalibrati
         requirePairs(sets);
     c.data = pairViews(target, sets, o.unpaired);
     c.notices = noticesOf(sets, c.data);
+    c.photos = photosOf(sets);
 }
 
 //! Lens and start, wrong points, the fit; then what a user would do instead.

@@ -4,6 +4,7 @@
 #include "report_template.hpp"
 #include "summary.hpp"
 #include "table.hpp"
+#include "thumbnails.hpp"
 #include <kainjow/mustache.hpp>
 #include <cmath>
 
@@ -195,6 +196,22 @@ data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progre
     return list;
 }
 
+data thumbnailsOf(const RigCalibration& c, Progress& progress)
+{
+    data list{data::type::list};
+    for (const Photo& photo : c.photos)
+    {
+        const Thumbnail thumbnail = makeThumbnail(c, photo);
+        data entry;
+        entry.set("uri", thumbnail.uri);
+        entry.set("caption", thumbnail.caption);
+        entry.set("class", thumbnail.suspect ? "suspect" : "");
+        list << entry;
+        progress.step();
+    }
+    return list;
+}
+
 } // namespace
 
 std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings, const std::string& commandLine, bool quiet)
@@ -226,7 +243,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     setParameters(page, c.fit, c.options.flags);
 
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount
-                                             + (int)assessment.errors.size() + 1, quiet);
+                                             + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
     page.set("error_figures", errorFigures(c, assessment, progress));
     data cameras{data::type::list}, heads{data::type::list};
     for (int k = 0; k < c.data.cameraCount; k++)
@@ -239,6 +256,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         heads << data{"name", name};
     }
     page.set("cameras", cameras);
+    page.set("photos", thumbnailsOf(c, progress));
+    page.set("has_photos", !c.photos.empty());
+    page.set("photo_count", std::to_string(c.photos.size()));
     page.set("camera_heads", heads);
 
     page.set("command", commandLine);

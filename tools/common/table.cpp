@@ -16,6 +16,7 @@ size_t width(const std::string& cell)
 }
 
 const size_t SCREEN = 100, GAP = 2, INDENT = 4;
+const size_t FIRST = 8;         // columns by which the first may be wider than the others
 
 size_t longestWord(const std::string& cell)
 {
@@ -58,36 +59,39 @@ void Table::add(const std::vector<std::string>& row)
     rows_.push_back(row);
 }
 
-//! As wide as the cells are; the widest columns give way, down to their longest word, where that is too wide.
+/** As wide as the cells are. Where that is too wide, headings are broken first, then the cells of the widest columns, those of the
+first, which name the row, last; words stay whole. */
 std::vector<size_t> Table::columnWidths() const
 {
-    std::vector<size_t> widths, words;
+    std::vector<size_t> widths, bodies, words;
     for (const auto& row : rows_)
-    {
-        widths.resize(std::max(widths.size(), row.size()));
-        words.resize(widths.size());
         for (size_t i = 0; i < row.size(); ++i)
         {
+            widths.resize(std::max(widths.size(), row.size()));
+            bodies.resize(widths.size());
+            words.resize(widths.size());
             widths[i] = std::max(widths[i], width(row[i]));
-            words[i] = std::max(words[i], longestWord(row[i]) + INDENT);
+            words[i] = std::max(words[i], longestWord(row[i]) + (i == 0 ? INDENT : 0));
+            if (&row != &rows_.front())
+                bodies[i] = std::max(bodies[i], width(row[i]));
         }
-    }
-    const auto total = [&widths] {
-        size_t sum = 0;
-        for (size_t w : widths)
-            sum += w + GAP;
-        return sum - GAP;
-    };
-    while (total() > SCREEN)
-    {
-        size_t widest = widths.size();
-        for (size_t i = 0; i < widths.size(); ++i)
-            if (widths[i] > words[i] && (widest == widths.size() || widths[i] > widths[widest]))
-                widest = i;
-        if (widest == widths.size())
-            break;
-        --widths[widest];
-    }
+    size_t total = 0;
+    for (size_t w : widths)
+        total += w + (total ? GAP : 0);
+    for (bool headings : {true, false})
+        for (size_t widest = 0; total > SCREEN && widest < widths.size(); )
+        {
+            widest = widths.size();
+            for (size_t i = 0; i < widths.size(); ++i)
+                if (widths[i] > (headings ? std::max(bodies[i], words[i]) : words[i]) &&
+                    (widest == widths.size() || widths[i] + (widest == 0 ? FIRST : 0) > widths[widest]))
+                    widest = i;
+            if (widest < widths.size())
+            {
+                --widths[widest];
+                --total;
+            }
+        }
     return widths;
 }
 
