@@ -387,15 +387,16 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
     SceneOptions options;
     options.moments = 14;
     writeScene(f, options, 121);
-    const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl", out = " --out=" + f / "calib.yml";
-    const std::string board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
+    const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl";
+    const std::string out = " --out=" + f / "calib.yml", board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
     const struct { std::string command, says; } cases[] = {
         {board + " --square=3.9" + images + PANE + known + out, "in place of 3.9"},
         {board + " --square=39" + images + PANE + known + out + " --outer-index=1.333", "--outer-index=1 in place of 1.333"},
         {board + " --square=39 --direct=" + f / "glass1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "exchanged"},
         {board + " --square=39" + images + " --thickness=2 --index=1.5437" + known + out + " --no-robust", "in place of 2,"},
         {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "other.vnl" + PANE + known + out, "--unpaired"},
-        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "one image"},
+        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out,
+         "one image"},
     };
     const std::string glass = readFile(f / "glass1.vnl");       // under other names
     std::string other;

@@ -48,7 +48,8 @@ TEST_CASE("Names that pair no image are refused, with both names and what to do"
     scenes::Random random(810);
     CHECK_NOTHROW(requirePairs(views("v", "v", 0.4, random)));
     const RigViewSets sets = views("air", "wet", 0.4, random);
-    CHECK_THROWS_WITH(requirePairs(sets), Catch::Contains("'air0'") && Catch::Contains("'wet0'") && Catch::Contains("--unpaired"));
+    CHECK_THROWS_WITH(requirePairs(sets), Catch::Contains("'air0'") && Catch::Contains("'wet0'")
+                                          && Catch::Contains("--unpaired"));
 
     RigViewSets oneGlass = sets;
     oneGlass.glass[0].views.resize(1);

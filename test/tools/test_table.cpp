@@ -29,7 +29,8 @@ TEST_CASE("A narrow table is one line a row", "[table]")
 
 TEST_CASE("A wide table fits 100 columns and loses no word", "[table]")
 {
-    const std::string words = "pair 1: near (z = 490.7 mm), in the right half, right edge farther by 30 degrees, and a few words more";
+    const std::string words = "pair 1: near (z = 490.7 mm), in the right half, right edge farther by 30 degrees, "
+                              "and a few words more";
     Table table({"", "camera 1 with a long name", "camera 2 with a long name", "±"});
     table.add({words, "opencv, 5 coefficients, 18 views, 0.019 px, refined", "2", "3"});
     table.add({std::string(120, 'x'), "", "", ""});      // cannot be broken

@@ -138,9 +138,9 @@ void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
             const ViewSet& set = (through ? sets.glass : sets.direct)[c];
             const size_t found = set.views.size(), count = found + set.withoutTarget.size();
             if (2 * found < count)
-                notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the inner "
-                                         "corners or dots), light and focus", found, count, through ? "images through the window"
-                                         : "direct images", c ? " of camera 2" : ""));
+                notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
+                                         "inner corners or dots), light and focus", found, count,
+                                         through ? "images through the window" : "direct images", c ? " of camera 2" : ""));
         }
 }
 
@@ -157,13 +157,13 @@ void requirePairs(const RigViewSets& sets)
         const std::set<std::string> directStems = stemsOf(direct, false), glassStems = stemsOf(glass, false);
         const std::vector<std::string> lost = common(directStems, glassStems);
         if (!lost.empty())
-            throw Failure(format("the target was not found in both images of any of the %zu pair(s) of --direct%s and --glass%s ('%s'): "
-                                 "check light and focus, or say --unpaired if no pairs are meant", lost.size(), suffix.c_str(),
-                                 suffix.c_str(), lost.front().c_str()));
+            throw Failure(format("the target was not found in both images of any of the %zu pair(s) of --direct%s and --glass%s "
+                                 "('%s'): check light and focus, or say --unpaired if no pairs are meant", lost.size(),
+                                 suffix.c_str(), suffix.c_str(), lost.front().c_str()));
         if (direct.views.size() > 1 && glass.views.size() > 1)
-            throw Failure("no image of --direct" + suffix + " (" + examples(directStems) + ") has the name of one of --glass" + suffix
-                          + " (" + examples(glassStems) + "), so there is no pair: where the board did not move between the two images, "
-                          "give them the same file name in two folders; if it did (hand-held), add --unpaired");
+            throw Failure("no image of --direct" + suffix + " (" + examples(directStems) + ") has the name of one of --glass"
+                          + suffix + " (" + examples(glassStems) + "), so there is no pair: where the board did not move between "
+                          "the two images, give them the same file name in two folders; if it did (hand-held), add --unpaired");
     }
 }
 

@@ -209,16 +209,16 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
                          "the +-", c.lensSources[k].views, c.lensSources[k].rms)));
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
-        f.assumed.push_back(equalMedia(window) ? "thickness as given" : "thickness as given (an error in it is largely taken up by "
-                                                 "the distance, as the media on its two sides differ)");
+        f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
+                            "the distance, as the media on its two sides differ)"));
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX))
-        f.assumed.push_back("index as given");
+        f.assumed.push_back("the index");
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
-        f.assumed.push_back("distance as given");
+        f.assumed.push_back("the distance");
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.data.countPairs(k))
-            f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not all the "
-                                "same way, which no residual shows");
+            f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
+                                "all the same way, which no residual shows");
     if (!c.wrong.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
     f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");

@@ -81,7 +81,7 @@ bool hasPairs(const RigData& data)
     return data.countPairs(0) + (data.cameraCount == 2 ? data.countPairs(1) : 0) > 0;
 }
 
-// One pane that shifts rays as the layers together do, at small angles.
+//! One pane that shifts rays as the layers together do, at small angles.
 GlassWindow onePane(const GlassWindow& window)
 {
     GlassWindow pane = window;
@@ -127,7 +127,8 @@ Explanation wrongScale(const Given& given)
         best = px;
         ratio = rig.cameras[0]->window().thickness[0] / pane.thickness[0];
     }
-    std::string sentence = format("--square=%.3g in place of %.4g%s", given.square / ratio, given.square, unitHint(ratio).c_str());
+    std::string sentence = format("--square=%.3g in place of %.4g%s", given.square / ratio, given.square,
+                                  unitHint(ratio).c_str());
     if (given.options.window.thickness.size() == 1)
     {
         sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0] * ratio, pane.thickness[0]);
@@ -349,8 +350,8 @@ void requireSensible(const RigCalibration& c, const Given& given)
         alone = std::max({alone, c.baselines.throughGlass[k], c.lensSources[k].rms});
     std::string fault;
     if (now > cornersLimit(c.data) || (now > ALONE_PX && now > ALONE * alone))
-        fault = format("the calibration does not fit its images: half of the corners lie more than %.2g px from where it puts them",
-                       now);
+        fault = format("the calibration does not fit its images: half of the corners lie more than %.2g px from where it puts "
+                       "them", now);
     else if (hasPairs(given.data) && !hasPairs(c.data))
         fault = format("all %d pair(s) contradict the calibration", given.data.countPairs(0)
                        + (given.data.cameraCount == 2 ? given.data.countPairs(1) : 0));

@@ -238,7 +238,8 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
               {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
     if (!assessment.advice.pairs.empty())
-        printRows(out, "What the next images would bring:", {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
+        printRows(out, "What the next images would bring:",
+                  {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
                   adviceRows(assessment.advice));
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);

@@ -59,8 +59,8 @@ void Table::add(const std::vector<std::string>& row)
     rows_.push_back(row);
 }
 
-/** As wide as the cells are. Where that is too wide, headings are broken first, then the cells of the widest columns, those of the
-first, which name the row, last; words stay whole. */
+/** As wide as the cells are. Where that is too wide, headings are broken first, then the cells of the widest columns, those of
+the first, which name the row, last; words stay whole. */
 std::vector<size_t> Table::columnWidths() const
 {
     std::vector<size_t> widths, bodies, words;

@@ -1,5 +1,4 @@
 #include "thumbnails.hpp"
-#include "drawing.hpp"
 #include "table.hpp"
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -80,7 +79,8 @@ Thumbnail makeThumbnail(const RigCalibration& c, const Photo& photo)
         const bool isUsed = std::find(used.begin(), used.end(), p) != used.end();
         found++;
         leftOut += !isUsed;
-        drawRing(picture, (p + Point2d(0.5, 0.5)) * scale - Point2d(0.5, 0.5), isUsed ? USED : LEFT_OUT, isUsed ? 3. : 5.);
+        circle(picture, (p + Point2d(0.5, 0.5)) * scale - Point2d(0.5, 0.5), isUsed ? 3 : 5, isUsed ? USED : LEFT_OUT, FILLED,
+               LINE_AA);
     }
     std::vector<uchar> bytes;
     imencode(".jpg", picture, bytes, {IMWRITE_JPEG_QUALITY, QUALITY});

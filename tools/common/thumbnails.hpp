@@ -6,7 +6,7 @@
 /* The images themselves, small, with the points that were found in them: what no number says is seen at a glance. */
 namespace tools {
 
-//! A small JPEG of an image with rings round its points, for the src of an <img>.
+//! A small JPEG of an image with dots on its points, for the src of an <img>.
 struct Thumbnail
 {
     std::string uri;            //!< "data:image/jpeg;base64,..."
