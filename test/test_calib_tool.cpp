@@ -366,7 +366,12 @@ TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the l
     SceneOptions options;
     options.moments = 14;
     writeScene(f, options, 112);
-    const ToolResult r = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
+    const ToolResult refused = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
+    INFO(refused.out << refused.err);
+    CHECK(refused.code == 1);
+    CHECK(mentions(refused.err, "--thickness=20 in place of 40"));
+
+    const ToolResult r = runTool(inputs(f, " --thickness=26 --index=1.5437 --lens=opencv4"));
     INFO(r.out << r.err);
     REQUIRE(r.code == 0);
     CHECK(mentions(r.out, "do not agree"));
@@ -376,6 +381,40 @@ TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the l
     const ToolResult right = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
     CHECK_FALSE(mentions(right.out, "do not agree"));
     CHECK(mentions(right.out, "refined"));
+}
+
+TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.moments = 14;
+    writeScene(f, options, 121);
+    const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl";
+    const std::string out = " --out=" + f / "calib.yml", board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
+    const struct { std::string command, says; } cases[] = {
+        {board + " --square=3.9" + images + PANE + known + out, "in place of 3.9"},
+        {board + " --square=39" + images + PANE + known + out + " --outer-index=1.333", "--outer-index=1 in place of 1.333"},
+        {board + " --square=39 --direct=" + f / "glass1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "exchanged"},
+        {board + " --square=39" + images + " --thickness=2 --index=1.5437" + known + out + " --no-robust", "in place of 2,"},
+        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "other.vnl" + PANE + known + out, "--unpaired"},
+        {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out,
+         "one image"},
+    };
+    const std::string glass = readFile(f / "glass1.vnl");       // under other names
+    std::string other;
+    for (char c : glass)
+        other += c == 'v' ? 'w' : c;
+    std::ofstream(f / "other.vnl") << other;
+    const size_t before = f.count();
+    for (const auto& c : cases)
+    {
+        const ToolResult r = runTool(c.command);
+        INFO(c.command << "\n" << r.out << r.err);
+        CHECK(r.code == 1);
+        CHECK(mentions(r.err, c.says));
+        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        CHECK(f.count() == before);
+    }
 }
 
 TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_tool]")
@@ -483,6 +522,37 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
         CHECK_FALSE(mentions(page, outside));
 }
 
+TEST_CASE("refract_calib's report shows the images with their points", "[calib_tool]")
+{
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    {
+        WARN("SKIPPED: gnuplot is not installed");
+        return;
+    }
+    const TemporaryFolder f;
+    const std::string data = REFRACT_BUNDLED_DIR "/stereo";
+    const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --direct='" + data + "/direct1/*.jpg' --glass='" + data
+        + "/glass1/*.jpg'" + PANE + " --no-cross-validation --out=" + f / "calib.yml" + " --report=" + f / "report.html");
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const std::string page = readFile(f / "report.html");
+    size_t photos = 0;
+    for (size_t at = page.find("src=\"data:image/jpeg;base64,/9j/"); at != std::string::npos;
+         at = page.find("src=\"data:image/jpeg;base64,/9j/", at + 1))
+        photos++;
+    CHECK(photos == 24);
+    CHECK(mentions(page, "pair1, through the window: 30 points"));
+    CHECK(mentions(page, "<details"));
+    CHECK_FALSE(mentions(page, " nan "));
+
+    // Nothing that a terminal of 100 columns would break; the sentences below the tables may be longer.
+    std::istringstream lines(r.out);
+    for (std::string line; std::getline(lines, line) && line.compare(0, 8, "RMS over") != 0; )
+        CHECK(line.size() <= 100);
+    CHECK(mentions(r.out, "z = 490.7 mm"));
+    CHECK(mentions(r.out, "moved by 0.1 mm between direct and glass"));
+}
+
 TEST_CASE("refract_calib's summary says for machines what the table says, with the caller's labels", "[calib_tool]")
 {
     const TemporaryFolder f;
@@ -515,7 +585,7 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     CHECK(json["held_out"]["views_without_result"] == 0);
     CHECK(json["held_out"]["length_rms"].get<double>() < 0.1);
     CHECK(json["fit"]["sigma_px"].get<double>() == Approx(SIGMA).epsilon(0.1));
-    REQUIRE(json["tolerances"].size() == 6);
+    REQUIRE(json["tolerances"].size() == 7);
     for (const auto& t : json["tolerances"])
         CHECK(t["point_worst"].get<double>() >= t["point_rms"].get<double>());
     // What is predicted is better than what is, and a pair better than one image of it.

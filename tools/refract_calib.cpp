@@ -20,13 +20,16 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 (or that of SOURCE_DATE_EPOCH).)";
 
 #include "cli.hpp"
+#include "data_checks.hpp"
 #include "file_output.hpp"
+#include "misfit.hpp"
 #include "pinhole_rig.hpp"
 #include "plot.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "summary.hpp"
 #include "summary_json.hpp"
+#include "thumbnails.hpp"
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -177,7 +180,27 @@ void readImages(const Options& o, const Target& target, bool quiet, RigCalibrati
         c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
         c.inputs.insert(c.inputs.end(), set->files.begin(), set->files.end());
     }
+    if (!o.unpaired)
+        requirePairs(sets);
     c.data = pairViews(target, sets, o.unpaired);
+    c.notices = noticesOf(sets, c.data);
+    c.photos = photosOf(sets);
+}
+
+//! Lens and start, wrong points, the fit; then what a user would do instead.
+void fit(const Options& o, RigCalibration& c, Progress& progress)
+{
+    c.start = startRig(c.data, c.options, c.lensSources);
+    if (o.robust)
+        c.wrong = dropWrongPoints(c.data, c.start, c.options.flags);
+    if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
+        c.start = startRig(c.data, c.options, c.lensSources);
+    progress.step();
+    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    c.residuals = residualsOf(c.data, c.fit);
+    progress.step();
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    progress.step();
 }
 
 //! The module names its arguments; here they came from options.
@@ -210,25 +233,17 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target, quiet, c);
+    const Given given{c.data, c.options, target.square()};
     Progress progress("calibrating", 5, quiet);
-    c.start = startRig(c.data, c.options, c.lensSources);
-    if (o.robust)
-        c.wrong = dropWrongPoints(c.data, c.start, c.options.flags);
-    if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
-        c.start = startRig(c.data, c.options, c.lensSources);
-    progress.step();
     try
     {
-        c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+        fit(o, c, progress);
     }
     catch (const cv::Exception& e)
     {
-        throw Failure(inOptions(e.err));
+        throw Failure(explainError(inOptions(e.err), given));
     }
-    c.residuals = residualsOf(c.data, c.fit);
-    progress.step();
-    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
-    progress.step();
+    requireSensible(c, given);
     if (!o.crossValidation)
         return c;
     c.heldOut = holdOut(c.data, c.fit, c.options.flags);

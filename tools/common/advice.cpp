@@ -101,7 +101,8 @@ public:
         for (const auto& range : ranges)
             for (const auto& place : places)
                 for (const auto& tilt : tilts)
-                    result.push_back({format("%s (z = %.4g), %s, %s", range.words, range.z, place.words, tilt.words),
+                    result.push_back({format("%s (z = %.4g %s), %s, %s", range.words, range.z, c_.unit.c_str(), place.words,
+                                             tilt.words),
                                       tilt.axis * (TILT_DEG * CV_PI / 180.), boardAt(place.at, range.z, tilt.axis)});
         return result;
     }

@@ -19,17 +19,18 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
             rows.push_back({map.pixels[i].x, map.pixels[i].y, halfWidth, halfHeight, map.total[i]});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.worst()
+    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.most()
          << "]\nunset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
-    return {plot.svg(), format("typically %.3g %s, at worst %.3g %s", map.median(), c.unit.c_str(), map.worst(), c.unit.c_str())};
+    return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, where the colours end; at worst %.3g %s",
+                               map.median(), c.unit.c_str(), map.most(), c.unit.c_str(), map.worst(), c.unit.c_str())};
 }
 
 Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
 {
     std::vector<std::vector<double>> rows, limits;
     for (const ErrorMap& map : assessment.errors)
-        rows.push_back({map.range, map.median(), map.worst(), map.worstOfPixels()});
+        rows.push_back({map.range, map.median(), map.worst(), map.worstOfPixels(), map.most()});
     for (const ErrorLimit& limit : c.limits.errors)
         limits.push_back({limit.range, limit.error});
     const Vec3d depth = workingDepth(c, 0);
@@ -47,7 +48,8 @@ Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
          << "set object 1 rectangle from " << depth[0] << ", graph 0 to " << depth[2]
          << ", graph 1 behind fillcolor rgb '#e0f2fe' fillstyle solid noborder\n"
          << "plot $errors using 1:3 with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb '#dc2626' title 'worst', "
-         << "$errors using 1:2 with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb '#0284c7' title 'typical', "
+         << "$errors using 1:5 with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb '#f59e0b' title '95 % within', "
+         << "$errors using 1:2 with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb '#0284c7' title 'half within', "
          << "$errors using 1:4 with lines dashtype 2 linewidth 2 linecolor rgb '#64748b' title 'worst, pixel noise alone'"
          << (limits.empty() ? "" : ", $limits using 1:2 with points pointtype 11 pointsize 1.2 linecolor rgb '#0f172a' title 'limit'")
          << "\n";

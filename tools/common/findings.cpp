@@ -48,7 +48,7 @@ void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
     {
         const ErrorLimit& limit = limits.errors[i];
         f.limits.push_back({format("--max-error-at=%g:%g", limit.range, limit.error),
-                            format("expected error of the worst point at z = %g", limit.range), limit.error,
+                            format("expected error of the worst point at z = %g %s", limit.range, c.unit.c_str()), limit.error,
                             a.limits[i].worst(), c.unit});
     }
 }
@@ -62,15 +62,15 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
                          + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
     if (std.distance > WEAK_RELATIVE * window.distance)
-        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g. Near, "
+        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
-                                                window.distance, std.distance));
+                                                window.distance, std.distance, c.unit.c_str()));
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         if (std.thickness[i] > WEAK_RELATIVE * window.thickness[i])
-            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g; measure it with a "
-                                                    "caliper and give it by --thickness", window.thickness[i],
-                                                    std.thickness[i]));
+            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
+                                                    "a caliper and give it by --thickness", window.thickness[i],
+                                                    std.thickness[i], c.unit.c_str()));
         if (std.index[i] > WEAK_INDEX)
             f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
@@ -81,10 +81,7 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
     if (equalMedia(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");
-    else if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
-        f.assumed.push_back(of(c, camera) + "the layers' thickness as given; with another medium outside, an error in it is "
-                            "largely taken up by the distance");
-    if (c.data.countPairs(camera) == 0)
+    if (c.data.countPairs(camera) == 0 && std.normalDeg[0] > WEAK_NORMAL_DEG)
         f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
                                "place, so tilt and board poses are partly exchangeable. Pairs are worth 30 to 90 times more "
                                "than such glass-only views");
@@ -168,8 +165,8 @@ void judgeFit(const RigCalibration& c, int camera, Findings& f)
                                                 "corners too", 100. * covered));
     const Vec3d depth = workingDepth(c, camera);
     if (depth[2] < NARROW_RANGE * depth[0])
-        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g): vary it", depth[0],
-                                                depth[2]));
+        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
+                                                depth[2], c.unit.c_str()));
 }
 
 void judgeViews(const RigCalibration& c, int camera, Findings& f)
@@ -212,11 +209,16 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
                          "the +-", c.lensSources[k].views, c.lensSources[k].rms)));
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
-        f.assumed.push_back("thickness as given");
+        f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
+                            "the distance, as the media on its two sides differ)"));
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX))
-        f.assumed.push_back("index as given");
+        f.assumed.push_back("the index");
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
-        f.assumed.push_back("distance as given");
+        f.assumed.push_back("the distance");
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.data.countPairs(k))
+            f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
+                                "all the same way, which no residual shows");
     if (!c.wrong.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
     f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
@@ -263,6 +265,7 @@ std::string Findings::verdict() const
 Findings judge(const RigCalibration& calibration, const Assessment& assessment)
 {
     Findings findings;
+    findings.weak = calibration.notices;
     judgeLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {

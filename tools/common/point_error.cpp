@@ -20,6 +20,13 @@ std::vector<double> sortedAnswers(const std::vector<double>& values)
     return answers;
 }
 
+//! The value below which a share of the answers lies.
+double quantile(const std::vector<double>& values, double share)
+{
+    const std::vector<double> answers = sortedAnswers(values);
+    return answers.empty() ? NOT_SEEN : answers[std::min(answers.size() - 1, (size_t)(share * answers.size()))];
+}
+
 double largest(const std::vector<double>& values)
 {
     const std::vector<double> answers = sortedAnswers(values);
@@ -50,11 +57,11 @@ double ErrorMap::worst() const { return largest(total); }
 
 double ErrorMap::worstOfPixels() const { return largest(ofPixels); }
 
-double ErrorMap::median() const
-{
-    const std::vector<double> answers = sortedAnswers(total);
-    return answers.empty() ? NOT_SEEN : answers[answers.size() / 2];
-}
+double ErrorMap::most() const { return quantile(total, 0.95); }
+
+double ErrorMap::median() const { return quantile(total, 0.5); }
+
+double ErrorMap::share() const { return total.empty() ? 0. : (double)sortedAnswers(total).size() / total.size(); }
 
 std::vector<Point2d> gridOver(Size image, int columns, Size& grid)
 {

@@ -20,7 +20,9 @@ struct ErrorMap
     bool seen() const;                  //!< anything at all
     double best() const;                //!< NaN if nothing is seen
     double worst() const;
+    double most() const;                //!< 95 % of what is seen is better: the worst may be a single point at a border
     double median() const;
+    double share() const;               //!< of the grid that is seen
     double worstOfPixels() const;
 };
 

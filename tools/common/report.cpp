@@ -4,6 +4,7 @@
 #include "report_template.hpp"
 #include "summary.hpp"
 #include "table.hpp"
+#include "thumbnails.hpp"
 #include <kainjow/mustache.hpp>
 #include <cmath>
 
@@ -42,11 +43,14 @@ std::string headline(const RigCalibration& c)
     if (!h.folds)
         return format("All %zu corners fit within %.3f px RMS; that is no proof, as nothing was held out.", c.residuals.size(),
                       c.fit.rms);
+    if (std::isnan(h.px))
+        return format("No board could be held out: without it the other images do not determine the calibration. The %zu corners of "
+                      "the fit itself lie within %.3f px RMS, which is no proof.", c.residuals.size(), c.fit.rms);
     std::string text = format("Boards that took no part in it are seen within %.3f px RMS", h.px);
     if (!std::isnan(h.lengthRms))
         text += format("; the distances between their corners, measured in 3-D, are right within %.3g %s RMS", h.lengthRms,
                        c.unit.c_str());
-    if (c.nearFar.done)
+    if (c.nearFar.done && !std::isnan(c.nearFar.windowNearToFar + c.nearFar.pinholeNearToFar))
         text += format(". Calibrated on the near boards alone it predicts the far ones within %.3f px, a pinhole calibrated "
                        "through the glass within %.3f px", c.nearFar.windowNearToFar, c.nearFar.pinholeNearToFar);
     return text + ".";
@@ -182,11 +186,27 @@ data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progre
     for (const ErrorMap& map : a.errors)
     {
         if (map.seen())
-            list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g", map.range),
+            list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
                            c.data.cameraCount == 2 ? "Over the image of camera 1; white parts are not seen by both cameras, "
                                                      "each picture has its own colour scale"
                                                    : "Over the image, for points on a plane square to the camera; each picture "
                                                      "has its own colour scale");
+        progress.step();
+    }
+    return list;
+}
+
+data thumbnailsOf(const RigCalibration& c, Progress& progress)
+{
+    data list{data::type::list};
+    for (const Photo& photo : c.photos)
+    {
+        const Thumbnail thumbnail = makeThumbnail(c, photo);
+        data entry;
+        entry.set("uri", thumbnail.uri);
+        entry.set("caption", thumbnail.caption);
+        entry.set("class", thumbnail.suspect ? "suspect" : "");
+        list << entry;
         progress.step();
     }
     return list;
@@ -215,14 +235,15 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
     setTable(page, "held_out", heldOutRows(c));
-    setTable(page, "point_errors", pointErrorRows(assessment));
+    setTable(page, "point_errors", pointErrorRows(c, assessment));
     setTable(page, "tolerances", toleranceRows(assessment));
     setTable(page, "advice", assessment.advice.pairs.empty() ? std::vector<SummaryRow>() : adviceRows(assessment.advice));
+    page.set("point_error_note", pointErrorNote(c, assessment));
     page.set("unit", c.unit);
     setParameters(page, c.fit, c.options.flags);
 
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount
-                                             + (int)assessment.errors.size() + 1, quiet);
+                                             + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
     page.set("error_figures", errorFigures(c, assessment, progress));
     data cameras{data::type::list}, heads{data::type::list};
     for (int k = 0; k < c.data.cameraCount; k++)
@@ -235,6 +256,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         heads << data{"name", name};
     }
     page.set("cameras", cameras);
+    page.set("photos", thumbnailsOf(c, progress));
+    page.set("has_photos", !c.photos.empty());
+    page.set("photo_count", std::to_string(c.photos.size()));
     page.set("camera_heads", heads);
 
     page.set("command", commandLine);

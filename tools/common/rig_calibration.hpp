@@ -21,6 +21,15 @@ struct Limits
     std::vector<ErrorLimit> errors;
 };
 
+//! An image that was searched for the target.
+struct Photo
+{
+    std::string path, stem;
+    int camera;
+    bool glass;
+    std::vector<cv::Point2d> points;            //!< found; empty: the target was not
+};
+
 //! Everything that the table, the JSON summary and the report speak of; what is derived from it is in assessment.hpp.
 struct RigCalibration
 {
@@ -35,6 +44,8 @@ struct RigCalibration
     NearFar nearFar;
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
+    std::vector<Photo> photos;
+    std::vector<std::string> notices;           //!< what is wrong with the images as such, see data_checks.hpp
     WrongPoints wrong;                          //!< points and images, already taken out of data
     std::vector<std::string> inputs;            //!< files that it was made from
     Limits limits;

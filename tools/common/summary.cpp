@@ -12,6 +12,8 @@ namespace tools {
 
 namespace {
 
+const double FAR_WORSE = 5.;        // the worst point against 95 % of all
+
 std::string estimateOr(double value, double std, const char* otherwise)
 {
     return std > 0 ? plusMinus(value, std) : format("%.6g (%s)", value, otherwise);
@@ -97,7 +99,7 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
         const std::vector<double> std = deviation(k).normalDeg;
         return format("%.2g, %.2g", std[0], std[1]);
     }));
-    rows.push_back(row(c, "distance", [&](int k) {
+    rows.push_back(row(c, "distance, " + c.unit, [&](int k) {
         const GlassWindow w = window(k);
         return w.innerIndex == w.outerIndex ? std::string("no effect") : estimateOr(w.distance, deviation(k).distance, "given");
     }));
@@ -105,7 +107,7 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
     for (size_t i = 0; i < first.thickness.size(); i++)
     {
         const std::string layer = first.thickness.size() == 1 ? "" : format(" of layer %zu", i + 1);
-        rows.push_back(row(c, "thickness" + layer,
+        rows.push_back(row(c, "thickness" + layer + ", " + c.unit,
                            [&](int k) { return estimateOr(window(k).thickness[i], deviation(k).thickness[i], "given"); }));
         rows.push_back(row(c, "index" + layer,
                            [&](int k) { return estimateOr(window(k).index[i], deviation(k).index[i], "given"); }));
@@ -163,15 +165,28 @@ std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
     return rows;
 }
 
-std::vector<SummaryRow> pointErrorRows(const Assessment& a)
+std::vector<SummaryRow> pointErrorRows(const RigCalibration& c, const Assessment& a)
 {
     std::vector<SummaryRow> rows;
     for (const ErrorMap& map : a.errors)
-        rows.push_back({format("z = %.4g", map.range),
-                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.worst()),
-                                                              format("%.3g", map.worstOfPixels())}
-                                   : std::vector<std::string>{"not seen", "-", "-"}});
+        rows.push_back({format("z = %.4g %s", map.range, c.unit.c_str()),
+                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.most()),
+                                                              format("%.3g", map.worst()), format("%.3g", map.worstOfPixels()),
+                                                              format("%.0f %%", 100. * map.share())}
+                                   : std::vector<std::string>{"-", "-", "-", "-", "0 %"}});
     return rows;
+}
+
+std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
+{
+    const bool stereo = c.data.cameraCount == 2;
+    std::string note = stereo ? "Seen: the share of camera 1's image that camera 2 sees too at that z."
+                              : "Seen: the share of the image whose rays meet the plane at that z.";
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return !map.seen(); }))
+        note += stereo ? " 0 %: no point there is in both images." : " 0 %: that z lies within or before the window.";
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE * map.most(); }))
+        note += " Where the worst is far above the rest it is a few points at the border of what is seen: leave them out.";
+    return note;
 }
 
 std::vector<SummaryRow> toleranceRows(const Assessment& a)
@@ -218,11 +233,13 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     printRows(out, "On boards that took no part (held out in turn):", {"", "lens and window", "pinhole through glass"},
               heldOutRows(c));
     printRows(out, "Expected error of a measured point, " + c.unit + " (one standard deviation, 3-D):",
-              {"", "typical", "worst", "of pixel noise"}, pointErrorRows(assessment));
+              {"", "half within", "95 % within", "worst", "of pixel noise", "seen"}, pointErrorRows(c, assessment));
+    out << pointErrorNote(c, assessment) << '\n';
     printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
               {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
     if (!assessment.advice.pairs.empty())
-        printRows(out, "What the next images would bring:", {"", "normal +- deg", "worst point", "calibration's part"},
+        printRows(out, "What the next images would bring:",
+                  {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
                   adviceRows(assessment.advice));
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);

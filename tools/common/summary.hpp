@@ -20,8 +20,11 @@ std::vector<SummaryRow> fitRows(const RigCalibration& calibration);
 //! On boards that the calibration has not seen; cells: lens and window, a pinhole calibrated through the glass.
 std::vector<SummaryRow> heldOutRows(const RigCalibration& calibration);
 
-//! Expected error of a measured point; cells: typical, worst, worst of the pixel noise alone.
-std::vector<SummaryRow> pointErrorRows(const Assessment& assessment);
+//! Expected error of a measured point; cells: half of the image within, 95 % within, worst, worst of pixel noise alone, seen.
+std::vector<SummaryRow> pointErrorRows(const RigCalibration& calibration, const Assessment& assessment);
+
+//! How to read them.
+std::string pointErrorNote(const RigCalibration& calibration, const Assessment& assessment);
 
 //! Cells: points RMS, worst point, lengths in parts of a thousand.
 std::vector<SummaryRow> toleranceRows(const Assessment& assessment);

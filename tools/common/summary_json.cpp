@@ -164,7 +164,7 @@ void addAssessment(Json& json, const Assessment& a)
 {
     Json errors = Json::array(), tolerances = Json::array();
     for (const ErrorMap& map : a.errors)
-        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"worst", map.worst()},
+        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.most()}, {"worst", map.worst()}, {"share_seen", map.share()},
                           {"worst_of_pixel_noise", map.worstOfPixels()}});
     for (const Tolerance& t : a.tolerances)
         tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});

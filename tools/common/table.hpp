@@ -8,7 +8,8 @@
 
 namespace tools {
 
-//! A plain text table: the first column flush left, the others flush right.
+/** A plain text table: the first column flush left, the others flush right. Fits a terminal of 100 columns: where it is wider,
+the cells of the widest columns are broken between words. */
 class Table
 {
 public:
@@ -16,6 +17,8 @@ public:
     void add(const std::vector<std::string>& row);      //!< missing cells are empty
     void print(std::ostream& out) const;
 private:
+    std::vector<size_t> columnWidths() const;
+
     std::vector<std::vector<std::string>> rows_;
 };
 

@@ -19,6 +19,7 @@ namespace {
 const double THICKNESS_MM = 0.1;
 const double INDEX = 0.001;
 const double ARC_MINUTE = CV_PI / 180. / 60.;
+const double NUDGE_MM = 0.1;
 const int GRID_COLUMNS = 9;
 
 //! One cause: the wrong values that are calibrated with, and how it bends the images (empty: not at all).
@@ -28,6 +29,7 @@ struct Cause
     int camera;                         //!< -1: all
     std::function<void(GlassWindow&)> spoil;
     std::vector<Vec3d> tilts;           //!< of the outer surface, each tried on its own, in the frame of its camera
+    bool nudge = false;                 //!< they are not tilts but shifts of the boards seen through the window, camera 1
 
     bool concerns(int k) const { return camera < 0 || camera == k; }
 };
@@ -98,7 +100,7 @@ public:
     static void bend(const Rig& truth, const Cause& cause, int camera, const std::vector<Point3d>& points,
                      const Vec3d& tilt, std::vector<Point2d>& pixels)
     {
-        if (!cause.concerns(camera) || tilt == Vec3d())
+        if (cause.nudge || !cause.concerns(camera) || tilt == Vec3d())
             return;
         std::vector<Point3d> inCamera;
         for (const Point3d& X : points)
@@ -115,9 +117,32 @@ private:
     std::vector<double> range_;
 };
 
+//! The observations as they would be had all boards moved between their direct and their glass image.
+RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
+{
+    RigData data = c.data;
+    for (size_t k = 0; k < c.fit.moments.size(); k++)
+        for (int camera = 0; camera < data.cameraCount; camera++)
+        {
+            std::vector<Point2d>& pixels = data.moments[c.fit.moments[k]].glass[camera];
+            std::vector<Point2d> before, after;
+            for (bool moved : {false, true})
+            {
+                Vec3d rvec = c.fit.rvecs[k], tvec = c.fit.tvecs[k] + (moved ? shift : Vec3d());
+                poseInCamera(c.fit.rig, camera, rvec, tvec);
+                refractiveProjectPoints(data.objectPoints, rvec, tvec, c.fit.rig.cameras[camera], moved ? after : before);
+            }
+            for (size_t i = 0; i < pixels.size(); i++)
+                pixels[i] += after[i] - before[i];
+        }
+    return data;
+}
+
 //! The observations as they would be through a wedge.
 RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
 {
+    if (cause.nudge)
+        return nudgedData(c, tilt);
     RigData data = c.data;
     for (size_t k = 0; k < c.fit.moments.size(); k++)
     {
@@ -200,6 +225,12 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
         causes.push_back({"wedge of 1 arc minute between the faces" + whose, target, nullptr,
                           {ARC_MINUTE * across, ARC_MINUTE * window.normal.cross(across)}});
+    }
+    if (c.data.countPairs(0) + (c.data.cameraCount == 2 ? c.data.countPairs(1) : 0))
+    {
+        const double shift = NUDGE_MM * millimetre;
+        causes.push_back({"boards moved by 0.1 mm between direct and glass", -1, nullptr,
+                          {Vec3d(shift, 0, 0), Vec3d(0, shift, 0), Vec3d(0, 0, shift)}, true});
     }
     const GlassWindow first = c.fit.rig.cameras[0]->window();
     if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))

@@ -15,8 +15,9 @@ struct Tolerance
     double lengths = NONE;          //!< relative change of distances between neighbouring points of the grid, RMS
 };
 
-/** Thickness, index and wedge of the thickest layer of each window and the index of the scene's medium where it differs;
-what the images themselves determined is left out.
+/** Thickness, index and wedge of the thickest layer of each window, the index of the scene's medium where it differs, and with
+pairs a shift of all boards between their direct and their glass images (putting the window in moves camera or board). What
+the images themselves determined is left out.
 @param millimetre in the unit of length */
 std::vector<Tolerance> analyseTolerances(const RigCalibration& calibration, double millimetre, bool quiet);
 

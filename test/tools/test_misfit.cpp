@@ -1,0 +1,120 @@
+// Mistakes in what is given, told from images that do not fit.
+#include "misfit.hpp"
+#include "paper_rig.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+//! Pairs of the paper's rig as they are, with all that is given right.
+Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
+{
+    const Rig rig = paperRig(cameras);
+    Given given;
+    given.square = 39.;
+    given.data.cameraCount = cameras;
+    given.data.objectPoints = board(6, 5);
+    given.options.window = rig.cameras[0]->window();
+    given.options.window.distance = 0.;         // as the tool has it with air on both sides
+    for (int c = 0; c < cameras; c++)
+    {
+        given.data.imageSize[c] = Size(1280, 1024);
+        given.options.known[c] = withWindow(rig.cameras[c], GlassWindow());
+    }
+    for (int i = 0; i < 6; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        const Vec3d rvec = random.vector(0.4);
+        given.data.moments.push_back(observe(rig, given.data.objectPoints, rvec, tvec, true, 0.1, random));
+        given.data.moments.back().stem = "pair" + std::to_string(i);
+        if (i % 2 && outermostRows)     // the glass image shows a part of the board that begins a row later
+        {
+            std::vector<Point3d> later = given.data.objectPoints;
+            for (Point3d& X : later)
+                X.y += outermostRows * given.square;
+            given.data.moments.back().glass[0] = observe(rig, later, rvec, tvec, false, 0.1, random).glass[0];
+        }
+    }
+    return given;
+}
+
+std::string explained(const Given& given)
+{
+    std::string text;
+    for (const std::string& sentence : explainMisfit(given))
+        text += sentence + '\n';
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("A wrong square, thickness, index or medium is found and named", "[misfit]")
+{
+    scenes::Random random(910);
+    CAPTURE(scenes::seed());
+    const Given right = rightlyGiven(1, random);
+    CHECK(explained(right) == "");
+
+    Given square = right;
+    square.square = 3.9;
+    for (Point3d& X : square.data.objectPoints)
+        X *= 0.1;
+    CHECK_THAT(explained(square), (Catch::Contains("--square=39") || Catch::Contains("--square=38.9"))
+                                  && Catch::Contains("in place of 3.9") && Catch::Contains("unit"));
+
+    Given thickness = right;
+    thickness.options.window.thickness[0] = 0.787;
+    CHECK_THAT(explained(thickness), (Catch::Contains("--thickness=19.9") || Catch::Contains("--thickness=20"))
+                                     && Catch::Contains("in place of 0.787") && Catch::Contains("unit"));
+
+    Given index = right;
+    index.options.window.index[0] = 1.05;
+    CHECK_THAT(explained(index), Catch::Contains("--index=1.54"));
+
+    Given water = right;
+    water.options.window.outerIndex = 1.333;
+    water.options.flags |= GLASS_FREE_DISTANCE;
+    CHECK_THAT(explained(water), Catch::Contains("--outer-index=1 in place of 1.333"));
+}
+
+TEST_CASE("Images exchanged, moved or of other moments are found and named", "[misfit]")
+{
+    scenes::Random random(920);
+    CAPTURE(scenes::seed());
+    const Given right = rightlyGiven(1, random), stereo = rightlyGiven(2, random);
+    CHECK(explained(stereo) == "");
+
+    Given swapped = right;
+    for (Moment& m : swapped.data.moments)
+        std::swap(m.direct[0], m.glass[0]);
+    CHECK_THAT(explained(swapped), Catch::Contains("--direct and --glass exchanged"));
+
+    Given second = stereo;
+    for (Moment& m : second.data.moments)
+        std::swap(m.direct[1], m.glass[1]);
+    CHECK_THAT(explained(second), Catch::Contains("--direct2 and --glass2 exchanged"));
+
+    Given moved = right;
+    for (size_t i = 0; i < moved.data.moments.size(); i++)
+        moved.data.moments[i].glass[0] = right.data.moments[(i + 1) % 6].glass[0];
+    CHECK_THAT(explained(moved), Catch::Contains("--unpaired") && !Catch::Contains("--square"));
+
+    Given moments = stereo;
+    for (size_t i = 0; i < moments.data.moments.size(); i++)
+        for (bool glass : {false, true})
+            (glass ? moments.data.moments[i].glass : moments.data.moments[i].direct)[1] =
+                (glass ? stereo.data.moments[(i + 1) % 6].glass : stereo.data.moments[(i + 1) % 6].direct)[1];
+    CHECK_THAT(explained(moments), Catch::Contains("not the same moment"));
+
+    CHECK_THAT(explained(rightlyGiven(1, random, 1)), Catch::Contains("in 3 of 6 pairs") && Catch::Contains("--size"));
+}
+
+TEST_CASE("What the library says is told in the tool's words", "[misfit]")
+{
+    scenes::Random random(930);
+    const std::string text = explainError("the calibration did not converge in 1000 iterations; raise criteria.maxCount, or fix "
+                                          "what the views hardly determine", rightlyGiven(1, random));
+    CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("--free"));
+}

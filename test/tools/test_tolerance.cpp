@@ -1,0 +1,72 @@
+// What a wrong value does to measured points, against calibrations from observations that are wrong in that way.
+#include "paper_rig.hpp"
+#include "tolerance.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+//! One camera, eight pairs without noise, all boards moved between the direct and the glass image.
+RigData pairsMovedBy(const Rig& rig, const Vec3d& shift)
+{
+    scenes::Random random(1010);
+    RigData data;
+    data.objectPoints = board(6, 5);
+    data.imageSize[0] = Size(1280, 1024);
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
+        data.moments.push_back(observe(rig, data.objectPoints, rvec, tvec, true, 0., random));
+        data.moments.back().glass[0] = observe(rig, data.objectPoints, rvec, tvec + shift, false, 0., random).glass[0];
+    }
+    return data;
+}
+
+RigCalibration calibrated(const Rig& rig, const Vec3d& shift)
+{
+    RigCalibration c;
+    c.data = pairsMovedBy(rig, shift);
+    c.start = rig;
+    c.lensSources.resize(1);
+    c.fit = fitRig(c.data, rig, allMoments(c.data), 0);
+    c.residuals = residualsOf(c.data, c.fit);
+    return c;
+}
+
+} // namespace
+
+TEST_CASE("What a nudge between direct and glass images does is told, and is much", "[tolerance]")
+{
+    const Rig rig = paperRig(1);
+    const RigCalibration still = calibrated(rig, Vec3d());
+    const std::vector<Tolerance> tolerances = analyseTolerances(still, 1., true);
+    REQUIRE(tolerances.size() == 4);
+    const Tolerance& nudge = tolerances.back();
+    CHECK_THAT(nudge.what, Catch::Contains("moved by 0.1 mm"));
+    REQUIRE(nudge.done);
+
+    // A calibration of pairs that were nudged: its normal is wrong by most of a degree, its points by what was said at most.
+    double worst = 0., turned = 0.;
+    for (const Vec3d& shift : {Vec3d(0.1, 0, 0), Vec3d(0, 0.1, 0), Vec3d(0.07, -0.07, 0)})
+    {
+        const RigCalibration nudged = calibrated(rig, shift);
+        const Ptr<RefractiveCamera> is = rig.cameras[0], found = nudged.fit.rig.cameras[0];
+        turned = std::max(turned, std::acos(is->window().normal.dot(found->window().normal)) * 180. / CV_PI);
+        std::vector<Point2d> pixels{{0, 0}, {640, 512}, {1279, 0}, {0, 1023}, {1279, 1023}};
+        std::vector<Point3d> right, wrong;
+        refractivePointsOnPlane(pixels, right, is, Vec4d(0, 0, 1, workingDepth(still, 0)[2]));
+        refractivePointsOnPlane(pixels, wrong, found, Vec4d(0, 0, 1, workingDepth(still, 0)[2]));
+        for (size_t i = 0; i < right.size(); i++)
+            worst = std::max(worst, norm(wrong[i] - right[i]));
+    }
+    CHECK(turned > 0.5);
+    CHECK(worst < 1.05 * nudge.worst);
+    CHECK(worst > 0.8 * nudge.worst);
+
+    RigCalibration glassOnly = still;
+    for (Moment& m : glassOnly.data.moments)
+        m.direct[0].clear();
+    CHECK(analyseTolerances(glassOnly, 1., true).size() == 3);
+}
