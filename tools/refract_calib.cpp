@@ -298,6 +298,8 @@ int main(int argc, char** argv)
         for (const LimitCheck& limit : findings.limits)
             if (!limit.met())
                 std::cerr << "refract_calib: limit not met: " << limit.sentence() << ".\n";
+        for (const std::string& sentence : findings.contradictions)
+            std::cerr << "refract_calib: " << sentence << ".\n";
         return findings.pass() ? DONE : LIMIT_NOT_MET;
     });
 }

@@ -29,6 +29,7 @@ Assessment assess(const RigCalibration& c, bool quiet)
         result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, COLUMNS));
     result.tolerances = analyseTolerances(c, 1. / millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
+    result.contradictions = contradictedValues(c);
     return result;
 }
 

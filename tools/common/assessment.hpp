@@ -2,6 +2,7 @@
 #define REFRACT_TOOLS_ASSESSMENT_HPP
 
 #include "advice.hpp"
+#include "given_values.hpp"
 #include "point_error.hpp"
 #include "tolerance.hpp"
 
@@ -14,6 +15,7 @@ struct Assessment
     std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
     std::vector<Tolerance> tolerances;
     Advice advice;
+    std::vector<Contradiction> contradictions;
 };
 
 Assessment assess(const RigCalibration& calibration, bool quiet);

@@ -37,12 +37,55 @@ std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<in
     return images;
 }
 
+//! The cameras start at what is known of them: the prior's centre must not follow an earlier fit.
+void startAtKnown(Rig& rig)
+{
+    for (size_t c = 0; c < rig.known.size(); c++)
+    {
+        const KnownCamera& known = rig.known[c];
+        if (known.covariance.empty())
+            continue;
+        rig.cameras[c]->setLensParameters(known.lens);
+        GlassWindow window = rig.cameras[c]->window();
+        if (known.covariance.rows > known.lens.rows)
+        {
+            window.thickness = known.thickness;
+            window.index = known.index;
+        }
+        rig.cameras[c]->setWindow(window);
+    }
+}
+
+std::vector<Mat> covariancesOf(const Rig& rig)
+{
+    std::vector<Mat> covariances;
+    for (const KnownCamera& known : rig.known)
+        covariances.push_back(known.covariance);
+    return covariances;
+}
+
+//! How many numbers are known with a covariance.
+int countPriors(const Rig& rig, int flags)
+{
+    int count = 0;
+    for (size_t c = 0; c < rig.known.size(); c++)
+    {
+        const Mat covariance = rig.known[c].covariance;
+        const int lens = rig.known[c].lens.rows;
+        const bool ownsWindow = c == 0 || !(flags & GLASS_SHARED_WINDOW);
+        for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
+            count += covariance.at<double>(i, i) > 0;
+    }
+    return count;
+}
+
 } // namespace
 
 Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags)
 {
     Fit fit;
     fit.rig = start.clone();
+    startAtKnown(fit.rig);
     fit.moments = moments;
     const bool stereo = data.cameraCount == 2;
     std::vector<int> windows = {0};
@@ -60,7 +103,8 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
                                 fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
                                 fit.inliers, fit.otherMinima, rigFlags, noArray(),
                                 TermCriteria(TermCriteria::COUNT + TermCriteria::EPS,
-                                             flags & GLASS_ROBUST ? MAX_ROBUST_ITERATIONS : MAX_ITERATIONS, 1e-12));
+                                             flags & GLASS_ROBUST ? MAX_ROBUST_ITERATIONS : MAX_ITERATIONS, 1e-12),
+                                covariancesOf(fit.rig));
     if (stereo)
     {
         fit.rig.R = Rs[1];
@@ -70,7 +114,7 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);
     const size_t free = freeWindowParameters(fit, flags).size() + freeRigParameters(fit).size();
-    fit.freedom = 2. * points - (double)free - 6. * (double)moments.size();
+    fit.freedom = 2. * points + countPriors(fit.rig, flags) - (double)free - 6. * (double)moments.size();
     fit.sigma = fit.rms * std::sqrt(points / fit.freedom);
     return fit;
 }

@@ -14,6 +14,16 @@ struct RigOptions
     int flags = 0;                                          //!< GlassCalibrationFlags
     int lensCoefficients = 5;                               //!< of the lens that the images determine
     cv::Ptr<cv::refract::RefractiveCamera> known[2];        //!< lens from a file; null: from the images
+    cv::Mat knownCovariance[2];                             //!< of its lens parameters; empty where the file has none
+    double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
+};
+
+//! What is known of a camera before its images are looked at: from a file, from a data sheet.
+struct KnownCamera
+{
+    cv::Mat lens;                               //!< its parameters
+    std::vector<double> thickness, index;       //!< of its window
+    cv::Mat covariance;         //!< as calibrateGlassRig's cameraCovariances, where the values are those; empty: nothing
 };
 
 //! Lenses, windows and their places: the start of a fit and its result.
@@ -22,6 +32,7 @@ struct Rig
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
     cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
     cv::Vec3d T;
+    std::vector<KnownCamera> known;             //!< one per camera, or empty
 
     Rig clone() const;
 };

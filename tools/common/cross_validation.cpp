@@ -39,16 +39,16 @@ void splitMoments(const RigData& data, const Fit& fit, std::vector<std::pair<dou
     std::sort(byRange.begin(), byRange.end());
 }
 
-//! A rig from some moments; no cameras if they do not determine it.
-Rig trainWindow(const RigData& data, const Fit& fit, int flags, const std::vector<int>& train)
+//! A fit of some moments; no cameras if they do not determine it.
+Fit trainWindow(const RigData& data, const Fit& fit, int flags, const std::vector<int>& train)
 {
     try
     {
-        return fitRig(data, fit.rig, train, flags).rig;
+        return fitRig(data, fit.rig, train, flags);
     }
     catch (const cv::Exception&)
     {
-        return Rig();
+        return Fit();
     }
 }
 
@@ -117,6 +117,18 @@ void addTransfer(const RigData& data, const Ptr<RefractiveCamera>& camera, const
     }
 }
 
+void addMisfit(const RigData& data, const Fit& trained, const std::vector<int>& test, Misfit& misfit)
+{
+    std::vector<Moment> moments;
+    for (int i : test)
+        moments.push_back(data.moments[i]);
+    try
+    {
+        misfit.add(misfitOf(trained.rig, trained.covariance, trained.sigma, data.objectPoints, moments));
+    }
+    catch (const Failure&) {}       // no pose: the other numbers say it
+}
+
 double testRig(const RigData& data, const Rig& rig, const std::vector<int>& test)
 {
     PooledRms rms;
@@ -145,10 +157,13 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
         for (size_t k = 0; k < byRange.size(); k++)     // each fold over the whole range
             ((int)k % result.folds == fold ? test : trainGlass).push_back(byRange[k].second);
         train.insert(train.end(), trainGlass.begin(), trainGlass.end());
-        const Rig window = trainWindow(data, fit, flags, train), pinhole = trainPinhole(data, fit, trainGlass);
+        const Fit trained = trainWindow(data, fit, flags, train);
+        const Rig window = trained.rig, pinhole = trainPinhole(data, fit, trainGlass);
         result.views += (int)test.size();
         if (window.cameras.empty())
             result.failed += (int)test.size();
+        else
+            addMisfit(data, trained, test, result.misfit);
         for (int i : test)
         {
             const Moment& m = data.moments[i];
@@ -193,7 +208,7 @@ NearFar nearAgainstFar(const RigData& data, const Fit& fit, int flags)
 
     const auto window = [&](std::vector<int> train, const std::vector<int>& test) {
         train.insert(train.end(), always.begin(), always.end());
-        return testRig(data, trainWindow(data, fit, flags, train), test);
+        return testRig(data, trainWindow(data, fit, flags, train).rig, test);
     };
     const auto pinhole = [&](const std::vector<int>& train, const std::vector<int>& test) {
         return testRig(data, trainPinhole(data, fit, train), test);

@@ -2,6 +2,7 @@
 #define REFRACT_TOOLS_CROSS_VALIDATION_HPP
 
 #include "rig_checks.hpp"
+#include "sight.hpp"
 
 /* What the calibration is worth on images that it has not seen: the numbers to judge it by. Lens, window and rig come from
 some of the moments; the others are held out. A lens that does not take part in the fit (given, or from direct images alone)
@@ -15,6 +16,7 @@ struct HeldOut
     int views = 0, failed = 0;      //!< moments held out; those whose rest did not determine the window
     double px = NONE;               //!< RMS through the window, the board's pose fitted to the one image
     double pinholePx = NONE;        //!< the same for a pinhole calibrated through the glass
+    Misfit misfit;                  //!< of all images of the moments, over all folds: error against what was stated
     double transferPx = NONE;       //!< RMS through the window, the board's pose from the direct image of the pair alone
     double lengthRms = NONE;        //!< two cameras: distances of neighbouring corners, triangulated minus true, RMS
     double lengthMean = NONE;

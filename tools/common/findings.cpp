@@ -1,4 +1,5 @@
 #include "findings.hpp"
+#include "f_distribution.hpp"
 #include "table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ const double INFLUENTIAL = 3.;              // standard deviations that one view
 const double LOW_COVERAGE = 0.5;
 const double NARROW_RANGE = 1.2;            // farthest / nearest
 const int FEW_VIEWS = 5;
+const double HELD_OUT_CHANCE = 1e-3;        // that true +- look so wrong on held-out boards
 
 //! "camera 2: " where there are two.
 std::string of(const RigCalibration& c, int camera)
@@ -198,20 +200,37 @@ void judgeViews(const RigCalibration& c, int camera, Findings& f)
                              influence.turnDeg[camera] / sigma));
 }
 
+bool isLensFree(const RigCalibration& c, int camera)
+{
+    const ParameterColumns at = columnsOf(c.fit.rig, camera);
+    return c.fit.stdDeviations.at<double>(at.lens) > 0.;
+}
+
+//! Boards that took no part against what was stated of them.
+void judgeHeldOut(const RigCalibration& c, Findings& f)
+{
+    const Misfit& m = c.heldOut.misfit;
+    if (m.directions == 0)
+        return;
+    const double perDirection = m.chiSquare / m.directions;
+    // The folds share most of their images: as if there were only one.
+    const int pairsOfDirections = std::max(1, m.directions / c.heldOut.folds / 2);
+    if (upperTailF(pairsOfDirections, c.fit.freedom, perDirection) < HELD_OUT_CHANCE)
+        f.weak.push_back(format("boards that took no part are %.1f times as far off as the calibration's +- says: the stated "
+                                "uncertainties are too small. A given value, the lens model or the target may be wrong, or "
+                                "the window not flat", std::sqrt(perDirection)));
+}
+
 void judgeAssumptions(const RigCalibration& c, Findings& f)
 {
-    const bool freeLens = c.options.flags & GLASS_FREE_INTRINSICS;
     for (int k = 0; k < c.data.cameraCount; k++)
-        if (!freeLens)
-            f.assumed.push_back(of(c, k) + (c.lensSources[k].kind == LensSource::FROM_FILE
-                ? std::string("the lens as in the file; its uncertainty is not in the +-")
-                : format("the lens as cv::calibrateCamera found it on %d direct images (%.3f px); its uncertainty is not in "
-                         "the +-", c.lensSources[k].views, c.lensSources[k].rms)));
+        if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
+            f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
     const GlassWindow& window = c.options.window;
-    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS))
+    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.thicknessStd == 0.)
         f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
                             "the distance, as the media on its two sides differ)"));
-    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX))
+    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.indexStd == 0.)
         f.assumed.push_back("the index");
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
         f.assumed.push_back("the distance");
@@ -252,13 +271,15 @@ std::string LimitCheck::sentence() const
 
 bool Findings::pass() const
 {
-    return std::all_of(limits.begin(), limits.end(), [](const LimitCheck& limit) { return limit.met(); });
+    return contradictions.empty() && std::all_of(limits.begin(), limits.end(), [](const LimitCheck& l) { return l.met(); });
 }
 
 std::string Findings::verdict() const
 {
     if (!limits.empty())
         return pass() ? "PASS" : "FAIL";
+    if (!contradictions.empty())
+        return "Not usable: the images contradict what was given";
     return weak.empty() ? "Good" : "Look at the weak points";
 }
 
@@ -275,6 +296,9 @@ Findings judge(const RigCalibration& calibration, const Assessment& assessment)
         judgeViews(calibration, c, findings);
     }
     judgeCorrelations(calibration, findings);
+    judgeHeldOut(calibration, findings);
+    for (const Contradiction& contradiction : assessment.contradictions)
+        findings.contradictions.push_back(contradiction.sentence());
     judgeAssumptions(calibration, findings);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
         mergeCameras(*list);

@@ -20,6 +20,7 @@ struct LimitCheck
 struct Findings
 {
     std::vector<LimitCheck> limits;
+    std::vector<std::string> contradictions;    //!< between the images and what was given
     std::vector<std::string> weak;          //!< to be mended, and how
     std::vector<std::string> cannotTell;    //!< what these data do not say
     std::vector<std::string> assumed;       //!< taken as given

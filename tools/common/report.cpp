@@ -218,6 +218,8 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
 {
     data page;
     setVerdict(page, c, findings);
+    page.set("contradictions", listOf(findings.contradictions));
+    page.set("has_contradictions", !findings.contradictions.empty());
     page.set("weak", listOf(findings.weak));
     page.set("has_weak", !findings.weak.empty());
     page.set("cannot_tell", listOf(findings.cannotTell));

@@ -90,6 +90,37 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     return calibratePinhole(data.objectPoints, views, data.imageSize[camera], options.lensCoefficients, source.rms);
 }
 
+/** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
+with the given deviations. */
+KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, int c)
+{
+    const GlassWindow window = camera.window();
+    const int lens = camera.lensParameters().rows, layers = (int)window.thickness.size();
+    KnownCamera known{camera.lensParameters(), window.thickness, window.index, Mat()};
+    // Without a covariance the lens of a file is exact, unless the caller wants it free.
+    const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
+    const bool windowKnown = layers > 0 && (options.thicknessStd > 0. || options.indexStd > 0.);
+    if (!lensKnown && !windowKnown)
+        return known;
+    known.covariance = Mat::zeros(lens, lens, CV_64F);
+    if (!lensKnown)
+        known.covariance.diag().setTo(NAN);         // nothing is known
+    else if (!options.knownCovariance[c].empty())
+        options.knownCovariance[c].copyTo(known.covariance);
+    if (!windowKnown)
+        return known;
+    const int all = lens + 6 + 2 * layers;          // normal, distance, thicknesses, indices, inner and outer index
+    Mat covariance = Mat::zeros(all, all, CV_64F);
+    known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
+    for (int i = 0; i < layers; i++)
+    {
+        covariance.at<double>(lens + 4 + i, lens + 4 + i) = options.thicknessStd * options.thicknessStd;
+        covariance.at<double>(lens + 4 + layers + i, lens + 4 + layers + i) = options.indexStd * options.indexStd;
+    }
+    known.covariance = covariance;
+    return known;
+}
+
 //! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.
 void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camera, const LensSource& source)
 {
@@ -237,6 +268,8 @@ Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSou
     }
     if (data.cameraCount == 2)
         startExtrinsics(data, rig);
+    for (int c = 0; c < data.cameraCount; c++)
+        rig.known.push_back(knownOf(*rig.cameras[c], options, c));
     return rig;
 }
 

@@ -159,6 +159,8 @@ std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
     }
     if (!std::isnan(h.transferPx))
         add("  board where its direct image is, px", px(h.transferPx), "-");
+    if (h.misfit.directions)
+        add("  error over stated (1: as stated)", format("%.2f", h.misfit.calibrationRatio()), "-");
     if (!std::isnan(h.lengthRms))
         add("lengths between corners, RMS, " + c.unit, format("%.3g", h.lengthRms),
             std::isnan(h.pinholeLengthRms) ? "-" : format("%.3g", h.pinholeLengthRms));
@@ -247,6 +249,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     for (const Dropped& d : c.wrong.dropped)
         dropped.push_back(d.sentence());
     printSentences(out, "Left out:", dropped);
+    printSentences(out, "Contradictions:", findings.contradictions);
     printSentences(out, "Weak:", findings.weak);
     printSentences(out, "The data cannot tell:", findings.cannotTell);
     printSentences(out, "Taken as given:", findings.assumed);

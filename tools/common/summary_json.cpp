@@ -200,7 +200,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;
     json["left_out"] = droppedJson(c);
-    json["findings"] = {{"weak", findings.weak}, {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
+    json["findings"] = {{"contradictions", findings.contradictions}, {"weak", findings.weak}, {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
     json["made_by"] = {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
                        {"time", timeOfFiles(c.inputs)}};
     roundNumbers(json);

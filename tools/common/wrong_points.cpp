@@ -35,6 +35,43 @@ bool clean(std::vector<Point2d>& pixels, uchar status, const Mat& inliers, Dropp
     return dropped.points > 0;
 }
 
+//! Images of pairs that a robust fit has no use for, and how many pairs there are.
+bool losesPairs(const RigData& data, const Fit& fit)
+{
+    const double MOST = 1. / 3;
+    int pairs = 0, lost = 0;
+    for (int i = 0; i < (int)data.moments.size(); i++)
+        for (int c = 0; c < data.cameraCount; c++)
+        {
+            if (!data.moments[i].isPair(c))
+                continue;
+            pairs++;
+            bool whole = true;
+            for (int column : {2 * c, 2 * c + 1})
+                whole = whole && fit.imageStatus.at<uchar>(i, column) == GLASS_IMAGE_USED;
+            lost += !whole;
+        }
+    return lost > MOST * pairs;
+}
+
+/** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
+are then evidence of it. The fit with that value free knows which points are wrong. */
+Fit robustFit(const RigData& data, const Rig& start, int flags)
+{
+    const Fit fit = fitRig(data, start, allMoments(data), flags | GLASS_ROBUST);
+    if (!losesPairs(data, fit))
+        return fit;
+    for (int value : {GLASS_FREE_THICKNESS, GLASS_FREE_INDEX, GLASS_FREE_OUTER_INDEX})
+        try
+        {
+            const Fit freed = fitRig(data, start, allMoments(data), flags | value | GLASS_ROBUST);
+            if (!losesPairs(data, freed))
+                return freed;
+        }
+        catch (const cv::Exception&) {}     // there is no such value, or it is not determined
+    return fit;
+}
+
 } // namespace
 
 std::string Dropped::sentence() const
@@ -48,7 +85,7 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
     Fit fit;
     try
     {
-        fit = fitRig(data, start, allMoments(data), flags | GLASS_ROBUST);
+        fit = robustFit(data, start, flags);
     }
     catch (const cv::Exception& e)
     {

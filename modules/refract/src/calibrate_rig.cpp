@@ -214,16 +214,17 @@ void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camer
     for (int c = 0; c < (int)all.size(); c++)
     {
         const String name = numbered("cameraCovariances", c);
-        const std::vector<double> numbers = readNumbers(all[c], name.c_str());
         const int lens = cameras[c].lensCount(), both = cameras[c].parameterCount(), side = all[c].rows;
-        if (!numbers.empty() && ((side != lens && side != both) || (int)numbers.size() != side*side))
-            CV_Error_(Error::StsBadSize, ("%s is %dx%d; it must be %dx%d (lens), %dx%d (lens and window) or empty",
-                                          name.c_str(), all[c].rows, all[c].cols, lens, lens, both, both));
+        if (!all[c].empty() && (all[c].channels() != 1 || all[c].cols != side || (side != lens && side != both)))
+            CV_Error_(Error::StsBadSize, ("%s is %dx%d with %d channels; it must be %dx%d (lens), %dx%d (lens and window) or "
+                                          "empty", name.c_str(), side, all[c].cols, all[c].channels(), lens, lens, both, both));
         CameraKnowledge knowledge;
+        Mat_<double> numbers;
+        all[c].convertTo(numbers, CV_64F);
         if (!numbers.empty())
-            knowledge.covariance = Eigen::Map<const RowMajorMatrix>(numbers.data(), side, side);
+            knowledge.covariance = Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), side, side);
         for (int i = 0; i < knowledge.covariance.rows(); i++)
-            if (!(knowledge.covariance(i, i) >= 0))
+            if (knowledge.covariance(i, i) < 0)
                 CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
                                              knowledge.covariance(i, i), i));
         task.cameras.push_back(knowledge);

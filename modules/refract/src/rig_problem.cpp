@@ -131,7 +131,7 @@ void RigProblem::setKnown(const CameraKnowledge& known, int first, RigBlock& blo
     for (int i = 0; i < size; i++)
         if (covariance(i, i) > 0)
             uncertain.push_back(i);
-        else if (block.kind == RigBlock::LENS)
+        else if (block.kind == RigBlock::LENS && covariance(i, i) == 0)
             block.isFree[i] = false;
     const int count = (int)uncertain.size();
     Eigen::MatrixXd correlation(count, count);

@@ -34,11 +34,10 @@ struct PoseKnowledge
 };
 
 /** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window. A
-parameter with a variance is estimated, within it. A lens parameter without one is exact. Empty: nothing is known. */
+parameter with a variance is estimated, within it. A lens parameter with none is exact; NaN or empty: nothing is known. */
 struct CameraKnowledge
 {
     Eigen::MatrixXd covariance;
-    bool isEmpty() const { return covariance.size() == 0; }
 };
 
 //! One image of the problem.

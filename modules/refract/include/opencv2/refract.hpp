@@ -593,8 +593,8 @@ exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop.
 @param cameraCovariances what an earlier step or a data sheet knows of each camera: an LxL covariance of its L lens parameters,
 or a PxP one of its P parameters in the order of stdDeviations; empty: nothing. A parameter with a variance is estimated,
-within it, and starts at the known value; a lens parameter without one is exact, whatever the flags; other window parameters
-are as the flags say (rows of the normal are not used). noArray(): nothing is known.
+within it, and starts at the known value; a lens parameter with the variance 0 is exact, whatever the flags, with NaN it is as
+they say, and so are window parameters without a variance (rows of the normal are not used). noArray(): nothing is known.
 @return RMS reprojection error in pixels over all points that were used.
 
 Throws as calibrateGlass, and with GLASS_ROBUST if fewer than half of all points fit.
