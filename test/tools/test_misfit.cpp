@@ -79,6 +79,34 @@ TEST_CASE("A wrong square, thickness, index or medium is found and named", "[mis
     CHECK_THAT(explained(water), Catch::Contains("--outer-index=1 in place of 1.333"));
 }
 
+TEST_CASE("Water taken for air is found from glass-only views, and refused", "[misfit]")
+{
+    scenes::Random random(915);
+    CAPTURE(scenes::seed());
+    Rig wet = paperRig(1);
+    GlassWindow window = wet.cameras[0]->window();
+    window.outerIndex = 1.333;
+    wet.cameras[0]->setWindow(window);
+    Given given = rightlyGiven(1, random);
+    for (Moment& m : given.data.moments)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(640, 800));
+        m.glass[0] = observe(wet, given.data.objectPoints, random.vector(0.4), tvec, false, 0.1, random).glass[0];
+        m.direct[0].clear();
+    }
+    CHECK_THAT(explained(given), Catch::Contains("--outer-index=1.333 in place of 1"));
+
+    RigCalibration c;
+    c.data = given.data;
+    c.options = given.options;
+    c.start = startRig(c.data, c.options, c.lensSources);
+    c.fit = fitRig(c.data, c.start, allMoments(c.data), 0);
+    c.residuals = residualsOf(c.data, c.fit);
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    CHECK_THROWS_WITH(requireSensible(c, given), Catch::Contains("does not fit its images")
+                                                  && Catch::Contains("--outer-index=1.333"));
+}
+
 TEST_CASE("Images exchanged, moved or of other moments are found and named", "[misfit]")
 {
     scenes::Random random(920);

@@ -12,8 +12,8 @@ namespace tools {
 
 namespace {
 
-const double CORNERS_PX = 3.;           // half of the corners are never farther off, in an image of usual size;
-const double CORNERS_SHARE = 1. / 500.; // in a larger one, of its longer side
+const double CORNERS_PX = 2.;           // half of the corners are never farther off, in an image of usual size;
+const double CORNERS_SHARE = 1. / 640.; // in a larger one, of its longer side
 const double ALONE = 10.;               // times what the same corners leave if each image may be fitted alone:
 const double ALONE_PX = 1.;             // the given values do not belong to them
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
