@@ -1,5 +1,6 @@
 #include "partial_chessboard.hpp"
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <limits>
 
@@ -63,6 +64,25 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
         if (!piece.empty() && isEvenGrid(points, size))
             return points;
     }
+}
+
+std::vector<Point2f> lookForChessboard(const Mat& grey, Size& size)
+{
+    const int sideOfCopy = 1000, leastCorners = 12;
+    const double scale = std::min(1., (double)sideOfCopy / std::max(grey.cols, grey.rows));
+    Mat copy, meta;
+    resize(grey, copy, Size(), scale, scale, INTER_AREA);
+    std::vector<Point2f> corners;
+    size = Size();
+    if (!findChessboardCornersSB(copy, Size(LEAST, LEAST), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+        || (int)corners.size() < leastCorners
+        || !isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
+        return {};
+    size = meta.size();
+    const Point2f half(0.5f, 0.5f);     // pixel (0, 0) is the centre of a pixel
+    for (Point2f& p : corners)
+        p = (p + half) * (1 / scale) - half;
+    return corners;
 }
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)
