@@ -75,6 +75,12 @@ bool isAlternating(const std::vector<Point2d>& points, Size size, const Mat& gre
     return std::max(inTurn[0], inTurn[1]) >= 0.8 * all;
 }
 
+//! A detector that has skipped corners, or taken a board's edge for some, has not found the target.
+bool isChessboard(const std::vector<Point2d>& points, Size size, const Mat& grey)
+{
+    return isEvenGrid(points, size) && isAlternating(points, size, grey);
+}
+
 // Processor time that is given to detectors which may take minutes for nothing.
 const int SECONDS_OF_OLD_CHESSBOARD = 5, SECONDS_OF_CIRCLES = 20;
 
@@ -101,7 +107,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
 {
     std::vector<Point2f> corners;
     if (!cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE)
-        || !isAlternating(toDouble(corners), size, grey))
+        || !isChessboard(toDouble(corners), size, grey))
     {
         Size glance;
         lookForChessboard(grey, glance);
@@ -110,7 +116,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
         if (other.width > sorted(size).width || other.height > sorted(size).height)
             return {};
         corners = detectByOldChessboard(grey, size);
-        if (corners.empty() || !isAlternating(toDouble(corners), size, grey))
+        if (corners.empty() || !isChessboard(toDouble(corners), size, grey))
             return {};
     }
     other = Size();
@@ -226,9 +232,7 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
         : toDouble(searchLimited(SECONDS_OF_CIRCLES, count(), [&] { return detectCircles(grey, size_, pattern_ == ACIRCLES); }));
     if (other)
         *other = seenSize;
-    // A detector that has skipped corners has not found the target.
-    return points.empty() || (pattern_ == CHESSBOARD && !isEvenGrid(points, size_)) ? std::vector<Point2d>()
-                                                                                     : canonical(points, grey);
+    return points.empty() ? points : canonical(points, grey);
 }
 
 std::vector<std::vector<int>> Target::symmetries() const
