@@ -66,23 +66,23 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
     }
 }
 
-std::vector<Point2f> lookForChessboard(const Mat& grey, Size& size)
+Size lookForChessboard(const Mat& grey)
 {
     const int sideOfCopy = 1000, leastCorners = 12;
     const double scale = std::min(1., (double)sideOfCopy / std::max(grey.cols, grey.rows));
-    Mat copy, meta;
+    Mat copy;
     resize(grey, copy, Size(), scale, scale, INTER_AREA);
-    std::vector<Point2f> corners;
-    size = Size();
-    if (!findChessboardCornersSB(copy, Size(LEAST, LEAST), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
-        || (int)corners.size() < leastCorners
-        || !isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
-        return {};
-    size = meta.size();
-    const Point2f half(0.5f, 0.5f);     // pixel (0, 0) is the centre of a pixel
-    for (Point2f& p : corners)
-        p = (p + half) * (1 / scale) - half;
-    return corners;
+    Size largest;
+    for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
+    {
+        Mat meta;
+        std::vector<Point2f> corners;
+        if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+            && meta.size().area() >= std::max(leastCorners, largest.area() + 1)
+            && isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
+            largest = meta.size();
+    }
+    return largest;
 }
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)

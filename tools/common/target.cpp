@@ -109,8 +109,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
     if (!cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE)
         || !isChessboard(toDouble(corners), size, grey))
     {
-        Size glance;
-        lookForChessboard(grey, glance);
+        const Size glance = lookForChessboard(grey);
         if (sorted(glance) != sorted(size))
             other = sorted(glance);
         if (other.width > sorted(size).width || other.height > sorted(size).height)
