@@ -167,7 +167,7 @@ TEST_CASE("A partner off its curve has the uncertainty of its misfit, a far one 
     const Calibration c = calibrationOf(paperRig(2));
     scenes::Random random(3041);
     std::vector<Point3d> truth;
-    const Measurement clean = seenByTwo(c, PIXEL, {}, random, &truth);
+    const Measurement clean = seenByTwo(c, 0., {}, random, &truth);
     const struct { double off; uchar status; bool answer; } cases[] = {
         {0., 0, true}, {0.9, INCONSISTENT, true}, {2., INCONSISTENT, true}, {30., INCONSISTENT, false}};
     for (const auto& k : cases)
@@ -179,7 +179,7 @@ TEST_CASE("A partner off its curve has the uncertainty of its misfit, a far one 
         CHECK((m.points[7].z == m.points[7].z) == k.answer);
         CHECK(m.inconsistent() == (k.status ? 1 : 0));
         CHECK(m.answers() == (k.answer ? 30 : 29));
-        CHECK(m.sigma[8] == clean.sigma[8]);
+        CHECK(norm(m.sigma[8] - clean.sigma[8]) < 1e-9);
         if (k.off > 0 && k.answer)
         {
             CHECK(m.sigma[7][2] > 0.4 * k.off / PIXEL * clean.sigma[7][2]);
@@ -198,20 +198,21 @@ TEST_CASE("Images noisier than the calibration's make all their points less cert
     const Calibration c = calibrationOf(paperRig(2));
     scenes::Random random(3042);
     double squares = 0;
-    int count = 0, flagged = 0;
+    int count = 0, flagged = 0, noticed = 0;
     for (int trial = 0; trial < 100; trial++)
     {
         std::vector<Point3d> truth;
         Measurement m = seenByTwo(c, 3 * PIXEL, {}, random, &truth);
         judgePartners(c, PIXEL, m);
         flagged += m.inconsistent();
-        CHECK(m.noise == Approx(3 * PIXEL).epsilon(0.7));
+        noticed += std::abs(m.noise - 3 * PIXEL) < 1.5 * PIXEL;
         for (size_t i = 0; i < truth.size(); i++)
             for (int k = 0; k < 3 && m.points[i].x == m.points[i].x; k++, count++)
                 squares += std::pow((Vec3d(m.points[i])[k] - Vec3d(truth[i])[k]) / m.sigma[i][k], 2);
     }
-    CAPTURE(flagged);
-    CHECK(flagged < 10);
+    CAPTURE(flagged, noticed);
+    CHECK(flagged < 30);        // of 3000
+    CHECK(noticed > 85);
     CHECK(std::sqrt(squares / count) == Approx(1.).epsilon(0.15));
 }
 

@@ -24,6 +24,7 @@ const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 
 // Of misfits, in standard deviations: what noise may do, what it cannot, and what cannot even be used.
 const double USUAL = 3., FEW = 5., GROSS = 20.;
+const double MEDIAN = 0.6745;           // of |N(0, 1)|
 const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
 const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
 
@@ -111,18 +112,26 @@ private:
 };
 
 /* How many times as large as expected the misfits of a view are, by their median, which a few wrong points do not move. 1 if
-so few points may do that by chance. */
-double timesNoisier(const std::vector<Misfit>& misfits)
+that may be chance: of the noise of so few points, or of the calibration's error, which is one for all points of the view. */
+double timesNoisier(const std::vector<Misfit>& misfits, double pixelSigma)
 {
     std::vector<double> ratios;
+    double ofPixels = 0;            // share of the variance
     for (const Misfit& misfit : misfits)
         if (misfit.expected > 0)
+        {
             ratios.push_back(misfit.pixels / misfit.expected);
+            ofPixels += std::pow(pixelSigma / misfit.expected, 2);
+        }
     if (ratios.empty())
         return 1.;
+    ofPixels /= ratios.size();
+    const double byNoise = 1 + 4.7 / std::sqrt((double)ratios.size());      // four standard deviations of the median's estimate
+    const double byCalibration = USUAL / MEDIAN;
+    const double byChance = std::sqrt(ofPixels * byNoise * byNoise + (1 - ofPixels) * byCalibration * byCalibration);
     std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
-    const double times = ratios[ratios.size() / 2] / 0.6745;        // median of |N(0, 1)|
-    return times > 1 + 3.5 / std::sqrt((double)ratios.size()) ? times : 1.;     // three standard deviations of it
+    const double times = ratios[ratios.size() / 2] / MEDIAN;
+    return times > byChance ? times : 1.;
 }
 
 void forget(Measurement& m, size_t i)
@@ -179,7 +188,7 @@ void judgePartners(const Calibration& calibration, double pixelSigma, Measuremen
     std::vector<Misfit> misfits;
     for (size_t i = 0; i < m.points.size(); ++i)
         misfits.push_back(misfitOf(i));
-    const double times = known ? timesNoisier(misfits) : 1.;
+    const double times = known ? timesNoisier(misfits, pixelSigma) : 1.;
     if (times > 1)
         m.noise = times * pixelSigma;
     for (size_t i = 0; i < m.points.size(); ++i)
