@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <sys/wait.h>
 
@@ -20,7 +21,19 @@ struct ToolResult
 {
     int code;                   //!< exit code; -1 if it was ended by a signal
     std::string out, err;
+    std::string progress = {};  //!< the lines "... how far it is", which a slow machine has and a fast one not; not in err
 };
+
+//! Takes the lines that tell the progress out of stderr.
+inline std::string takeProgress(std::string& err)
+{
+    std::istringstream in(err);
+    std::string rest, progress, line;
+    while (std::getline(in, line))
+        (line.compare(0, 4, "... ") == 0 ? progress : rest) += line + '\n';
+    err = rest;
+    return progress;
+}
 
 //! "refract_calib --help": the name of a built tool and its arguments, for the shell.
 inline ToolResult runTool(const std::string& commandLine, const std::string& environment = "")
@@ -28,7 +41,9 @@ inline ToolResult runTool(const std::string& commandLine, const std::string& env
     const TemporaryFolder folder;
     const std::string out = folder / "out", err = folder / "err";
     const int status = std::system((environment + ' ' + REFRACT_BIN_DIR + '/' + commandLine + " >" + out + " 2>" + err).c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err)};
+    ToolResult result = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err), ""};
+    result.progress = takeProgress(result.err);
+    return result;
 }
 
 #endif // REFRACT_TEST_RUN_TOOL_HPP

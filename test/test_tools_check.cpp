@@ -65,6 +65,21 @@ TEST_CASE("refract_check finds the window that moved, and no other", "[tools][ch
     CHECK(json["windows"][1]["moved"] == true);
     CHECK(json["windows"][1]["tilt_deg"].get<double>() == Approx(0.1).margin(5 * json["windows"][1]["tilt_std_deg"][0].get<double>()));
 
+    // One image each is a pair whatever its name: the example of --help.
+    std::filesystem::copy_file(STEREO + "/direct1/pair3.jpg", folder / "direct.jpg");
+    std::filesystem::copy_file(STEREO + "/glass1/pair3.jpg", folder / "glass.jpg");
+    const ToolResult named = runTool("refract_check " + folder / "same.yml" + TARGET + " --direct=" + folder / "direct.jpg"
+                                     + " --glass=" + folder / "glass.jpg --detect=0.2");
+    INFO(named.out << named.err);
+    CHECK(named.code == 0);
+
+    // A direct image without partner among several is named.
+    const ToolResult alone = runTool("refract_check " + folder / "same.yml" + TARGET + " --direct='" + STEREO
+        + "/direct1/pair[1-4].jpg' --glass='" + STEREO + "/glass1/pair[1-3].jpg'");
+    INFO(alone.out << alone.err);
+    CHECK(alone.code == 0);
+    CHECK(alone.err.find("'pair4'") != std::string::npos);
+
     // One camera.
     CHECK(runTool("refract_check " + folder / "same.yml" + TARGET + pair("pair[1-3].jpg", false)).code == 0);
 
@@ -86,7 +101,9 @@ TEST_CASE("refract_check says when it cannot tell, and why", "[tools][check]")
     const std::string check = "refract_check " + folder / "same.yml";
     const struct { std::string command, says; } cases[] = {
         {check + TARGET + pair("pair3.jpg", false) + " --detect=0.001", "--detect"},
-        {check + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg", "with a probability"},
+        {check + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg", "tilt of the window"},
+        {check + TARGET + " --direct='" + STEREO + "/direct1/air0[12].jpg' --glass='" + STEREO + "/glass1/pair[12].jpg'",
+         "--glass='" + STEREO + "/glass1/pair[12].jpg' in which the target was found: the two images of a pair need equal names"},
         {check + " --size=6x5 --square=39.2 --pixel-sigma=0.015" + pair("pair3.jpg"), "do not fit"},
         {check + " --size=6x5 --square=39" + pair("pair3.jpg"), "--pixel-sigma"},
         {check + TARGET + " --glass=" + folder / "none.png", "none.png"},

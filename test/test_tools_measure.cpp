@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <regex>
 
 namespace {
 
@@ -20,6 +22,25 @@ double rmsAgainst(const TrueView& truth, const std::vector<CsvRow>& rows)
     for (const CsvRow& row : rows)
         squares += std::pow(cv::norm(row.point - truth.inCamera1(object[row.id])), 2);
     return std::sqrt(squares / rows.size());
+}
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+//! Copies of bundled images under other names: measure1/FROM -> FOLDER/TO.jpg
+void copyImage(const TemporaryFolder& folder, const std::string& from, const std::string& to)
+{
+    const std::filesystem::path path(folder / (to + ".jpg"));
+    std::filesystem::create_directories(path.parent_path());
+    std::filesystem::copy_file(image(from), path);
+}
+
+//! The truth's file with something else in place of a part of it.
+std::string changedTruth(const std::string& part, const std::string& instead)
+{
+    std::string text = readFile(STEREO + "/truth.yml");
+    const size_t at = text.find(part);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, part.size(), instead);
 }
 
 //! Errors in units of the sigma that the tool states; about 1 if it is honest.
@@ -46,7 +67,8 @@ TEST_CASE("refract_measure triangulates fresh views to within their stated uncer
             + image("measure2/" + stem) + TARGET + " --pixel-sigma=0.014 --out=" + (folder / "points.csv"));
         CAPTURE(result.err);
         REQUIRE(result.code == 0);
-        CHECK(result.err.empty());
+        CHECK(mentions(result.err, "truth.yml' has no covariance"));
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
         CHECK(result.out.find("30 of 30") != std::string::npos);
         const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
         REQUIRE(rows.size() == 30);
@@ -56,6 +78,7 @@ TEST_CASE("refract_measure triangulates fresh views to within their stated uncer
         CHECK(rmsInSigma(view, rows) > 0.4);
         for (size_t i = 0; i < rows.size(); ++i)
         {
+            CHECK(rows[i].image == stem);
             CHECK(rows[i].id == (int)i);
             CHECK(rows[i].status == 0);
             CHECK(cv::norm(rows[i].pixel1 - view.pixels[i]) < 0.1);
@@ -76,10 +99,13 @@ TEST_CASE("refract_measure pairs the images of two globs by their stems and comp
     CHECK(result.out.find("glass ignored") != std::string::npos);
     const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
     REQUIRE(rows.size() == 150);
-    CHECK(rows.back().id == 149);
+    CHECK(rows.back().image == "z600_5");
+    CHECK(rows.back().id == 29);
+    CHECK(mentions(result.err, "z600_6"));          // skipped: it has no partner
     // The truth file has no rms and no --pixel-sigma was given: the uncertainty is unknown, and says so.
     CHECK(std::isnan(rows[0].sigma[0]));
     CHECK(result.out.find("unknown") != std::string::npos);
+    CHECK(mentions(result.err, "--pixel-sigma"));
 }
 
 TEST_CASE("refract_measure meets a known plane, and finds a target's pose, with one camera", "[tools][measure]")
@@ -147,6 +173,162 @@ TEST_CASE("the bundled rig, from images to lengths", "[tools][measure]")
     CHECK(rms < 0.05);
 }
 
+TEST_CASE("refract_measure names the image of each point, and the images that it skips", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    for (const std::string camera : {"1", "2"})
+    {
+        copyImage(folder, "measure" + camera + "/z600_1", camera + "/a");
+        copyImage(folder, "measure" + camera + "/z600_3", camera + "/c, d");
+    }
+    copyImage(folder, "measure1/z600_4", "1/e");
+    copyImage(folder, "measure2/z600_5", "2/f");
+    for (const std::string camera : {"1", "2"})
+        cv::imwrite(folder / (camera + "/b.jpg"), cv::Mat(1024, 1280, CV_8U, cv::Scalar(90)));
+    const std::string call = "refract_measure " + STEREO + "/truth.yml --pixel-sigma=0.014" + TARGET + " --out="
+                             + (folder / "points.csv") + " '" + (folder / "1/*") + "'";
+    const ToolResult result = runTool(call + " '" + (folder / "2/*") + "'");
+    INFO(result.out << result.err);
+    REQUIRE(result.code == 0);
+    const std::string csv = readFile(folder / "points.csv");
+    CHECK(csv.find("image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\na,0,190.36") == 0);
+    CHECK(mentions(csv, "\na,29,"));
+    CHECK(mentions(csv, "\n\"c, d\",0,"));
+    CHECK(mentions(csv, "\n\"c, d\",29,"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 61);
+    for (const std::string skipped : {"1/b.jpg", "2/b.jpg", "'e'", "'f'"})
+        CHECK(mentions(result.err, skipped));
+
+    // What it writes, refract_epilines reads.
+    const ToolResult picture = runTool("refract_epilines " + STEREO + "/truth.yml " + (folder / "1/a.jpg") + " "
+        + (folder / "2/a.jpg") + " --depth=400,900 --points=" + (folder / "points.csv") + " --out=" + (folder / "p.png"));
+    CAPTURE(picture.err);
+    CHECK(picture.code == 0);
+
+    const ToolResult one = runTool(call);
+    INFO(one.err);
+    REQUIRE(one.code == 0);
+    CHECK(mentions(one.err, "1/b.jpg"));
+    CHECK(mentions(readFile(folder / "points.csv"), "\ne,29,"));
+}
+
+TEST_CASE("refract_measure gives no point for pixels that contradict each other", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const std::string call = "refract_measure " + STEREO + "/truth.yml --pixel-sigma=0.014" + TARGET + " --out="
+                             + (folder / "points.csv") + " ";
+    const std::string swapped = image("measure2/z600_1") + " " + image("measure1/z600_1");
+    const std::string twoMoments = image("measure1/z600_1") + " " + image("measure2/z600_2");
+    for (const std::string& images : {swapped, twoMoments})
+    {
+        const ToolResult result = runTool(call + images);
+        INFO(result.out << result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, "swapped"));
+        CHECK(mentions(result.err, "30 of 30 points"));
+        CHECK_FALSE(std::filesystem::exists(folder / "points.csv"));
+    }
+
+    copyImage(folder, "measure1/z600_1", "1/a");
+    copyImage(folder, "measure2/z600_1", "2/a");
+    copyImage(folder, "measure1/z600_2", "1/b");
+    copyImage(folder, "measure2/z600_3", "2/b");
+    const ToolResult mixed = runTool(call + "'" + (folder / "1/*") + "' '" + (folder / "2/*") + "'");
+    INFO(mixed.out << mixed.err);
+    REQUIRE(mixed.code == 0);
+    CHECK(mentions(mixed.err, "('b'; status 9"));
+    for (const CsvRow& row : readPointsCsv(readFile(folder / "points.csv")))
+    {
+        CAPTURE(row.image, row.id);
+        CHECK(row.status == (row.image == "a" ? 0 : 9));
+        CHECK(std::isnan(row.point[0]) == (row.image == "b"));
+        CHECK(std::isnan(row.sigma[0]) == (row.image == "b"));
+    }
+}
+
+TEST_CASE("refract_measure carries what a pose leaves unexplained into its uncertainty", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "lens.yml") << changedTruth("-4.0820000000000001e-01", "1.2");     // k1 of camera 1
+    const std::string call = " --pixel-sigma=0.014 " + image("measure1/z600_1") + TARGET + " --out=" + (folder / "points.csv");
+    REQUIRE(runTool("refract_measure " + STEREO + "/truth.yml" + call).code == 0);
+    const double right = readPointsCsv(readFile(folder / "points.csv"))[0].sigma[2];
+    const ToolResult wrong = runTool("refract_measure " + (folder / "lens.yml") + call);
+    INFO(wrong.out << wrong.err);
+    REQUIRE(wrong.code == 0);
+    CHECK(mentions(wrong.err, "the pose leaves residuals"));
+    const CsvRow row = readPointsCsv(readFile(folder / "points.csv"))[0];
+    CHECK(row.status == 9);
+    CHECK(row.sigma[2] > 50 * right);
+}
+
+TEST_CASE("A calibration that lacks something is not taken silently", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const std::string truth = readFile(STEREO + "/truth.yml");
+    const size_t window = truth.find("   glass_window:"), camera2 = truth.find("camera2:");
+    REQUIRE(window < camera2);
+    std::ofstream(folder / "window.yml") << truth.substr(0, window) + truth.substr(camera2);
+    std::ofstream(folder / "lens.yml") << changedTruth("   distortion_coefficients:", "   distortion:");
+    std::ofstream(folder / "covariance.yml") << truth << "covariance: !!opencv-matrix\n   rows: 2\n   cols: 2\n   dt: d\n"
+                                                         "   data: [ 1., 0., 0., 1. ]\n";
+    const std::string first = image("measure1/z600_1"), second = image("measure2/z600_1");
+    const struct { std::string command, rest; } tools[] = {
+        {"refract_measure ", " " + first + " " + second + TARGET},
+        {"refract_undistort ", " " + first + " --depth=600 --out-dir=" + (folder / "out")},
+        {"refract_epilines ", " " + first + " " + second + TARGET + " --out=" + (folder / "p.png")},
+        {"refract_check ", TARGET + " --pixel-sigma=0.014 --glass=" + first}};
+    for (const auto& tool : tools)
+    {
+        const ToolResult noWindow = runTool(tool.command + (folder / "window.yml") + tool.rest);
+        INFO(tool.command << noWindow.err);
+        CHECK(noWindow.code == 1);
+        CHECK(mentions(noWindow.err, "has no glass_window for camera 1"));
+        const ToolResult noDistortion = runTool(tool.command + (folder / "lens.yml") + tool.rest);
+        INFO(noDistortion.err);
+        CHECK(noDistortion.code == 1);
+        CHECK(mentions(noDistortion.err, "distortion_coefficients"));
+        const ToolResult noFit = runTool(tool.command + (folder / "covariance.yml") + tool.rest);
+        INFO(noFit.err);
+        CHECK(noFit.code == 1);
+        CHECK(mentions(noFit.err, "covariance is 2x2"));
+    }
+    const ToolResult said = runTool("refract_measure " + (folder / "window.yml") + tools[0].rest + " --no-window");
+    CHECK(said.code == 1);                                  // camera 2 has one
+    CHECK(mentions(said.err, "leave --no-window out"));
+    std::ofstream(folder / "none.yml") << truth.substr(truth.find("   image_width"), window - truth.find("   image_width"));
+    const std::string single = std::regex_replace(readFile(folder / "none.yml"), std::regex("(^|\n)   "), "$1");
+    std::ofstream(folder / "none.yml") << "%YAML:1.0\n---\n" << single;
+    const std::string call = "refract_measure " + (folder / "none.yml") + " " + first + TARGET + " --pixel-sigma=0.014";
+    CHECK(runTool(call).code == 1);
+    const ToolResult none = runTool(call + " --no-window");
+    INFO(none.err);
+    CHECK(none.code == 0);
+    CHECK(mentions(none.err, "no covariance"));
+}
+
+TEST_CASE("refract_measure blames the right image, and knows a target of another size", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    cv::imwrite(folder / "small.png", cv::Mat(100, 100, CV_8U, cv::Scalar(90)));
+    const std::string call = "refract_measure " + STEREO + "/truth.yml ";
+    const struct { std::string arguments, expected; } cases[] = {
+        {(folder / "none.png") + TARGET, "there is no file '" + (folder / "none.png")},
+        {"'" + (folder / "none*.png") + "'" + TARGET, "no file matches"},
+        {"''" + TARGET, "an empty name"},
+        {(folder / "small.png") + TARGET, "1280x1024"},
+        {image("measure1/z600_1") + " --size=7x6 --square=39", "--size=6x5"},
+        {image("measure1/z600_1") + " --size=5x4 --square=39", "--size=6x5"},
+        {"'" + image("measure1/z600_?") + "' --size=7x6 --square=39", "--size=6x5"}};
+    for (const auto& c : cases)
+    {
+        const ToolResult result = runTool(call + c.arguments);
+        INFO(c.arguments << "\n" << result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, c.expected));
+    }
+}
+
 TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tools][measure]")
 {
     const TemporaryFolder folder;
@@ -176,7 +358,7 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
         {calib + " " + write("empty.jpg", "") + " " + second + TARGET, "empty"},
         {calib + " " + STEREO + " " + second + TARGET, "folder"},
         {calib + " " + first + " " + second + " --size=6 --square=39", "--size"},
-        {calib + " " + first + " " + second + " --size=9x14 --square=39", "not found"},
+        {calib + " " + first + " " + second + " --size=9x14 --square=39", "--size=6x5"},
         {calib + " " + first + " " + second + " --size=6x5 --square=-1", "--square"},
         {calib + " " + first + " " + second + " --size=6x5 --square=nan", "--square"},
         {calib + " " + first + " " + second + " --size=6x5 --square=39 --pattern=stripes", "--pattern"},

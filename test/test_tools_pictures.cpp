@@ -123,6 +123,7 @@ TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and w
         {epilines + calib + " " + first + " " + second + " --points=" + (folder / "bad.txt") + picture, "line 2"},
         {epilines + calib + " " + first + " " + second + " --points=" + (folder / "none.txt") + picture, "no points"},
         {epilines + calib + " " + first + " " + second + TARGET + " --depth=5,1" + picture, "--depth"},
+        {epilines + calib + " " + first + " " + second + " --size=7x6 --square=39" + picture, "6x5"},
         {epilines + calib + " " + first + " " + (folder / "small.png") + TARGET + picture, "1280x1024"},
         {epilines + calib + " " + first + " " + (folder / "blank.png") + TARGET + picture, "not found"},
         {epilines + calib + " " + first + " " + second + TARGET + " --out=" + (folder / "picture.xyz"), "extension"},

@@ -3,7 +3,10 @@
 #include "truth_file.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
 
 namespace {
 
@@ -83,6 +86,38 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
     }
 }
 
+TEST_CASE("a chessboard of another size than --size is told from, soon", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    write(folder / "rig.yml", scene("{ pattern: chessboard, size: \"9x6\", square: 22. }",
+                                    "   glass: { window: 1, poses: [ fixed ] }\n   direct: { window: 0, poses: [ drawn, fixed ] }\n"));
+    REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out")).code == 0);
+    const std::string measure = "refract_measure " + (folder / "out/truth.yml") + " '" + (folder / "out/glass/*") + "' --square=22";
+    CHECK(runTool(measure + " --size=9x6").code == 0);
+    for (const std::string size : {"10x7", "8x5", "9x5", "6x8"})
+    {
+        const auto start = std::chrono::steady_clock::now();
+        const ToolResult result = runTool(measure + " --size=" + size);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        INFO(size << "\n" << result.err);
+        CHECK(result.code == 1);
+        CHECK(result.err.find("--size=9x6") != std::string::npos);
+        std::cout << "[numbers] 9x6 board called " << size << ": refused after " << seconds << " s (3 images)\n";
+    }
+
+    // One odd-sized image among many is to blame, wherever it stands.
+    for (const std::string name : {"a.png", "e.png", "z.png"})
+    {
+        cv::imwrite(folder / ("out/direct/" + name), cv::Mat(480, 600, CV_8U, cv::Scalar(90)));
+        const ToolResult odd = runTool("refract_calib --size=9x6 --square=22 --thickness=20 --index=1.5 --unpaired --direct='"
+            + (folder / "out/direct/*") + "' --glass='" + (folder / "out/glass/*") + "' --out=" + (folder / "calib.yml"));
+        std::filesystem::remove(folder / ("out/direct/" + name));
+        INFO(odd.err);
+        CHECK(odd.code == 1);
+        CHECK(odd.err.find(name + "' is 600x480 pixels, 5 other images are 640x512") != std::string::npos);
+    }
+}
+
 TEST_CASE("the same scene gives the same images, another seed gives others", "[tools][simulate]")
 {
     const TemporaryFolder folder;
@@ -124,6 +159,7 @@ TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence",
                           Case{replaced("target:", "goal:"), "has no 'target'"},
                           Case{replaced("noise: 1.", "noise: -1."), "noise"},
                           Case{replaced("image_width: 640\n", ""), "image_width"},
+                          Case{replaced("glass_window:", "window:"), "glass_window"},
                           Case{replaced("index: [ 1.5 ]", "index: [ 0.5 ]"), "index"},
                           Case{replaced("distance: [ 600., 700. ]", "distance: [ 100., 110. ]"), "smaller target"}})
     {

@@ -64,6 +64,7 @@ inline std::vector<cv::Point3d> chessboard(int columns, int rows, double square)
 
 struct CsvRow
 {
+    std::string image;
     int id, status;
     cv::Point2d pixel1, pixel2;
     cv::Vec3d point, sigma;
@@ -75,18 +76,20 @@ inline std::vector<CsvRow> readPointsCsv(const std::string& text)
     std::istringstream in(text);
     std::string line;
     std::getline(in, line);
-    if (line != "id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status")
+    if (line != "image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status")
         throw std::runtime_error("heading of points.csv: " + line);
     std::vector<CsvRow> rows;
     while (std::getline(in, line))
     {
         std::istringstream cells(line);
+        std::string image;
+        std::getline(cells, image, ',');
         std::vector<double> numbers;
         for (std::string cell; std::getline(cells, cell, ','); )
             numbers.push_back(std::stod(cell));     // takes nan
         if (numbers.size() != 12)
             throw std::runtime_error("row of points.csv: " + line);
-        rows.push_back({(int)numbers[0], (int)numbers[11], {numbers[1], numbers[2]}, {numbers[3], numbers[4]},
+        rows.push_back({image, (int)numbers[0], (int)numbers[11], {numbers[1], numbers[2]}, {numbers[3], numbers[4]},
                         {numbers[5], numbers[6], numbers[7]}, {numbers[8], numbers[9], numbers[10]}});
     }
     return rows;

@@ -23,6 +23,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "data_checks.hpp"
 #include "file_output.hpp"
 #include "misfit.hpp"
+#include "outputs.hpp"
 #include "pinhole_rig.hpp"
 #include "plot.hpp"
 #include "progress.hpp"
@@ -30,7 +31,6 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 #include "summary.hpp"
 #include "summary_json.hpp"
 #include "thumbnails.hpp"
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <regex>
@@ -228,8 +228,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
         if (!o.camera[k].empty())
         {
             // A rig's file may serve for both cameras.
-            c.options.known[k] = k == 1 && o.camera[1] == o.camera[0] ? RefractiveCamera::read(o.camera[k], "camera2")
-                                                                      : RefractiveCamera::read(o.camera[k]);
+            c.options.known[k] = readLens(o.camera[k], k == 1 && o.camera[1] == o.camera[0] ? "camera2" : "");
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target, quiet, c);
@@ -259,12 +258,9 @@ void checkOutputs(const Options& o)
 {
     if (!o.report.empty())
         Plot::checkAvailable();
-    for (const std::string& path : {o.out, o.summary, o.report, o.pinholeOut})
-    {
-        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-        if (!folder.empty() && !std::filesystem::is_directory(folder))
-            throw Failure("cannot write '" + path + "': there is no folder '" + folder.string() + "'; make it first");
-    }
+    tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
+                         {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
+                        {o.images.direct[0], o.images.glass[0], o.images.direct[1], o.images.glass[1], o.camera[0], o.camera[1]});
 }
 
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)

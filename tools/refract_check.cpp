@@ -5,9 +5,10 @@ static const char MANUAL[] = R"(Checks whether the window has moved since the ca
   refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
   refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct2='d2/*' --glass2='g2/*'      a stereo rig
 
-Images with the same name are a pair: the target must not have moved between them, not even by a tenth of a pixel, as such a
-shift looks like a tilt of the window. The test compares the tilt since the calibration with its uncertainty, which comes from
-the noise of the calibration's residuals, from the covariance in calib.yml and from where the target is in the new images.
+One image each of --direct and --glass are a pair; among several, those with the same name. The target must not have moved
+between them, not even by a tenth of a pixel, as such a shift looks like a tilt of the window. The test compares the tilt
+since the calibration with its uncertainty, which comes from the noise of the calibration's residuals, from the covariance
+in calib.yml and from where the target is in the new images.
 If nothing moved, it says "moved" with the probability --false-alarm.
 
 Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
@@ -15,6 +16,7 @@ not show a tilt of --detect degrees with a probability of 95 %.)";
 
 #include "file_output.hpp"
 #include "measurement.hpp"
+#include "outputs.hpp"
 #include "table.hpp"
 #include "window_check.hpp"
 #include <nlohmann/json.hpp>
@@ -74,15 +76,57 @@ CheckBasis basisOf(const Options& o, const Calibration& calibration)
     return basis;
 }
 
-std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, bool quiet)
+//! One image each is of one moment, whatever the names.
+void nameSingles(RigViewSets& sets)
+{
+    const std::vector<ViewSet*> all = {&sets.direct[0], &sets.glass[0], &sets.direct[1], &sets.glass[1]};
+    if (std::all_of(all.begin(), all.end(), [](const ViewSet* set) { return set->files.size() <= 1 && set->views.size() <= 1; }))
+        for (ViewSet* set : all)
+            for (View& view : set->views)
+                view.stem = stemOf(sets.glass[0].views[0].path);
+}
+
+//! Direct images that have no glass image of their name are of no use here, and those are rarely meant.
+void requirePairs(const Options& o, const RigViewSets& sets, const Command& command)
+{
+    for (int c = 0; c < 2; c++)
+    {
+        const std::string number = c ? "2" : "";
+        std::string alone;
+        int count = 0;
+        for (const View& view : sets.direct[c].views)
+            if (!sets.glass[c].find(view.stem))
+                alone += (count++ ? ", '" : "'") + view.stem + "'";
+        if (!count)
+            continue;
+        if (count == (int)sets.direct[c].views.size())
+            throw Failure("no image of --direct" + number + "='" + o.images.direct[c] + "' has the name of one of --glass" + number
+                          + "='" + o.images.glass[c] + "' in which the target was found: the two images of a pair need equal names "
+                          "(without folder and extension), or give one image each");
+        command.warn("not used, as there is no image of that name in --glass" + number + ": " + alone);
+    }
+}
+
+void sayMissing(const RigViewSets& sets, const Command& command)
+{
+    for (const ViewSet* set : sets.all())
+        for (const std::string& path : set->withoutTarget)
+            command.warn("the target was not found in '" + path + "'");
+}
+
+std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
 {
     if (!o.images.glass[1].empty() && !calibration.stereo())
         throw Failure("'" + o.calibration + "' has one camera: leave --glass2 out");
     cv::Size sizes[2];
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
+    RigViewSets sets = readViewSets(o.images, target, sizes, command.quiet());
+    nameSingles(sets);
+    requirePairs(o, sets, command);
+    sayMissing(sets, command);
     std::vector<Moment> moments;
-    for (const Moment& m : pairViews(target, readViewSets(o.images, target, sizes, quiet), false).moments)
+    for (const Moment& m : pairViews(target, sets, false).moments)
         if (m.hasGlass())
             moments.push_back(m);
     return moments;
@@ -171,8 +215,12 @@ int main(int argc, char** argv)
         command.parse();
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
+        requireWindows(calibration, options.calibration, false, "");
+        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}},
+                     {options.calibration, options.images.glass[0], options.images.glass[1], options.images.direct[0],
+                      options.images.direct[1]});
         const CheckBasis basis = basisOf(options, calibration);
-        const std::vector<Moment> moments = readMoments(options, calibration, target, command.quiet());
+        const std::vector<Moment> moments = readMoments(options, calibration, target, command);
         const CheckResult result = checkWindows(basis, target.objectPoints(), moments, options.falseAlarm);
         const bool moved = anyMoved(result);
         const std::string why = whyNot(result, options, basis), verdict = verdictOf(moved, why);

@@ -2,8 +2,10 @@
 #include "file_output.hpp"
 #include "images.hpp"
 #include "measurement.hpp"
+#include "outputs.hpp"
 #include "point_file.hpp"
 #include "table.hpp"
+#include "views.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -31,6 +33,7 @@ struct Options
 {
     std::string calibration, image1, image2, points, depth, out;
     TargetOptions target;
+    bool noWindow = false;
 };
 
 std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& points, const cv::Vec2d& depth)
@@ -109,7 +112,10 @@ cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& ca
 
 std::vector<Point2d> detectIn(const cv::Mat& image, const std::string& path, const Target& target)
 {
-    const std::vector<Point2d> points = target.detect(image);
+    cv::Size other;
+    const std::vector<Point2d> points = target.detect(image, &other);
+    if (!other.empty())
+        throw Failure(otherTargetText("'" + path + "'", target, other));
     if (points.empty())
         throw Failure("the target was not found in '" + path + "': check --pattern and --size, or give --points=FILE");
     return points;
@@ -154,6 +160,7 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("--depth", options.depth, "near,far: z of the scene in the frame of camera 1; far may be inf (default: "
                    "around the target; with --points from the distance of the cameras to inf)");
     app.add_option("--out", options.out, "picture to write")->required();
+    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
 }
 
 } // namespace
@@ -168,6 +175,9 @@ int main(int argc, char** argv)
             throw Failure("give either --points=FILE or a target (--size, --square)");
 
         const Calibration rig = readCalibration(options.calibration);
+        requireWindows(rig, options.calibration, options.noWindow);
+        checkOutputs({{"--out", options.out, OUTPUT_PICTURE}},
+                     {options.calibration, options.image1, options.image2, options.points});
         if (!rig.stereo())
             throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
                           "(refract_calib --direct2 --glass2)");

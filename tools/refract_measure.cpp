@@ -1,12 +1,13 @@
 #include "file_output.hpp"
 #include "measurement.hpp"
+#include "outputs.hpp"
 #include "table.hpp"
 #include "views.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <limits>
+#include <set>
 #include <sstream>
 
 static const char MANUAL[] = R"(Measures the points of a target, in the frame of camera 1, from images through the window.
@@ -16,9 +17,14 @@ static const char MANUAL[] = R"(Measures the points of a target, in the frame of
   refract_measure calib.yml IMAGE --size=... --square=...                             one camera: pose of the target
 
 IMAGE may be a quoted glob ('measure1/*.png') or a corners.vnl; images of two cameras belong together when their file
-stems are equal. points.csv: id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point of the target (id counts on from view
-to view); s* is one standard deviation, from the pixel noise that the calibration found and from the calibration's own
-covariance, which calib.yml holds; nan where there is no answer, and status says why (0: fine; RefractiveStatus).
+stems are equal. Images without target or without partner are skipped, and named on stderr.
+
+points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point of the target; image is the file's stem (of camera 1), id
+counts within the target; s* is one standard deviation, from the pixel noise that the calibration found and from the
+calibration's own covariance, which calib.yml holds; nan where there is no answer. status: 0 fine; 1 to 8 why there is no
+answer (RefractiveStatus); 9 the pixels contradict each other by more than 5 standard deviations of noise and calibration: the
+point has the s* of that misfit, and far beyond it is nan. Look for swapped images, images of two moments, a moved camera.
+
 The table compares the distances between neighbouring points with --square.)";
 
 namespace {
@@ -31,7 +37,7 @@ struct Options
     std::vector<std::string> compareWith;
     TargetOptions target;
     double pixelSigma = 0.;
-    bool compare = false;
+    bool compare = false, noWindow = false;
 };
 
 //! One view by one or two cameras.
@@ -41,38 +47,81 @@ struct Sight
     std::vector<cv::Point2d> pixels1, pixels2;
 };
 
-ViewSet readViewsOf(const std::string& source, const Target& target, const CameraCalibration& camera, bool quiet)
+//! "'a', 'b' and 3 more"
+std::string listed(const std::vector<std::string>& names)
 {
-    return readViews(source, target, camera.camera->imageSize(), quiet);
+    const size_t most = 8;
+    std::string text;
+    for (size_t i = 0; i < std::min(most, names.size()); ++i)
+        text += (i ? ", '" : "'") + names[i] + "'";
+    return names.size() > most ? text + format(" and %d more", (int)(names.size() - most)) : text;
 }
 
-std::vector<Sight> readSights(const Options& options, const Calibration& calibration, const Target& target, bool quiet)
+void sayMissing(const ViewSet& set, const std::string& which, const Command& command)
 {
-    const ViewSet first = readViewsOf(options.image1, target, calibration.cameras[0], quiet);
+    if (!set.withoutTarget.empty())
+        command.warn("skipped" + which + ", as the target was not found: " + listed(set.withoutTarget));
+}
+
+void sayAlone(const std::vector<std::string>& stems, int camera, int other, const Command& command)
+{
+    if (!stems.empty())
+        command.warn(format("skipped of camera %d, as camera %d has no image of that name with the target: ", camera, other)
+                     + listed(stems));
+}
+
+std::vector<Sight> readSights(const Options& options, const Calibration& calibration, const Target& target,
+                              const Command& command)
+{
+    const auto readOf = [&](const std::string& source, int c) {
+        return readViews(source, target, calibration.cameras[c].camera->imageSize(), command.quiet());
+    };
+    const ViewSet first = readOf(options.image1, 0);
     std::vector<Sight> sights;
     if (options.image2.empty())
     {
+        sayMissing(first, "", command);
         for (const View& view : first.views)
             sights.push_back({view.stem, view.points, {}});
         return sights;
     }
-    const ViewSet second = readViewsOf(options.image2, target, calibration.cameras[1], quiet);
-    const bool single = first.views.size() == 1 && second.views.size() == 1;    // a pair whatever the names
+    const ViewSet second = readOf(options.image2, 1);
+    const bool single = first.files.size() == 1 && second.files.size() == 1 && first.views.size() == 1
+                        && second.views.size() == 1;        // a pair whatever the names
+    std::vector<std::string> alone1, alone2;
+    std::set<std::string> paired;
     for (const View& view : first.views)
     {
         const View* other = single ? &second.views[0] : second.find(view.stem);
-        if (other)
-            sights.push_back({view.stem, view.points, target.alignWith(view.points, other->points)});
+        if (!other)
+        {
+            alone1.push_back(view.stem);
+            continue;
+        }
+        paired.insert(other->stem);
+        sights.push_back({view.stem, view.points, target.alignWith(view.points, other->points)});
     }
+    for (const View& view : second.views)
+        if (!paired.count(view.stem))
+            alone2.push_back(view.stem);
     if (sights.empty())
         throw Failure("no image of '" + options.image1 + "' has the name of one of '" + options.image2
                       + "': images of one moment need equal names");
+    sayMissing(first, " of camera 1", command);
+    sayMissing(second, " of camera 2", command);
+    sayAlone(alone1, 1, 2, command);
+    sayAlone(alone2, 2, 1, command);
     return sights;
+}
+
+double pixelSigma(const Options& options, const Calibration& calibration)
+{
+    return options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
 }
 
 Measurement measure(const Options& options, const Calibration& calibration, const Target& target, const Sight& sight)
 {
-    const double sigma = options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
+    const double sigma = pixelSigma(options, calibration);
     if (!sight.pixels2.empty())
         return measureStereo(calibration, sight.pixels1, sight.pixels2, sigma);
     if (options.plane.empty())
@@ -89,18 +138,98 @@ std::vector<Measurement> measureAll(const Options& options, const Calibration& c
     return results;
 }
 
-std::string csvOf(const std::vector<Measurement>& measurements)
+void judge(const Options& options, const Calibration& calibration, std::vector<Measurement>& results)
+{
+    for (Measurement& m : results)
+        if (!m.pixels2.empty())
+            judgePartners(calibration, pixelSigma(options, calibration), m);
+        else if (options.plane.empty())
+            judgePose(pixelSigma(options, calibration), m);
+}
+
+//! What contradicts itself, or empty.
+std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+{
+    std::vector<std::string> names;
+    int points = 0, all = 0, nowhere = 0;
+    double worst = 0;
+    for (size_t i = 0; i < results.size(); ++i)
+    {
+        const Measurement& m = results[i];
+        all += (int)m.points.size();
+        if (!m.inconsistent())
+            continue;
+        names.push_back(sights[i].stem);
+        points += m.inconsistent();
+        for (size_t k = 0; k < m.points.size(); ++k)
+            nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
+        worst = std::max(worst, m.worstMisfit);
+    }
+    if (names.empty())
+        return "";
+    const bool pairs = !results[0].pixels2.empty();
+    const std::string left = pairs ? "the two pixels of a point miss each other by up to %.3g px"
+                                   : "the pose leaves residuals of up to %.3g px per coordinate";
+    return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
+        + format(left.c_str(), pairs ? std::sqrt(2.) * worst : worst) + " (" + listed(names) + "; status 9"
+        + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere) : ", large sx, sy, sz")
+        + "). "
+        + (pairs ? "Check that left and right are not swapped, that the images of a pair are of one moment, and that no camera "
+                   "and no window has moved since the calibration"
+                 : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
+}
+
+void sayNoisier(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights,
+                const std::vector<Measurement>& results, const Command& command)
+{
+    const double sigma = pixelSigma(options, calibration), few = 3.;
+    std::vector<std::string> names;
+    double worst = 0;
+    for (size_t i = 0; i < results.size(); ++i)
+        if (!results[i].inconsistent() && results[i].noise > few * sigma)
+        {
+            names.push_back(sights[i].stem);
+            worst = std::max(worst, results[i].noise);
+        }
+    if (!names.empty())
+        command.warn(format("the pixels are noisier than in the calibration: up to %.3g px per coordinate instead of %.3g px, in ",
+                            worst, sigma) + listed(names) + "; sx, sy, sz say so. Check focus, light, motion, and the target");
+}
+
+//! What sx, sy and sz leave out.
+void sayUncovered(const Options& options, const Calibration& calibration, const Command& command)
+{
+    if (!(pixelSigma(options, calibration) > 0))
+        command.warn("'" + options.calibration + "' does not say how large the noise of a pixel is, so sx, sy, sz are not known: "
+                     "calibrate with refract_calib, or give --pixel-sigma");
+    else if (calibration.covariance.empty())
+        command.warn("'" + options.calibration + "' has no covariance: sx, sy, sz cover the noise of the pixels, and take the "
+                     "calibration as exact");
+}
+
+//! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
+std::string cellOf(const std::string& text)
+{
+    if (text.find_first_of(", ;\t\"\n\r") == std::string::npos)
+        return text;
+    std::string cell = "\"";
+    for (char c : text)
+        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
+}
+
+std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measurement>& measurements)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::ostringstream csv;
     csv.precision(12);
-    csv << "id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\n";
-    int id = 0;
-    for (const Measurement& m : measurements)
-        for (size_t i = 0; i < m.points.size(); ++i)
+    csv << "image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\n";
+    for (size_t k = 0; k < sights.size(); ++k)
+        for (size_t i = 0; i < sights[k].pixels1.size(); ++i)
         {
+            const Measurement& m = measurements[k];
             const cv::Point2d second = m.pixels2.empty() ? cv::Point2d(nan, nan) : m.pixels2[i];
-            csv << id++;
+            csv << cellOf(sights[k].stem) << ',' << i;
             for (const double number : {m.pixels1[i].x, m.pixels1[i].y, second.x, second.y, m.points[i].x, m.points[i].y,
                                         m.points[i].z, m.sigma[i][0], m.sigma[i][1], m.sigma[i][2]})
                 std::isnan(number) ? csv << ",nan" : csv << ',' << number;
@@ -124,7 +253,7 @@ std::vector<std::string> rowOf(const std::string& name, const Target& target, co
             ++lengths;
         }
         for (size_t i = 0; i < m.points.size(); ++i)
-            if (m.status[i] == cv::refract::REFRACT_OK)
+            if (m.points[i].z == m.points[i].z)
             {
                 near = std::min(near, m.points[i].z);
                 far = std::max(far, m.points[i].z);
@@ -141,8 +270,21 @@ std::vector<std::string> rowOf(const std::string& name, const Target& target, co
     return row;
 }
 
-void printTable(const Options& options, const Calibration& calibration, const Target& target,
-                const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+//! To compare with: without windows they are welcome too.
+std::vector<Calibration> readOthers(const Options& options, const Calibration& calibration)
+{
+    std::vector<Calibration> others;
+    for (const std::string& file : options.compareWith)
+    {
+        others.push_back(readCalibration(file));
+        if (others.back().cameras.size() != calibration.cameras.size())
+            throw Failure("'" + file + "' has another number of cameras than '" + options.calibration + "'");
+    }
+    return others;
+}
+
+void printTable(const Options& options, const Calibration& calibration, const std::vector<Calibration>& others,
+                const Target& target, const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
     // From the pose of a target of known shape, the distances come out as they went in.
     const bool lengthsMeasured = !options.image2.empty() || !options.plane.empty();
@@ -152,13 +294,8 @@ void printTable(const Options& options, const Calibration& calibration, const Ta
     if (options.compare)
         table.add(rowOf("glass ignored", target, measureAll(options, withoutWindows(calibration), target, sights),
                         lengthsMeasured));
-    for (const std::string& file : options.compareWith)
-    {
-        const Calibration other = readCalibration(file);
-        if (other.cameras.size() != calibration.cameras.size())
-            throw Failure("'" + file + "' has another number of cameras than '" + options.calibration + "'");
-        table.add(rowOf(std::filesystem::path(file).stem().string(), target, measureAll(options, other, target, sights), lengthsMeasured));
-    }
+    for (size_t i = 0; i < others.size(); ++i)
+        table.add(rowOf(stemOf(options.compareWith[i]), target, measureAll(options, others[i], target, sights), lengthsMeasured));
     const bool alone = !options.compare && options.compareWith.empty();
     table.add(rowOf(alone ? "measured" : "with the window", target, results, lengthsMeasured));
     std::cout << sights.size() << (sights.size() == 1 ? " view" : " views")
@@ -175,6 +312,7 @@ void addOptions(CLI::App& app, Options& options)
     options.target.addTo(app, true);
     app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
     app.add_option("--out", options.out, "points.csv to write");
+    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
     app.add_option("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: that "
                    "of the calibration's residuals)")->check(CLI::PositiveNumber);
     app.add_flag("--compare", options.compare, "show also what comes out if the glass is ignored");
@@ -203,18 +341,30 @@ int main(int argc, char** argv)
 
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
+        requireWindows(calibration, options.calibration, options.noWindow);
         checkCombination(options, calibration);
-        const std::vector<Sight> sights = readSights(options, calibration, target, command.quiet());
-        const std::vector<Measurement> results = measureAll(options, calibration, target, sights);
+        std::vector<std::string> inputs = {options.calibration, options.image1, options.image2};
+        inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
+        checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
+        const std::vector<Calibration> others = readOthers(options, calibration);
+        const std::vector<Sight> sights = readSights(options, calibration, target, command);
+        std::vector<Measurement> results = measureAll(options, calibration, target, sights);
+        judge(options, calibration, results);
+        const std::string contradiction = contradictionIn(sights, results);
         int answers = 0;
         for (const Measurement& m : results)
             answers += m.answers();
         if (!answers)
-            throw Failure("no point of the target could be measured: are images and calibration of the same cameras?");
+            throw Failure(contradiction.empty() ? "no point of the target could be measured: are images and calibration of the "
+                                                  "same cameras?" : contradiction);
+        if (!contradiction.empty())
+            command.warn(contradiction);
+        sayNoisier(options, calibration, sights, results, command);
+        sayUncovered(options, calibration, command);
         if (!options.out.empty())
-            writeText(options.out, csvOf(results));
+            writeText(options.out, csvOf(sights, results));
         if (!command.quiet())
-            printTable(options, calibration, target, sights, results);
+            printTable(options, calibration, others, target, sights, results);
         return DONE;
     });
 }

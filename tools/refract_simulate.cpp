@@ -1,5 +1,6 @@
 #include "calibrate_rig.hpp"
 #include "file_output.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 #include "scene_file.hpp"
 
@@ -115,11 +116,21 @@ void renderAll(const std::string& folder, const Scene& scene, const Target& targ
     Progress progress("rendering", (int)jobs.size(), quiet);
     for (size_t i = 0; i < jobs.size(); ++i)
     {
+        progress.at(jobs[i].path);
         const cv::Mat image = render(target, poseOf(scene, jobs[i]), cameraOf(scene, jobs[i]), scene.exposure,
                                      scene.seed * 1000003 + i + 1);
         writeImage(folder + "/" + jobs[i].path, image, parameters);
         progress.step();
     }
+}
+
+//! DIR/truth.yml is a scene too, and may be the one that is read.
+void refuseOverwriting(const std::string& rig, const std::string& folder, const std::vector<Job>& jobs)
+{
+    std::vector<Output> outputs = {{"--out-dir", folder + "/truth.yml", OUTPUT_IN_FOLDER}};
+    for (const Job& job : jobs)
+        outputs.push_back({"--out-dir", folder + "/" + job.path, OUTPUT_IN_FOLDER});
+    checkOutputs(outputs, {rig});
 }
 
 } // namespace
@@ -140,6 +151,7 @@ int main(int argc, char** argv)
         const Scene scene = readScene(rig);
         const Target target(scene.target);
         const std::vector<Job> jobs = listJobs(scene, extension);
+        refuseOverwriting(rig, folder, jobs);
         for (const Job& job : jobs)
             makeFolder(folder + "/" + job.path.substr(0, job.path.find('/')));
         std::vector<int> parameters;

@@ -2,6 +2,7 @@
 #include "cli.hpp"
 #include "file_output.hpp"
 #include "images.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 
 #include <opencv2/imgproc.hpp>
@@ -28,6 +29,7 @@ struct Options
     std::string calibration, folder, depth, plane;
     std::vector<std::string> sources;
     int camera = 1;
+    bool noWindow = false;
 };
 
 //! What initRefractiveUndistortRectifyMap calls depth: one number, a plane, or nothing for infinitely far.
@@ -48,7 +50,7 @@ std::vector<double> depthOf(const Options& options)
     return numbers;
 }
 
-//! Image -> where its correction goes; the images themselves are never overwritten.
+//! Image -> where its correction goes.
 std::map<std::string, std::string> listImages(const Options& options)
 {
     std::map<std::string, std::string> inputOf, outputOf;
@@ -56,14 +58,24 @@ std::map<std::string, std::string> listImages(const Options& options)
         for (const std::string& path : expandGlob(source))
         {
             const std::string output = (fs::path(options.folder) / fs::path(path).filename()).string();
-            if (fs::exists(output) && fs::equivalent(output, path))
-                throw Failure("'" + path + "' would be overwritten: name another folder in --out-dir");
             if (inputOf.count(output) && inputOf[output] != path)
                 throw Failure("'" + path + "' and '" + inputOf[output] + "' have the same name: correct them one by one");
             inputOf[output] = path;
             outputOf[path] = output;
         }
     return outputOf;
+}
+
+void refuseOverwriting(const Options& options, const std::map<std::string, std::string>& images)
+{
+    std::vector<Output> outputs;
+    std::vector<std::string> inputs = {options.calibration};
+    for (const auto& image : images)
+    {
+        outputs.push_back({"--out-dir", image.second, OUTPUT_IN_FOLDER});
+        inputs.push_back(image.first);
+    }
+    checkOutputs(outputs, inputs);
 }
 
 class Corrector
@@ -108,17 +120,21 @@ int main(int argc, char** argv)
         command.app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there")->required();
         command.app.add_option("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
             ->check(CLI::Range(1, 2))->capture_default_str();
+        command.app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
         command.parse();
 
         const std::vector<double> depth = depthOf(options);
         const Calibration calibration = readCalibration(options.calibration);
+        requireWindows(calibration, options.calibration, options.noWindow);
         if (options.camera > (int)calibration.cameras.size())
             throw Failure("--camera=2: '" + options.calibration + "' has one camera");
         const auto images = listImages(options);
+        refuseOverwriting(options, images);
         Corrector corrector(calibration.cameras[options.camera - 1].camera, depth);
         Progress progress("correcting images", (int)images.size(), command.quiet());
         for (const auto& image : images)
         {
+            progress.at(image.first);
             const cv::Mat corrected = corrector.correct(image.first);
             makeFolder(options.folder);     // now that there is something to write
             writeImage(image.second, corrected);

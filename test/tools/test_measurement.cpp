@@ -93,6 +93,154 @@ TEST_CASE("Points of a target of known shape carry the calibration's uncertainty
     });
 }
 
+namespace {
+
+//! What two cameras see of a board, with noise; `off` is added to the second pixel of point 7, across its epipolar curve.
+Measurement seenByTwo(const Calibration& calibration, double noise, Point2d off, scenes::Random& random,
+                      std::vector<Point3d>* truth = nullptr)
+{
+    const std::vector<Point3d> object = board(6, 5);
+    const Vec3d rvec(0.2, 0.1, 0.05), tvec(-20, 10, 620);
+    Matx33d rotation;
+    Rodrigues(rvec, rotation);
+    std::vector<Point3d> points;
+    for (const Point3d& p : object)
+        points.push_back(Point3d(rotation * Vec3d(p) + tvec));
+    std::vector<Point2d> pixels[2];
+    Vec3d rig;
+    Rodrigues(calibration.R, rig);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), calibration.cameras[0].camera, pixels[0]);
+    refractiveProjectPoints(points, rig, calibration.T, calibration.cameras[1].camera, pixels[1]);
+    for (std::vector<Point2d>& image : pixels)
+        for (Point2d& p : image)
+            p += Point2d(random.normal(noise), random.normal(noise));
+    pixels[1][7] += off;
+    if (truth)
+        *truth = points;
+    return measureStereo(calibration, pixels[0], pixels[1], PIXEL);
+}
+
+} // namespace
+
+TEST_CASE("Partners that agree within the noise keep their uncertainty", "[measurement]")
+{
+    Calibration c = calibrationOf(paperRig(2));
+    for (const bool calibrationIsUncertain : {false, true})
+    {
+        if (calibrationIsUncertain)
+        {
+            // Wrong by what the covariance says: the normal of camera 2, by several pixels' noise.
+            const ParameterColumns at = columnsOf(paperRig(2), 1);
+            c.covariance = Mat::zeros(at.end + 6, at.end + 6, CV_64F);
+            const Vec3d n = c.cameras[1].camera->window().normal;
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++)
+                    c.covariance.at<double>(at.normal + i, at.normal + j) = 0.01 * 0.01 * ((i == j) - n[i] * n[j]);
+        }
+        scenes::Random random(3040);
+        int flagged = 0, inflated = 0, all = 0;
+        for (int trial = 0; trial < 100; trial++)
+        {
+            Rig rig = paperRig(2);
+            if (calibrationIsUncertain)
+            {
+                GlassWindow window = rig.cameras[1]->window();
+                window.normal = normalize(window.normal + Vec3d(random.normal(0.01), random.normal(0.01), random.normal(0.01)));
+                rig.cameras[1]->setWindow(window);
+            }
+            Measurement m = seenByTwo(calibrationOf(rig), PIXEL, {}, random);
+            m = measureStereo(c, m.pixels1, m.pixels2, PIXEL);
+            const Measurement before = m;
+            judgePartners(c, PIXEL, m);
+            flagged += m.inconsistent();
+            for (size_t i = 0; i < m.points.size(); i++, all++)
+                inflated += m.sigma[i][2] > 1.001 * before.sigma[i][2];
+        }
+        CAPTURE(calibrationIsUncertain, flagged, inflated, all);
+        CHECK(flagged <= 1);
+        CHECK(inflated < 0.02 * all);
+    }
+}
+
+TEST_CASE("A partner off its curve has the uncertainty of its misfit, a far one no point", "[measurement]")
+{
+    const Calibration c = calibrationOf(paperRig(2));
+    scenes::Random random(3041);
+    std::vector<Point3d> truth;
+    const Measurement clean = seenByTwo(c, 0., {}, random, &truth);
+    const struct { double off; uchar status; bool answer; } cases[] = {
+        {0., 0, true}, {0.9, INCONSISTENT, true}, {2., INCONSISTENT, true}, {30., INCONSISTENT, false}};
+    for (const auto& k : cases)
+    {
+        CAPTURE(k.off);
+        Measurement m = seenByTwo(c, 0., Point2d(0, k.off), random);       // the baseline is along x
+        judgePartners(c, PIXEL, m);
+        CHECK(m.status[7] == k.status);
+        CHECK((m.points[7].z == m.points[7].z) == k.answer);
+        CHECK(m.inconsistent() == (k.status ? 1 : 0));
+        CHECK(m.answers() == (k.answer ? 30 : 29));
+        CHECK(norm(m.sigma[8] - clean.sigma[8]) < 1e-9);
+        if (k.off > 0 && k.answer)
+        {
+            CHECK(m.sigma[7][2] > 0.4 * k.off / PIXEL * clean.sigma[7][2]);
+            CHECK(norm(Vec3d(m.points[7] - truth[7])) < 3 * norm(m.sigma[7]));
+        }
+    }
+    // Without a stated noise only what is gross can be told.
+    Measurement unknown = seenByTwo(c, 0., Point2d(0, 30), random);
+    judgePartners(c, std::numeric_limits<double>::quiet_NaN(), unknown);
+    CHECK(unknown.inconsistent() == 1);
+    CHECK(unknown.answers() == 29);
+}
+
+TEST_CASE("Images noisier than the calibration's make all their points less certain", "[measurement]")
+{
+    const Calibration c = calibrationOf(paperRig(2));
+    scenes::Random random(3042);
+    double squares = 0;
+    int count = 0, flagged = 0, noticed = 0;
+    for (int trial = 0; trial < 100; trial++)
+    {
+        std::vector<Point3d> truth;
+        Measurement m = seenByTwo(c, 3 * PIXEL, {}, random, &truth);
+        judgePartners(c, PIXEL, m);
+        flagged += m.inconsistent();
+        noticed += std::abs(m.noise - 3 * PIXEL) < 1.5 * PIXEL;
+        for (size_t i = 0; i < truth.size(); i++)
+            for (int k = 0; k < 3 && m.points[i].x == m.points[i].x; k++, count++)
+                squares += std::pow((Vec3d(m.points[i])[k] - Vec3d(truth[i])[k]) / m.sigma[i][k], 2);
+    }
+    CAPTURE(flagged, noticed);
+    CHECK(flagged < 30);        // of 3000
+    CHECK(noticed > 85);
+    CHECK(std::sqrt(squares / count) == Approx(1.).epsilon(0.15));
+}
+
+TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[measurement]")
+{
+    const Rig rig = paperRig(1);
+    TargetOptions options;
+    options.size = "6x5";
+    options.square = 39;
+    const Target target(options);
+    std::vector<Point2d> pixels;
+    refractiveProjectPoints(target.objectPoints(), Vec3d(0.2, 0.3, 0.1), Vec3d(-100, -80, 620), rig.cameras[0], pixels);
+    scenes::Random random(3043);
+    const Calibration c = calibrationOf(rig);
+    const Measurement exact = measureTarget(c, target, pixels, PIXEL);
+    for (Point2d& p : pixels)
+        p += Point2d(random.normal(10), random.normal(10));
+    Measurement m = measureTarget(c, target, pixels, PIXEL);
+    CHECK(m.noise == Approx(10).epsilon(0.3));
+    for (size_t i = 0; i < pixels.size(); i++)
+        for (int k = 0; k < 3; k++)
+            CHECK(m.sigma[i][k] == Approx(m.noise / PIXEL * exact.sigma[i][k]).epsilon(0.3));
+    CHECK(m.inconsistent() == 0);
+    judgePose(PIXEL, m);
+    CHECK(m.inconsistent() == 30);
+    CHECK(m.answers() == 30);
+}
+
 TEST_CASE("The error map grows with the range and knows what two cameras do not see", "[point_error]")
 {
     const Calibration one = calibrationOf(paperRig(1)), two = calibrationOf(paperRig(2));

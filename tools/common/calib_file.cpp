@@ -13,6 +13,7 @@ namespace tools {
 
 using cv::FileNode;
 using cv::FileStorage;
+using cv::format;
 using cv::refract::RefractiveCamera;
 
 namespace {
@@ -69,6 +70,40 @@ cv::Mat readMatrix(const FileNode& node)
         return cv::Mat();
     matrix.convertTo(matrix, CV_64F);
     return matrix;
+}
+
+bool isCameraModel(const std::string& filename)
+{
+    return std::filesystem::path(filename).extension() == ".cameramodel";
+}
+
+void requireDistortion(const FileNode& camera, const std::string& filename)
+{
+    if (!camera["camera_matrix"].empty() && camera["distortion_coefficients"].empty())
+        throw Failure("'" + filename + "' has no distortion_coefficients for its camera_matrix: is it cut short or edited? For "
+                      "a lens without distortion write distortion_coefficients: [ 0., 0., 0., 0., 0. ]");
+}
+
+CameraCalibration readCamera(const FileNode& node, const std::string& filename, const std::string& name)
+{
+    CameraCalibration calibration;
+    calibration.camera = RefractiveCamera::read(filename, name);
+    requireDistortion(node, filename);
+    calibration.windowGiven = !node["glass_window"].empty();
+    readEstimate(node, calibration);
+    return calibration;
+}
+
+//! In the order of calibrateGlass: lens, normal, distance, thickness, index, innerIndex, outerIndex; of two cameras, R and T.
+void requireCovarianceOf(const Calibration& calibration, const std::string& filename)
+{
+    int count = calibration.stereo() ? 6 : 0;
+    for (const CameraCalibration& c : calibration.cameras)
+        count += c.camera->lensParameters().rows + 6 + 2 * (int)c.camera->window().thickness.size();
+    const cv::Mat& C = calibration.covariance;
+    if (!C.empty() && C.size() != cv::Size(count, count))
+        throw Failure(format("'%s': the covariance is %dx%d, lens and window have %d parameters: was the file edited? Calibrate "
+                             "again", filename.c_str(), C.rows, C.cols, count));
 }
 
 //! R and T of a file of two cameras.
@@ -139,14 +174,29 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
     return {parts[1], parts[2]};
 }
 
+cv::Ptr<RefractiveCamera> readLens(const std::string& filename, const std::string& name)
+{
+    const cv::Ptr<RefractiveCamera> camera = RefractiveCamera::read(filename, name);
+    if (isCameraModel(filename))
+        return camera;
+    const FileStorage fs(filename, FileStorage::READ);
+    FileNode node = fs.root();
+    if (!name.empty())
+        node = node[name];
+    else if (node["camera_matrix"].empty())
+        node = node["camera1"];
+    requireDistortion(node, filename);
+    return camera;
+}
+
 Calibration readCalibration(const std::string& filename)
 {
     if (!std::filesystem::is_regular_file(filename))
         throw Failure("there is no calibration file '" + filename + "'");
     Calibration calibration;
-    if (std::filesystem::path(filename).extension() == ".cameramodel")
+    if (isCameraModel(filename))
     {
-        calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1.});
+        calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1., false});
         return calibration;
     }
     FileStorage fs;
@@ -161,21 +211,16 @@ Calibration readCalibration(const std::string& filename)
     if (!fs.isOpened() || !fs.root().isMap())
         throw Failure("'" + filename + "' is not YAML, XML or JSON with a camera in it, or is cut short: write it again");
     if (fs["camera1"].empty())
-    {
-        calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1.});
-        readEstimate(fs.root(), calibration.cameras[0]);
-    }
+        calibration.cameras.push_back(readCamera(fs.root(), filename, ""));
     else
     {
         for (const std::string name : {"camera1", "camera2"})
-        {
-            calibration.cameras.push_back({RefractiveCamera::read(filename, name), WindowStd(), -1.});
-            readEstimate(fs[name], calibration.cameras.back());
-        }
+            calibration.cameras.push_back(readCamera(fs[name], filename, name));
         readRigid(fs, filename, calibration);
     }
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.covariance = readMatrix(fs["covariance"]);
+    requireCovarianceOf(calibration, filename);
     calibration.sigma = readNumber(fs["residual_sigma"], -1.);
     calibration.freedom = readNumber(fs["degrees_of_freedom"], 0.);
     calibration.label = readLabel(fs);
@@ -184,6 +229,20 @@ Calibration readCalibration(const std::string& filename)
     if (fs["command"].isString())
         fs["command"] >> calibration.command;
     return calibration;
+}
+
+void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow, const std::string& option)
+{
+    for (size_t c = 0; c < calibration.cameras.size(); ++c)
+    {
+        const CameraCalibration& camera = calibration.cameras[c];
+        const std::string which = calibration.stereo() ? format(" for camera %d", (int)c + 1) : "";
+        if (!camera.windowGiven && !noWindow)
+            throw Failure("'" + filename + "' has no glass_window" + which + ": calibrate through the glass with refract_calib"
+                          + (option.empty() ? "" : ", or say " + option + " if there is none"));
+        if (camera.windowGiven && noWindow)
+            throw Failure("'" + filename + "' has a glass_window" + which + ": leave " + option + " out");
+    }
 }
 
 void writeCalibration(const std::string& filename, const Calibration& calibration)

@@ -28,6 +28,7 @@ struct CameraCalibration
     cv::Ptr<cv::refract::RefractiveCamera> camera;
     WindowStd windowStd;
     double rms = -1.;                   //!< px; negative where unknown
+    bool windowGiven = false;           //!< the file has a glass_window, be it one without layers
 };
 
 //! What people call the thing that was calibrated.
@@ -53,8 +54,19 @@ struct Calibration
     bool stereo() const { return cameras.size() == 2; }
 };
 
-//! Throws cv::Exception or Failure that names the file.
+/** Throws cv::Exception or Failure that names the file; also if a lens comes without distortion_coefficients or the
+covariance is not of these cameras. */
 Calibration readCalibration(const std::string& filename);
+
+/** A file without glass_window is a mistake more often than not: refuses it, unless `noWindow` says that there is none (and
+refuses a window then).
+@param option that says so, for the text; empty if the tool has none */
+void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow,
+                    const std::string& option = "--no-window");
+
+/** A lens as RefractiveCamera::read takes it, which is content without distortion_coefficients; this is not.
+@param name of the camera in the file, as there */
+cv::Ptr<cv::refract::RefractiveCamera> readLens(const std::string& filename, const std::string& name = "");
 
 //! Complete or not at all. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);

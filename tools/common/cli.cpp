@@ -43,7 +43,7 @@ Command::Command(int argc, char** argv, const std::string& manual)
     for (int i = argc - 1; i > 0; --i)      // CLI11 takes them in reverse
         arguments_.push_back(argv[i]);
     app.set_version_flag("--version", app.get_name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
-    app.add_flag("--quiet", quiet_, "no progress, no table: errors only");
+    app.add_flag("--quiet", quiet_, "no progress, no table: errors and warnings only");
     app.get_formatter()->column_width(34);
 }
 
@@ -55,6 +55,11 @@ std::string Command::stripFolder(const std::string& path)
 void Command::parse()
 {
     app.parse(arguments_);
+}
+
+void Command::warn(const std::string& text) const
+{
+    std::cerr << app.get_name() << ": warning: " << text << std::endl;
 }
 
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body)

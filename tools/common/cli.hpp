@@ -48,6 +48,9 @@ public:
     bool quiet() const { return quiet_; }                   //!< after parse()
     const std::string& line() const { return line_; }       //!< the command line, quoted for a shell
 
+    //! One line on stderr, with --quiet too: what was done is not quite what was asked.
+    void warn(const std::string& text) const;
+
 private:
     static std::string stripFolder(const std::string& path);
 

@@ -10,17 +10,31 @@ namespace tools {
 
 namespace fs = std::filesystem;
 
-OutputFile::OutputFile(const std::string& path) : path_(path)
+namespace {
+
+fs::path folderOf(const fs::path& file)
 {
-    const fs::path target(path);
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+} // namespace
+
+void requireWritable(const std::string& path)
+{
+    const fs::path target(path), folder = folderOf(target);
     if (target.filename().empty() || fs::is_directory(target))
         throw Failure("'" + path + "' is a folder: name a file to write");
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     if (!fs::is_directory(folder))
         throw Failure("cannot write '" + path + "': the folder '" + folder.string() + "' does not exist; make it first");
     if (access(folder.c_str(), W_OK) != 0)
         throw Failure("cannot write '" + path + "': no right to write in the folder '" + folder.string() + "'");
-    temporary_ = (folder / ("." + target.stem().string() + ".part" + std::to_string(getpid())
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path)
+{
+    requireWritable(path);
+    const fs::path target(path);
+    temporary_ = (folderOf(target) / ("." + target.stem().string() + ".part" + std::to_string(getpid())
                             + target.extension().string())).string();
 }
 

@@ -24,6 +24,9 @@ private:
     bool committed_ = false;
 };
 
+//! Throws Failure if no file can be written there: a folder of that name, no folder for it, no right.
+void requireWritable(const std::string& path);
+
 void writeText(const std::string& path, const std::string& text);
 void writeImage(const std::string& path, const cv::Mat& image, const std::vector<int>& parameters = {});
 

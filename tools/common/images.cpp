@@ -67,18 +67,28 @@ cv::Mat decode(const std::string& path, int flags)
 
 } // namespace
 
-std::vector<std::string> expandGlob(const std::string& pattern)
+std::vector<std::string> matchingFiles(const std::string& pattern)
 {
     if (fs::is_regular_file(pattern))
         return {pattern};
-    if (fs::is_directory(pattern))
-        throw Failure("'" + pattern + "' is a folder: say which images in it, as in '" + pattern + "/*.png'");
     glob_t matches = {};
     const int result = ::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches);
     std::vector<std::string> paths(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
     globfree(&matches);
     if (result == GLOB_NOSPACE)
         throw std::bad_alloc();
+    return paths;
+}
+
+std::vector<std::string> expandGlob(const std::string& pattern)
+{
+    if (pattern.empty())
+        throw Failure("an empty name was given for images: is a variable of the shell not set?");
+    if (fs::is_directory(pattern))
+        throw Failure("'" + pattern + "' is a folder: say which images in it, as in '" + pattern + "/*.png'");
+    const std::vector<std::string> paths = matchingFiles(pattern);
+    if (paths.empty() && pattern.find_first_of("*?[{") == std::string::npos)
+        throw Failure("there is no file '" + pattern + "': check folder and name");
     if (paths.empty())
         throw Failure("no file matches '" + pattern + "': check the folder, and quote the pattern on the command line");
     return paths;

@@ -7,6 +7,9 @@
 
 namespace tools {
 
+//! Files that match, sorted; none is no error.
+std::vector<std::string> matchingFiles(const std::string& glob);
+
 //! Files that match, sorted; throws Failure if there are none.
 std::vector<std::string> expandGlob(const std::string& glob);
 

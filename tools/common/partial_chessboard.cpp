@@ -1,5 +1,6 @@
 #include "partial_chessboard.hpp"
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <limits>
 
@@ -63,6 +64,25 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
         if (!piece.empty() && isEvenGrid(points, size))
             return points;
     }
+}
+
+Size lookForChessboard(const Mat& grey)
+{
+    const int sideOfCopy = 1000, leastCorners = 12;
+    const double scale = std::min(1., (double)sideOfCopy / std::max(grey.cols, grey.rows));
+    Mat copy;
+    resize(grey, copy, Size(), scale, scale, INTER_AREA);
+    Size largest;
+    for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
+    {
+        Mat meta;
+        std::vector<Point2f> corners;
+        if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+            && meta.size().area() >= std::max(leastCorners, largest.area() + 1)
+            && isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
+            largest = meta.size();
+    }
+    return largest;
 }
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)

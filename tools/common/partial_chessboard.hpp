@@ -15,6 +15,9 @@ squares are cut, by the board's edge or by that of the view, and are less exact 
 @return size.area() pixels, NaN where a point was not seen; empty if no piece of at least 3 x 3 corners was found. */
 std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size size);
 
+//! Size of the largest chessboard that is seen in a small copy of the image, whatever it is; empty if there is none.
+cv::Size lookForChessboard(const cv::Mat& grey);
+
 /** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
 skipped corners, or taken cut squares for whole ones. NaN points are passed over. */
 bool isEvenGrid(const std::vector<cv::Point2d>& points, cv::Size size);

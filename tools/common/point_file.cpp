@@ -2,21 +2,30 @@
 #include "cli.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 namespace tools {
 
 namespace {
 
-std::vector<std::string> cellsOf(std::string line)
+//! Cells with blanks, commas or semicolons between; what stands in quotes is one cell.
+std::vector<std::string> cellsOf(const std::string& line)
 {
-    std::replace_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    std::istringstream in(line);
     std::vector<std::string> cells;
-    for (std::string cell; in >> cell; )
-        cells.push_back(cell);
+    bool quoted = false, between = true;
+    for (const char c : line)
+    {
+        if (c == '"')
+            quoted = !quoted;
+        const bool separates = !quoted && (c == ',' || c == ';' || std::isspace((unsigned char)c));
+        if (!separates && between)
+            cells.emplace_back();
+        if (!separates)
+            cells.back() += c;
+        between = separates;
+    }
     return cells;
 }
 

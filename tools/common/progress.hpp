@@ -1,25 +1,35 @@
 #ifndef REFRACT_TOOLS_PROGRESS_HPP
 #define REFRACT_TOOLS_PROGRESS_HPP
 
-#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <string>
+#include <thread>
 
 namespace tools {
 
-//! One line on stderr that counts up; only on a terminal, and only if the work takes longer than a second.
+/* How far the work is and what it is at, on stderr: on a terminal one line that counts up, after a second; elsewhere a line
+"... what 3/40: name" every five seconds. */
 class Progress
 {
 public:
     Progress(const std::string& what, int total, bool quiet);
-    ~Progress();                //!< clears the line
-    void step();                //!< one more is done; may be called from any thread
+    ~Progress();                            //!< clears the line
+    void at(const std::string& name);       //!< what is begun now, a file say; may be called from any thread
+    void step();                            //!< one more is done; may be called from any thread
 private:
-    std::string what_;
-    int total_, done_ = 0;
-    bool enabled_, shown_ = false;
-    std::chrono::steady_clock::time_point start_, last_;
+    void show();                            // runs in a thread of its own, as one step may take long
+    std::string text() const;
+
+    const std::string what_;
+    const int total_;
+    const bool terminal_;
+    int done_ = 0;
+    std::string name_;
+    bool ended_ = false;
     std::mutex mutex_;
+    std::condition_variable end_;
+    std::thread thread_;
 };
 
 } // namespace tools

@@ -49,9 +49,10 @@ RigData pairViews(const Target& target, const RigViewSets& sets, bool unpaired)
             if (set.views.empty())
                 continue;
             if (!data.imageSize[c].empty() && set.imageSize != data.imageSize[c])
-                throw Failure(format("camera %d: direct images are %dx%d, glass images %dx%d: they must come from the same "
-                                     "camera at the same resolution", c + 1, data.imageSize[c].width,
-                                     data.imageSize[c].height, set.imageSize.width, set.imageSize.height));
+                throw Failure(format("camera %d: direct images ('%s') are %dx%d, glass images ('%s') %dx%d: they must come from the "
+                                     "same camera at the same resolution", c + 1, sets.direct[c].files[0].c_str(),
+                                     data.imageSize[c].width, data.imageSize[c].height, set.files[0].c_str(), set.imageSize.width,
+                                     set.imageSize.height));
             data.imageSize[c] = set.imageSize;
             for (const View& view : set.views)
             {

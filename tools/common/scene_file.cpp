@@ -2,6 +2,7 @@
 #include "calibrate_rig.hpp"
 
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -216,6 +217,10 @@ Scene readScene(const std::string& filename)
         poses[node.name()] = readPoses(node, points, scene.cameras, ++seed * 0x9E3779B97F4A7C15ull);
     for (const FileNode& node : fs["sets"])
         scene.sets.push_back(readSet(node, poses));
+    const bool windowNeeded = std::any_of(scene.sets.begin(), scene.sets.end(), [](const ImageSet& set) { return set.window; });
+    for (const CameraCalibration& c : scene.cameras.cameras)
+        if (windowNeeded && !c.windowGiven)
+            throw Failure("'" + filename + "': sets with 'window: 1' need a glass_window of each camera");
     if (scene.sets.empty())
         throw Failure("'" + filename + "': 'sets' names no images to render (see refract_simulate --help)");
     return scene;

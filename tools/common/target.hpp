@@ -45,8 +45,10 @@ public:
     //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 
-    //! Pixels of the points in an 8-bit grey image, NaN where one was not seen; empty if the target was not found.
-    std::vector<cv::Point2d> detect(const cv::Mat& grey) const;
+    /** Pixels of the points in an 8-bit grey image, NaN where one was not seen; empty if the target was not found, which is
+    known after some seconds in any image.
+    @param other a chessboard's size, if it was not found but one of another size is in the image (the longer side first) */
+    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr) const;
 
     /** The same points, renumbered by the target's symmetry so that the target is turned as in `reference`, another
     view of it by the same or a similarly turned camera. */

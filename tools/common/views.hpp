@@ -33,6 +33,9 @@ struct ViewSet
 Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
 ViewSet readViews(const std::string& source, const Target& target, cv::Size imageSize, bool quiet);
 
+//! "the chessboard in WHERE looks like one of 9x6 inner corners, not --size=10x7: ..."
+std::string otherTargetText(const std::string& where, const Target& target, cv::Size other);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_VIEWS_HPP

@@ -19,6 +19,8 @@ namespace {
 const int ITERATIONS = 20;
 const double CONVERGED = 1e-9;          // radians
 const double DEGREES = 180. / CV_PI;
+const char* const NO_TILT = "no tilt of the window explains the new images: did the target move between the images of a pair, or "
+                            "are images and calibration not of the same cameras?";
 
 //! Images of one moment, the pixels in the order of differentiateView, and the board's pose so far.
 struct Sight
@@ -114,7 +116,7 @@ public:
         for (int i = 0; i < ITERATIONS; i++)
             if (step() < CONVERGED)
                 return;
-        throw Failure("the tilt of the window does not converge: are images and calibration of the same cameras?");
+        throw Failure(NO_TILT);
     }
 
     const std::vector<FreeNormal>& normals() const { return normals_; }
@@ -139,6 +141,8 @@ private:
         const Eigen::LDLT<MatrixXd> inverse(S);
         covariance = (B.transpose() * inverse.solve(B)).inverse();
         const VectorXd change = covariance * (B.transpose() * inverse.solve(r));
+        if (!change.allFinite())
+            throw Failure(NO_TILT);
         const VectorXd rest = r - B * change, weighted = inverse.solve(rest), parameters = CAt * weighted;
         misfit = rest.dot(weighted);
         freedom = (int)(r.size() - delta.size());

@@ -1,0 +1,74 @@
+// A search that would never end, and the progress that is told meanwhile.
+#include "limited_search.hpp"
+#include "progress.hpp"
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+#include <unistd.h>
+
+using namespace tools;
+
+namespace {
+
+double secondsOf(const std::function<void()>& work)
+{
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+TEST_CASE("A search ends in its time, whatever it does", "[limited_search]")
+{
+    const std::vector<cv::Point2f> points = {{1, 2}, {3, 4}};
+    CHECK(searchLimited(5, 10, [&] { return points; }) == points);
+    CHECK(searchLimited(5, 1, [&] { return points; }).size() == 1);
+    CHECK(searchLimited(5, 10, [] { return std::vector<cv::Point2f>(); }).empty());
+    CHECK(searchLimited(5, 10, []() -> std::vector<cv::Point2f> { throw std::runtime_error("no"); }).empty());
+    CHECK(searchLimited(5, 10, []() -> std::vector<cv::Point2f> { raise(SIGKILL); return {}; }).empty());
+    CHECK(secondsOf([] {
+        CHECK(searchLimited(1, 10, []() -> std::vector<cv::Point2f> { for (volatile int i = 0;; i = i + 1) {} }).empty());
+    }) < 10);
+    CHECK(secondsOf([] {
+        CHECK(searchLimited(1, 10, []() -> std::vector<cv::Point2f> { sleep(60); return {}; }).empty());
+    }) < 10);
+
+    // From many threads at once.
+    std::vector<std::thread> threads;
+    std::vector<size_t> counts(8);
+    for (size_t i = 0; i < counts.size(); i++)
+        threads.emplace_back([&counts, i] {
+            counts[i] = searchLimited(5, 10, [i] { return std::vector<cv::Point2f>(i); }).size();
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    for (size_t i = 0; i < counts.size(); i++)
+        CHECK(counts[i] == i);
+}
+
+TEST_CASE("Progress without a terminal names what is worked on, every few seconds", "[progress]")
+{
+    for (const bool quiet : {false, true})
+    {
+        std::FILE* file = std::tmpfile();
+        const int terminal = dup(STDERR_FILENO);
+        dup2(fileno(file), STDERR_FILENO);
+        {
+            Progress progress("searching", 3, quiet);
+            progress.at("a.png");
+            progress.step();
+            progress.at("b.png");
+            std::this_thread::sleep_for(std::chrono::milliseconds(5400));
+        }
+        dup2(terminal, STDERR_FILENO);
+        close(terminal);
+        std::rewind(file);
+        char text[100] = "";
+        const size_t length = std::fread(text, 1, sizeof(text), file);
+        std::fclose(file);
+        CHECK(std::string(text, length) == (quiet ? "" : "... searching 1/3: b.png\n"));
+    }
+}
