@@ -29,6 +29,7 @@ typedef std::vector<Mat> vector_Mat;
 typedef std::vector<vector_Mat> vector_vector_Mat;
 typedef std::vector<double> vector_double;
 typedef std::vector<int> vector_int;
+typedef std::vector<String> vector_String;
 
 // The generated code fills tables by position and ignores what it does not need.
 #pragma GCC diagnostic ignored "-Wunused-parameter"
