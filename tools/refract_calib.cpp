@@ -46,7 +46,7 @@ struct Options
     RigSources images;
     std::string camera[2];
     std::string thickness, index, imageSize, out, summary, report, pinholeOut, lens = "opencv5";
-    double innerIndex = 1., outerIndex = 1., distance = 0.;
+    double innerIndex = 1., outerIndex = 1., distance = 0., thicknessStd = 0., indexStd = 0.;
     std::vector<std::string> free;
     bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false, crossValidation = true, robust = true;
     Limits limits;
@@ -95,6 +95,9 @@ Options parseOptions(Command& command)
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer: N[,N...]");
+    app.add_option("--thickness-std", o.thicknessStd, "how well the thickness of each layer is known, one standard deviation; "
+        "it is then estimated within it")->check(moreThanZero());
+    app.add_option("--index-std", o.indexStd, "the same of each index")->check(moreThanZero());
     app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera")->capture_default_str();
     app.add_option("--outer-index", o.outerIndex, "index of the scene's medium (1.333 water)")->capture_default_str();
     CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
@@ -221,6 +224,8 @@ RigCalibration calibrate(const Options& o, bool quiet)
     const Target target(o.target);
     readWindow(o, target.square(), c.options);
     c.options.lensCoefficients = LENSES.at(o.lens);
+    c.options.thicknessStd = o.thicknessStd;
+    c.options.indexStd = o.indexStd;
     c.limits = o.limits;
     c.label = o.label;
     c.unit = o.unit;
@@ -228,7 +233,9 @@ RigCalibration calibrate(const Options& o, bool quiet)
         if (!o.camera[k].empty())
         {
             // A rig's file may serve for both cameras.
-            c.options.known[k] = readLens(o.camera[k], k == 1 && o.camera[1] == o.camera[0] ? "camera2" : "");
+            const KnownLens lens = readLens(o.camera[k], k == 1 && o.camera[1] == o.camera[0] ? "camera2" : "");
+            c.options.known[k] = lens.camera;
+            c.options.knownCovariance[k] = lens.covariance;
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target, quiet, c);
@@ -241,6 +248,10 @@ RigCalibration calibrate(const Options& o, bool quiet)
     catch (const cv::Exception& e)
     {
         throw Failure(explainError(inOptions(e.err), given));
+    }
+    catch (const Failure& e)
+    {
+        throw Failure(explainError(e.what(), given));
     }
     requireSensible(c, given);
     if (!o.crossValidation)

@@ -174,19 +174,32 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
     return {parts[1], parts[2]};
 }
 
-cv::Ptr<RefractiveCamera> readLens(const std::string& filename, const std::string& name)
+//! Parameters of a camera in a covariance: lens, normal, distance, thicknesses, indices, inner and outer index.
+static int parameterCount(const RefractiveCamera& camera)
 {
-    const cv::Ptr<RefractiveCamera> camera = RefractiveCamera::read(filename, name);
+    return camera.lensParameters().rows + 6 + 2 * (int)camera.window().thickness.size();
+}
+
+KnownLens readLens(const std::string& filename, const std::string& name)
+{
+    KnownLens lens{RefractiveCamera::read(filename, name), cv::Mat()};
     if (isCameraModel(filename))
-        return camera;
+        return lens;
     const FileStorage fs(filename, FileStorage::READ);
     FileNode node = fs.root();
+    int first = 0;
     if (!name.empty())
         node = node[name];
     else if (node["camera_matrix"].empty())
         node = node["camera1"];
     requireDistortion(node, filename);
-    return camera;
+    if (name == "camera2")
+        first = parameterCount(*RefractiveCamera::read(filename, "camera1"));
+    const cv::Mat covariance = readMatrix(fs["covariance"]);
+    const int count = lens.camera->lensParameters().rows;
+    if (covariance.rows == covariance.cols && covariance.rows >= first + parameterCount(*lens.camera))
+        lens.covariance = covariance(cv::Rect(first, first, count, count)).clone();
+    return lens;
 }
 
 Calibration readCalibration(const std::string& filename)

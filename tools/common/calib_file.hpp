@@ -64,9 +64,16 @@ refuses a window then).
 void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow,
                     const std::string& option = "--no-window");
 
+//! A lens that a file tells, and how well.
+struct KnownLens
+{
+    cv::Ptr<cv::refract::RefractiveCamera> camera;
+    cv::Mat covariance;         //!< of its parameters; empty where the file has none
+};
+
 /** A lens as RefractiveCamera::read takes it, which is content without distortion_coefficients; this is not.
 @param name of the camera in the file, as there */
-cv::Ptr<cv::refract::RefractiveCamera> readLens(const std::string& filename, const std::string& name = "");
+KnownLens readLens(const std::string& filename, const std::string& name = "");
 
 //! Complete or not at all. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);

@@ -32,7 +32,7 @@ struct Rig
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
     cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
     cv::Vec3d T;
-    std::vector<KnownCamera> known;             //!< one per camera, or empty
+    std::vector<KnownCamera> known = {};        //!< one per camera, or empty
 
     Rig clone() const;
 };
