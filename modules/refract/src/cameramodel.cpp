@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "cameramodel.hpp"
+#include <climits>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -44,6 +45,9 @@ public:
         }
         if (model.lensModel.empty() || model.intrinsics.empty())
             fail("lensmodel or intrinsics is missing");
+        for (double side : size)
+            if (!(side >= 0 && side <= INT_MAX))
+                fail("imagersize is not two numbers of pixels");
         if (size.size() == 2)
             model.imageSize = Size((int)size[0], (int)size[1]);
         return model;

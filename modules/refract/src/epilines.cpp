@@ -98,6 +98,8 @@ double edgeOfVisibility(const EpipolarCurve& curve, const Camera& other, double 
     while (std::abs(visible - invisible) > enough)
     {
         const double middle = 0.5*(visible + invisible);
+        if (middle == visible || middle == invisible)       // no number lies between
+            break;
         p.clear();
         p.add(curve, 1, &middle);
         p.run();
