@@ -1,0 +1,77 @@
+#ifndef REFRACT_FUZZ_HARNESS_HPP
+#define REFRACT_FUZZ_HARNESS_HPP
+
+#include "arguments.hpp"
+#include <opencv2/core/utils/logger.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+/* A harness is one file fuzz_NAME.cpp with a function tryInput(): it ends with an answer that holds what refract.hpp promises, or
+with cv::Exception. Whatever else happens is a finding; broken() says which promise was broken. */
+namespace fuzz {
+
+void tryInput(Bytes& bytes);
+
+[[noreturn]] inline void broken(const char* promise)
+{
+    std::fprintf(stderr, "FINDING: %s\n", promise);
+    std::abort();
+}
+
+inline void promise(bool kept, const char* what)
+{
+    if (!kept)
+        broken(what);
+}
+
+//! Item i of an answer: whether all its numbers are finite, or all are NaN.
+inline bool allFinite(const cv::Mat& answer, int i)
+{
+    cv::Mat numbers;
+    answer.row(i).reshape(1).convertTo(numbers, CV_64F);
+    return cv::checkRange(numbers);
+}
+
+inline bool allNaN(const cv::Mat& answer, int i)
+{
+    cv::Mat numbers;
+    answer.row(i).reshape(1).convertTo(numbers, CV_64F);
+    return cv::countNonZero(numbers != numbers) == (int)numbers.total();
+}
+
+//! An answer is finite where its status is 0, else NaN in every coordinate.
+inline void checkAnswer(const cv::Mat& answer, const cv::Mat& status)
+{
+    if (answer.empty() || status.empty())
+        return;
+    promise(answer.rows == (int)status.total(), "one status for each item of the answer");
+    for (int i = 0; i < answer.rows; ++i)
+        if (status.at<uchar>(i) == cv::refract::REFRACT_OK)
+            promise(allFinite(answer, i), "status 0: finite");
+        else
+            promise(allNaN(answer, i), "status not 0: NaN in every coordinate");
+}
+
+} // namespace fuzz
+
+extern "C" int LLVMFuzzerInitialize(int*, char***)
+{
+    cv::setNumThreads(1);       // the same input, the same path
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    fuzz::Bytes bytes(data, size);
+    try
+    {
+        fuzz::tryInput(bytes);
+    }
+    catch (const cv::Exception&)        // the arguments were refused
+    {
+    }
+    return 0;
+}
+
+#endif // REFRACT_FUZZ_HARNESS_HPP
