@@ -16,8 +16,8 @@ Mat withType(Bytes& bytes, const Mat& doubles)
     {
         static const int others[] = {CV_8U, CV_8S, CV_16U, CV_16S, CV_32S, CV_16F};
         Mat clean = doubles.clone();
-        clean.setTo(0., doubles != doubles);
-        cv::min(cv::max(clean, -1e5), 1e5, clean);      // conversion of what an integer cannot hold is the caller's own business
+        for (double& number : cv::Mat_<double>(clean.reshape(1)))     // what an integer cannot hold is no argument
+            number = std::isnan(number) ? 0. : std::min(std::max(number, -1e5), 1e5);
         clean.convertTo(result, others[bytes.below(6)]);
         return result;
     }

@@ -50,7 +50,12 @@ public:
     operator const cv::_OutputArray&() const { return array_; }
     operator const cv::_InputOutputArray&() const { return array_; }
     bool needed() const { return array_.needed(); }
-    cv::Mat mat() const { return array_.getMat(); }
+    //! One item a row, also where it is a std::vector or was a row before.
+    cv::Mat mat() const
+    {
+        const cv::Mat m = array_.getMat();
+        return m.rows == 1 ? m.reshape(0, (int)m.total()) : m;
+    }
 
 private:
     cv::Mat mat_;

@@ -39,7 +39,7 @@ void tryEpilines(Bytes& bytes)
     for (size_t i = 0; i < lines.size(); ++i)
     {
         promise(lines[i].empty() == (status.at<uchar>((int)i) != REFRACT_OK), "status 0: the line is not empty");
-        promise(lines[i].empty() || cv::checkRange(lines[i].reshape(1)), "a line is finite");
+        promise(lines[i].empty() || countNaN(lines[i], 0, lines[i].rows) == 0, "a line holds no NaN");
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "arguments.hpp"
 #include <opencv2/core/utils/logger.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -24,19 +25,23 @@ inline void promise(bool kept, const char* what)
         broken(what);
 }
 
-//! Item i of an answer: whether all its numbers are finite, or all are NaN.
-inline bool allFinite(const cv::Mat& answer, int i)
+//! How many of the numbers of rows begin ... end - 1 are NaN; OpenCV's != takes NaN for equal to itself where AVX2 compares.
+inline int countNaN(const cv::Mat& answer, int begin, int end)
 {
     cv::Mat numbers;
-    answer.row(i).reshape(1).convertTo(numbers, CV_64F);
-    return cv::checkRange(numbers);
+    answer.rowRange(begin, end).reshape(1).convertTo(numbers, CV_64F);
+    return (int)std::count_if(numbers.begin<double>(), numbers.end<double>(), [](double a) { return std::isnan(a); });
+}
+
+//! Whether all numbers of a row are finite; what is beyond the range of float32 becomes infinite there, as in any conversion.
+inline bool allFinite(const cv::Mat& answer, int i)
+{
+    return answer.depth() == CV_32F ? countNaN(answer, i, i + 1) == 0 : cv::checkRange(answer.row(i).reshape(1));
 }
 
 inline bool allNaN(const cv::Mat& answer, int i)
 {
-    cv::Mat numbers;
-    answer.row(i).reshape(1).convertTo(numbers, CV_64F);
-    return cv::countNonZero(numbers != numbers) == (int)numbers.total();
+    return countNaN(answer, i, i + 1) == answer.cols * answer.channels();
 }
 
 //! An answer is finite where its status is 0, else NaN in every coordinate.
