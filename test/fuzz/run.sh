@@ -28,17 +28,16 @@ cmake --build $build --target fuzzers
 ASAN_OPTIONS=detect_leaks=0:malloc_context_size=6:quarantine_size_mb=16
 export ASAN_OPTIONS
 mkdir -p $build/findings $build/logs
-# Corpora grow in the build directory; what is committed is only read.
+# Corpora grow in the build directory; what is committed is only read. Whole paths, as a harness may change its folder.
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
-  mkdir -p build/fuzz/corpus/NAME
+  mkdir -p "$0/build/fuzz/corpus/NAME"
   exec >build/fuzz/logs/NAME.log 2>&1
-  options="-timeout=10 -rss_limit_mb=3072 -artifact_prefix=build/fuzz/findings/NAME-"
-  set -- test/fuzz/regressions/NAME/*
+  options="-timeout=10 -rss_limit_mb=3072 -artifact_prefix=$0/build/fuzz/findings/NAME-"
+  set -- "$0"/test/fuzz/regressions/NAME/*
   [ ! -e "$1" ] || build/fuzz/bin/fuzz_NAME $options "$@" || exit 0
-  echo "$# regressions passed"
-  build/fuzz/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 '$limit' build/fuzz/corpus/NAME test/fuzz/corpus/NAME &&
-    echo "no finding"
-  exit 0'
+  build/fuzz/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 '$limit' \
+    "$0/build/fuzz/corpus/NAME" "$0/test/fuzz/corpus/NAME" && echo "no finding"
+  exit 0' "$PWD"
 
 failed=0
 printf '%-18s %12s %10s %10s   %s\n' harness inputs edges features ''
