@@ -29,7 +29,7 @@ void fuzz::tryInput(Bytes& bytes)
         initRefractiveUndistortRectifyMap(cameraOf(bytes), depth, R, P, size, type, map1, map2);
     for (const cv::Mat& map : {map1.mat(), map2.mat()})
     {
-        promise(map.empty() || map.size() == size, "a map has the size that was asked for");
+        promise(map.empty() || (int)map.total() == size.area(), "a map has the size that was asked for");
         if (map.depth() == CV_32F)
             promise(countNaN(map, 0, map.rows) == 0, "a map holds no NaN");
     }
