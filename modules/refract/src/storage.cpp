@@ -51,14 +51,19 @@ Mat readStoredMatrix(const FileNode& map, const char* key, const String& filenam
     const FileNode node = map[key];
     if (node.empty())
         return Mat();
-    const bool isMap = node.isMap() && node["rows"].isInt() && node["cols"].isInt() && node["data"].isSeq();
-    const int rows = isMap ? (int)node["rows"] : 0, cols = isMap ? (int)node["cols"] : 0;
-    if (!isMap || rows < 0 || cols < 0 || (int64)rows*cols != (int64)node["data"].size())
+    const bool isMap = node.isMap() && node["rows"].isInt() && node["cols"].isInt();
+    const int rows = isMap ? (int)node["rows"] : -1, cols = isMap ? (int)node["cols"] : -1;
+    // In XML one number is no sequence, and none is an empty text.
+    const FileNode data = isMap ? node["data"] : FileNode();
+    const size_t count = data.isSeq() ? data.size() : isNumber(data) ? 1 : 0;
+    if (rows < 0 || cols < 0 || (uint64)rows*cols != count)
         CV_Error_(Error::StsParseError, ("%s: %s is not a matrix of one channel, with rows x cols numbers as data",
                                          filename.c_str(), key));
+    if (count == 0)
+        return Mat();
     Mat m(rows, cols, CV_64F);
     int i = 0;
-    for (const FileNode& number : node["data"])
+    for (const FileNode& number : data)
     {
         if (!isNumber(number))
             CV_Error_(Error::StsParseError, ("%s: %s holds something that is not a number", filename.c_str(), key));
