@@ -31,17 +31,16 @@ if [ $bare = no ]; then
   "$main_job"
   refract_undistort --version
 else
-  debootstrap --variant=minbase bookworm "$root" "$(apt-get indextargets --format '$(SITE)' | head -1)" >"$work/root.log" ||
-    { tail -5 "$work/root.log"; exit 1; }
-  cp /etc/resolv.conf "$root/etc/"
-  cp -r /etc/apt/sources.list* /etc/apt/apt.conf.d "$root/etc/apt/"
+  . test/bare_root.sh
+  bare_root "$work"
   home=$root/srv
   cp "$package" "$home/package.deb"
+  cp "$main_job" "$home/main_job.sh"
   cp -r samples/data/stereo "$home/data"
-  chroot "$root" sh -ec 'export DEBIAN_FRONTEND=noninteractive
+  in_root sh -ec 'export DEBIAN_FRONTEND=noninteractive
     apt-get update -qq && apt-get install -y -qq --no-install-recommends /srv/package.deb' >"$work/install.log" 2>&1 ||
     { tail -20 "$work/install.log"; exit 1; }
-  "$main_job" chroot "$root" env -C /srv
-  chroot "$root" refract_undistort --version
+  in_root sh -c 'cd /srv && exec ./main_job.sh'
+  in_root refract_undistort --version
 fi
 ls -l "$home/calib.yml" "$home/points.csv" "$home/report.html"

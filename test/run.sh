@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what is missing, builds everything with warnings as errors, runs all tests: once as released, once with the
-# address and undefined-behaviour sanitizers. Ends with a line that counts the tests.
+# address and undefined-behaviour sanitizers; then the fuzzers, a little. Ends with a line that counts the tests.
 #
-# Usage: test/run.sh [--fast]      --fast leaves the sanitizers out
+# Usage: test/run.sh [--fast]      --fast leaves the sanitizers and the fuzzers out
 set -eu
 cd "$(dirname "$0")/.."
 fast=no
@@ -76,6 +76,7 @@ if [ $fast = no ]; then
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
   ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tests '~[slow]~[.]'
   ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tools_tests '~[.]'
+  run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
 
 echo "$passed passed, $failed failed, $skipped skipped"

@@ -355,6 +355,31 @@ TEST_CASE("A file that is no camera is refused with its name", "[camera]")
     }
 }
 
+// FileStorage's parsers call themselves for each level, and end with the stack.
+TEST_CASE("A file that nests without end is refused", "[camera]")
+{
+    const std::string heads[] = { "%YAML:1.0\n---\na: ", "<?xml version=\"1.0\"?>\n<opencv_storage>\n", "{\"a\":" };
+    const std::string levels[] = { "[", "<a>\n", "[" };
+    for (int i = 0; i < 3; ++i)
+    {
+        std::string text = heads[i];
+        for (int level = 0; level < 1000000; ++level)
+            text += levels[i];
+        const TemporaryFile file(".yml", text);
+        CHECK_THAT(thrown([&] { RefractiveCamera::read(file.path); }), Contains(file.path) && Contains("nest"));
+    }
+}
+
+TEST_CASE("A matrix takes no more memory than its numbers", "[camera]")
+{
+    for (const char* rows : { "2000000000", "-3", "three", "4" })
+    {
+        const TemporaryFile file(".yml", std::string("%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: ") + rows
+            + "\n   cols: 3\n   dt: d\n   data: [ 1000., 0., 640., 0., 1000., 480., 0., 0., 1. ]\n");
+        CHECK_THAT(thrown([&] { RefractiveCamera::read(file.path); }), Contains(file.path) && Contains("camera_matrix"));
+    }
+}
+
 TEST_CASE("A camera file cut anywhere is read whole or refused", "[camera]")
 {
     for (const char* suffix : { ".yml", ".xml", ".json" })

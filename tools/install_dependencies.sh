@@ -1,23 +1,27 @@
 #!/bin/sh
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
-# Usage: tools/install_dependencies.sh [build|test|in-tree|aarch64|libraries]
+# Usage: tools/install_dependencies.sh [build|test|in-tree|aarch64|fuzz|bare|libraries]
 #   test adds what only the tests use, in-tree what OpenCV's own build needs, aarch64 what compiles for that processor and
-#   runs it; libraries installs nothing, but names what a root of another architecture must hold
+#   runs it, fuzz the compiler that the fuzzers want; bare: what makes a bare Debian to try things in; libraries installs
+#   nothing, but names what a root of another architecture must hold
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
   libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev"
 test_libraries="catch2 libgtest-dev libmrcal-dev"
+test_programs="file locales"      # cpack makes the Debian package with file; a test makes a locale
 build="build-essential cmake ninja-build pkg-config gnuplot-nox $libraries"
 in_tree="python3-pip python3-dev python3-numpy"
 
 case "${1:-build}" in
   build) wanted=$build ;;
-  test) wanted="$build $test_libraries locales" ;;
+  test) wanted="$build $test_libraries $test_programs" ;;
   in-tree) wanted="$build $in_tree" ;;
   aarch64) wanted="$build g++-aarch64-linux-gnu qemu-user" ;;
+  fuzz) wanted="$build clang-14 libclang-rt-14-dev" ;;
+  bare) wanted="debootstrap git ca-certificates util-linux" ;;
   libraries) echo "$libraries $test_libraries"; exit 0 ;;
-  *) echo "usage: $0 [build|test|in-tree|aarch64|libraries]" >&2; exit 1 ;;
+  *) echo "usage: $0 [build|test|in-tree|aarch64|fuzz|bare|libraries]" >&2; exit 1 ;;
 esac
 
 missing=""

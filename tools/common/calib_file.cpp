@@ -4,10 +4,11 @@
 
 #include <sys/stat.h>
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <regex>
 
 namespace tools {
 
@@ -27,7 +28,8 @@ std::vector<double> readList(const FileNode& node)
 {
     std::vector<double> numbers;
     if (node.isSeq())
-        node >> numbers;
+        for (const FileNode& number : node)
+            numbers.push_back(readNumber(number, NAN));
     return numbers;
 }
 
@@ -61,15 +63,16 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
 //! An OpenCV matrix or a plain list of numbers; empty if it is neither or not finite.
 cv::Mat readMatrix(const FileNode& node)
 {
-    cv::Mat matrix;
     if (node.isSeq())
-        matrix = cv::Mat(readList(node), true);
-    else if (node.isMap())
-        node >> matrix;
-    if (matrix.channels() != 1 || !cv::checkRange(matrix))
+        return cv::checkRange(readList(node)) ? cv::Mat(readList(node), true) : cv::Mat();
+    if (!node.isMap() || !node["rows"].isInt() || !node["cols"].isInt())
         return cv::Mat();
-    matrix.convertTo(matrix, CV_64F);
-    return matrix;
+    // Not node >> matrix: that takes the memory for as many rows and columns as the file claims.
+    const int rows = node["rows"], cols = node["cols"];
+    const std::vector<double> data = readList(node["data"]);
+    if (data.empty() || rows < 0 || cols < 0 || (int64_t)rows * cols != (int64_t)data.size() || !cv::checkRange(data))
+        return cv::Mat();
+    return cv::Mat(data, true).reshape(1, rows);
 }
 
 bool isCameraModel(const std::string& filename)
@@ -166,12 +169,15 @@ std::string timeOfFiles(const std::vector<std::string>& inputs)
 
 std::pair<std::string, std::string> parseNote(const std::string& text)
 {
-    static const std::regex NOTE("([A-Za-z_][A-Za-z0-9_-]*)=([^]*)");
-    std::smatch parts;
-    if (!std::regex_match(text, parts, NOTE))
+    // Not a std::regex: its matcher calls itself for every letter of the text.
+    const size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals);
+    const auto isPart = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+    if (equals == std::string::npos || key.empty() || std::isdigit((unsigned char)key[0]) || key[0] == '-'
+        || !std::all_of(key.begin(), key.end(), isPart))
         throw Failure("--note=" + text + ": give KEY=TEXT with a KEY of letters, digits, _ and -, as in "
                       "--note=customer='Tunnel Ltd'");
-    return {parts[1], parts[2]};
+    return {key, text.substr(equals + 1)};
 }
 
 //! Parameters of a camera in a covariance: lens, normal, distance, thicknesses, indices, inner and outer index.
@@ -212,17 +218,8 @@ Calibration readCalibration(const std::string& filename)
         calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1., false});
         return calibration;
     }
-    FileStorage fs;
-    try
-    {
-        fs.open(filename, FileStorage::READ);
-    }
-    catch (const cv::Exception&)
-    {
-        fs.release();       // OpenCV's text is the name of a parser's function; said below
-    }
-    if (!fs.isOpened() || !fs.root().isMap())
-        throw Failure("'" + filename + "' is not YAML, XML or JSON with a camera in it, or is cut short: write it again");
+    RefractiveCamera::read(filename);       // refuses what is no such file, in any way
+    const FileStorage fs(filename, FileStorage::READ);
     if (fs["camera1"].empty())
         calibration.cameras.push_back(readCamera(fs.root(), filename, ""));
     else

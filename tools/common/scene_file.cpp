@@ -68,6 +68,14 @@ Exposure readExposure(const FileNode& node)
     return e;
 }
 
+std::vector<Point2d> projectPoints(const std::vector<cv::Point3d>& points, const Pose& pose,
+                                   const cv::Ptr<cv::refract::RefractiveCamera>& camera)
+{
+    std::vector<Point2d> pixels;
+    cv::refract::refractiveProjectPoints(points, pose.rvec, pose.tvec, camera, pixels);
+    return pixels;
+}
+
 //! Draws poses that every camera sees, with and without its window.
 class PoseLottery
 {
@@ -115,14 +123,22 @@ private:
         return pose;
     }
 
+    //! The corners first, as a target that is out of view is so by them: most draws end there.
     bool isSeen(const Pose& pose) const
+    {
+        const std::vector<cv::Point3d>& all = target_.objectPoints();
+        const int n = target_.count(), columns = target_.size().width;
+        return areSeen({all[0], all[columns - 1], all[n - columns], all[n - 1]}, pose) && areSeen(all, pose);
+    }
+
+    bool areSeen(const std::vector<cv::Point3d>& points, const Pose& pose) const
     {
         for (size_t i = 0; i < rig_.cameras.size(); ++i)
         {
             const Pose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
             const auto& camera = rig_.cameras[i].camera;
             for (const GlassWindow& window : {camera->window(), GlassWindow()})
-                for (const Point2d& p : projectTarget(target_, here, withWindow(camera, window)))
+                for (const Point2d& p : projectPoints(points, here, withWindow(camera, window)))
                     if (!(p.x >= margin_ && p.y >= margin_ && p.x <= camera->imageSize().width - 1 - margin_
                           && p.y <= camera->imageSize().height - 1 - margin_))
                         return false;
@@ -186,9 +202,7 @@ ImageSet readSet(const FileNode& node, const std::map<std::string, std::vector<N
 std::vector<Point2d> projectTarget(const Target& target, const Pose& pose,
                                    const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
-    std::vector<Point2d> pixels;
-    cv::refract::refractiveProjectPoints(target.objectPoints(), pose.rvec, pose.tvec, camera, pixels);
-    return pixels;
+    return projectPoints(target.objectPoints(), pose, camera);
 }
 
 Scene readScene(const std::string& filename)

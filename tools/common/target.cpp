@@ -184,7 +184,7 @@ Target::Target(const TargetOptions& options)
     if (partial_ && pattern_ != CHESSBOARD)
         throw Failure("--partial is for --pattern=chessboard; a ChArUco target may be partly in view as it is");
     const int least = partial_ ? 5 : pattern_ == CHESSBOARD ? 3 : 2;   // what the detectors need
-    if (std::min(size_.width, size_.height) < least || size_.area() > 100000)
+    if (std::min(size_.width, size_.height) < least || (int64_t)size_.width * size_.height > 100000)
         throw Failure("--size=" + options.size + ": a target of at least " + std::to_string(least) + "x"
                       + std::to_string(least) + " points is needed, and no more than 100000 in all");
     if (pattern_ == CHARUCO)

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "camera.hpp"
 #include "cameramodel.hpp"
+#include "storage.hpp"
 #include <cstdio>
 #include <fstream>
 #ifdef _WIN32
@@ -25,24 +26,10 @@ void Camera::write(FileStorage& fs) const
     window_.write(fs);
 }
 
-static Mat readMatrix(const FileNode& node, const char* key, const String& filename)
-{
-    Mat m;
-    try
-    {
-        node[key] >> m;
-    }
-    catch (const cv::Exception& e)
-    {
-        CV_Error_(Error::StsParseError, ("%s: %s is not a matrix (%s)", filename.c_str(), key, e.err.c_str()));
-    }
-    return m;
-}
-
 static Ptr<Lens> readLens(const FileNode& node, const String& filename)
 {
-    const Mat K = readMatrix(node, "camera_matrix", filename);
-    const Mat D = readMatrix(node, "distortion_coefficients", filename);
+    const Mat K = readStoredMatrix(node, "camera_matrix", filename);
+    const Mat D = readStoredMatrix(node, "distortion_coefficients", filename);
     if (K.empty())
         CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
     const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
@@ -89,19 +76,7 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
         camera->setImageSize(model.imageSize);
         return camera;
     }
-    // FileStorage would log a line of its own.
-    if (!std::ifstream(filename.c_str()))
-        CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
-    FileStorage fs;
-    try
-    {
-        fs.open(filename, FileStorage::READ);
-    }
-    catch (const cv::Exception& e)
-    {
-        CV_Error_(Error::StsParseError, ("%s is not YAML, XML or JSON that OpenCV reads (%s)", filename.c_str(),
-                                         e.err.c_str()));
-    }
+    const FileStorage fs = openStorage(filename);
     FileNode node = fs.root();
     if (node.isMap() && !name.empty())
         node = node[name];

@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "cameramodel.hpp"
+#include <climits>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <locale>
@@ -45,6 +47,9 @@ public:
         }
         if (model.lensModel.empty() || model.intrinsics.empty())
             fail("lensmodel or intrinsics is missing");
+        for (double side : size)
+            if (!(side >= 0 && side <= INT_MAX))
+                fail("imagersize is not two numbers of pixels");
         if (size.size() == 2)
             model.imageSize = Size((int)size[0], (int)size[1]);
         return model;

@@ -30,16 +30,17 @@ int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, P
 }
 
 /* Appends what follows after the first end of segments, which are split where the curve leaves the chord by more than the
-tolerance. A NaN inside (grazing the edge of visibility) is not split. */
+tolerance. A NaN inside (grazing the edge of visibility) is not split; nor is anything once the line has `most` points, as where
+the tolerance is less than the rounding of pixels so far off that splitting helps no more. */
 void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, int segments, double tolerance, int depth,
-                    Polyline& line)
+                    size_t most, Polyline& line)
 {
     double slack[Projection::CAPACITY/2];
     const double *t = p.t() + begin, *u = p.u() + begin, *v = p.v() + begin;
     const int middles = segments + 1;
     const bool allClose = kernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
     for (int j = 0; j < segments; ++j)
-        if (allClose || depth == 0 || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
+        if (allClose || depth == 0 || line.size() >= most || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
             line.push_back(Vec2d(u[j + 1], v[j + 1]));
         else
         {
@@ -47,7 +48,7 @@ void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
             Projection halves(p.camera());
             addSegments(curve, nodes, 2, halves);
             halves.run();
-            appendSegments(curve, halves, 0, 2, tolerance, depth - 1, line);
+            appendSegments(curve, halves, 0, 2, tolerance, depth - 1, most, line);
         }
 }
 
@@ -98,6 +99,8 @@ double edgeOfVisibility(const EpipolarCurve& curve, const Camera& other, double 
     while (std::abs(visible - invisible) > enough)
     {
         const double middle = 0.5*(visible + invisible);
+        if (middle == visible || middle == invisible)       // no number lies between
+            break;
         p.clear();
         p.add(curve, 1, &middle);
         p.run();
@@ -207,14 +210,19 @@ void joinAllNodes(const Camera& to, const std::vector<Track>& tracks, const std:
     std::vector<Piece> pieces;
     lines.points.reserve(nodes.size());
     Projection p(to);
+    const size_t MOST = 100000;     // points of a line
+    size_t most = 0;
     const auto join = [&]
     {
         p.run();
         for (const Piece& piece : pieces)
         {
             if (piece.isFirst)
+            {
+                most = lines.points.size() + MOST;
                 lines.points.push_back(p.pixel(piece.begin));
-            appendSegments(piece.track->curve, p, piece.begin, piece.segments, tolerance, 12, lines.points);
+            }
+            appendSegments(piece.track->curve, p, piece.begin, piece.segments, tolerance, 12, most, lines.points);
             lines.end[piece.track->point] = (int)lines.points.size();
         }
         pieces.clear();

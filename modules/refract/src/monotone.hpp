@@ -21,7 +21,7 @@ template<typename F>
 double invertMonotone(const F& f, double target, double upper)
 {
     double low = 0, high = upper, x = std::min(target, 0.5*upper), slope;
-    if (!(target > 0))
+    if (!(target > 0) || !std::isfinite(target))
         return target == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < 200; ++i)
     {

@@ -7,6 +7,7 @@
 #include "covariance.hpp"
 #include "information.hpp"
 #include "rig_robust.hpp"
+#include "sealed_start.hpp"
 #include "rig_start.hpp"
 #include <opencv2/core/eigen.hpp>
 
@@ -101,12 +102,6 @@ void markUnusable(const RigTask& task, RigFit& fit)
         }
 }
 
-struct Start
-{
-    Rig rig;
-    std::vector<Pose> poses;
-};
-
 //! Takes images that no pose agrees with out of the task.
 void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigTask& task)
 {
@@ -121,62 +116,12 @@ void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigT
         }
 }
 
-//! The lens and the distance have to be told by images through the windows alone.
-bool isSealed(const RigTask& task)
-{
-    bool seesDirect = !task.knownPoses.empty() || !task.cameras.empty();
-    for (const CameraViews& camera : task.views.cameras)
-        seesDirect = seesDirect || seesAnything(camera.direct);
-    return !seesDirect && (task.flags & GLASS_FREE_INTRINSICS) && (task.flags & GLASS_FREE_DISTANCE);
-}
-
-//! The same start with the windows at a part of the way to the targets, and the poses that go with it.
-Start atPartOfRange(Start start, double part, const RigViews& views)
-{
-    double sum = 0;
-    int count = 0;
-    for (const Pose& pose : start.poses)
-        if (pose.found)
-        {
-            sum += norm(pose.tvec);
-            count++;
-        }
-    setDistances(start.rig, part*sum/count);
-    start.poses.assign(views.count(), Pose());
-    addPosesThroughWindow(start.rig, views, start.poses);
-    return start;
-}
-
-/** Where only images through the windows tell of lens and distance, the cost has more than one minimum: fits from several
-distances, the best of them. */
-Start bestStart(const Start& given, const RigViews& views, const RigTask& task)
-{
-    const TermCriteria rough(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9);
-    Start best = given;
-    double least = std::numeric_limits<double>::infinity();
-    for (double part : { 0., 0.15, 0.4, 0.75 })
-        try
-        {
-            const Start start = part > 0 ? atPartOfRange(given, part, views) : given;
-            RigProblem problem(start.rig, views, start.poses, task.knowledge, task.cameras, task.flags);
-            problem.solve(rough);
-            if (!(problem.squaredError() < least))
-                continue;
-            least = problem.squaredError();
-            best.rig = problem.rig();
-            for (int view = 0; view < views.count(); view++)
-                best.poses[view] = problem.pose(view);
-        }
-        catch (const cv::Exception&) {}     // a point has no image from there
-    return best;
-}
-
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
-Start findStart(const Rig& rig, RigTask& task, RigFit& fit)
+RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
 {
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
-    Start start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+    RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
     const std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
     addPosesThroughWindow(start.rig, views, start.poses);
     fit.otherMinima.create(rig.count(), 4, CV_64F);
@@ -189,7 +134,7 @@ Start findStart(const Rig& rig, RigTask& task, RigFit& fit)
         dropUnusable(views, start.poses, task);
     else
         checkPoses(views, start.poses);
-    return isSealed(task) ? bestStart(start, views, task) : start;
+    return isSealed(task) ? bestSealedStart(start, views, task) : start;
 }
 
 } // namespace
@@ -208,7 +153,7 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     const TermCriteria criteria = checkedCriteria(task_.criteria);
     RigFit fit;
     RigTask task = task_;
-    const Start start = findStart(rig, task, fit);
+    const RigStart start = findStart(rig, task, fit);
     RigProblem problem(start.rig, task.views, start.poses, task.knowledge, task.cameras, task.flags);
     if (!(task.flags & GLASS_ROBUST))
         checkFreedom(problem);

@@ -9,6 +9,13 @@
 
 namespace cv { namespace refract {
 
+//! Where a fit begins.
+struct RigStart
+{
+    Rig rig;
+    std::vector<Pose> poses;        //!< of the views
+};
+
 /** Start of every view's pose, object -> camera 1, as far as it can be had without any window: the known pose, else from
 the direct image with the most points. */
 std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known);
@@ -37,8 +44,10 @@ distance has a bound at 0, so that no camera comes to lie beyond. Where the star
 @return one per camera; only the given owner's may hold a minimum */
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags);
 
-//! The distance of every window from the camera that is nearest to it.
+//! The distance of every window from its owner.
 void setDistances(Rig& rig, double distance);
+//! The normal of the window of an owner, in its frame.
+void setNormal(Rig& rig, int owner, const Vec3d& normal);
 
 }} // namespace
 

@@ -20,12 +20,17 @@ GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_,
     check();
 }
 
+// Beyond what there is, and small enough that no product of them overflows.
+static const double MOST_LENGTH = 1e100, MOST_INDEX = 1e6;
+
 //! layer >= 0: the name's element. Nothing is formatted unless it is wrong: cameras may be made by the call.
-static void checkAtLeast(const char* name, double value, double least, int layer = -1)
+static void checkBetween(const char* name, double value, double least, double most, int layer = -1)
 {
-    if (value >= least && std::isfinite(value))
+    if (value >= least && value <= most)
         return;
     const String element = layer < 0 ? String() : format("[%d]", layer);
+    if (value > most && std::isfinite(value))
+        CV_Error_(Error::StsOutOfRange, ("%s%s is %g; it must be at most %g", name, element.c_str(), value, most));
     CV_Error_(Error::StsOutOfRange, ("%s%s is %g; it must be finite and at least %g", name, element.c_str(), value, least));
 }
 
@@ -39,16 +44,16 @@ void GlassWindow::check() const
     if (!(normal[2] > 0))
         CV_Error_(Error::StsBadArg, ("window.normal is (%g, %g, %g); it must point from the camera to the scene, "
                                      "normal[2] > 0", normal[0], normal[1], normal[2]));
-    checkAtLeast("window.distance", distance, 0);
-    checkAtLeast("window.innerIndex", innerIndex, 1);
-    checkAtLeast("window.outerIndex", outerIndex, 1);
+    checkBetween("window.distance", distance, 0, MOST_LENGTH);
+    checkBetween("window.innerIndex", innerIndex, 1, MOST_INDEX);
+    checkBetween("window.outerIndex", outerIndex, 1, MOST_INDEX);
     if (thickness.size() != index.size())
         CV_Error_(Error::StsUnmatchedSizes, ("window.thickness has %d layers, window.index %d; they must agree",
                                              (int)thickness.size(), (int)index.size()));
     for (size_t i = 0; i < thickness.size(); ++i)
     {
-        checkAtLeast("window.thickness", thickness[i], 0, (int)i);
-        checkAtLeast("window.index", index[i], 1, (int)i);
+        checkBetween("window.thickness", thickness[i], 0, MOST_LENGTH, (int)i);
+        checkBetween("window.index", index[i], 1, MOST_INDEX, (int)i);
     }
 }
 

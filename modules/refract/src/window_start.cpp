@@ -352,4 +352,10 @@ void setDistances(Rig& rig, double distance)
     transferToOthers(rig);
 }
 
+void setNormal(Rig& rig, int owner, const Vec3d& normal)
+{
+    rig.cameras[owner].setWindow(turned(rig.cameras[owner].window(), normal));
+    transferToOthers(rig);
+}
+
 }} // namespace

@@ -1,0 +1,22 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_STORAGE_HPP
+#define OPENCV_REFRACT_STORAGE_HPP
+
+#include "precomp.hpp"
+
+/* Files of FileStorage that others may have written: whatever is in them, they are read or refused. FileStorage itself
+takes the memory that a matrix claims to need, and goes as deep as brackets do. */
+namespace cv { namespace refract {
+
+//! Opened for reading. Throws StsObjectNotFound or StsParseError.
+FileStorage openStorage(const String& filename);
+
+//! The matrix of one channel called `key`, CV_64F; empty if there is none. Throws StsParseError.
+Mat readStoredMatrix(const FileNode& map, const char* key, const String& filename);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_STORAGE_HPP

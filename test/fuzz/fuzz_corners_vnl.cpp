@@ -1,0 +1,12 @@
+#include "file_harness.hpp"
+#include "corners_vnl.hpp"
+
+// mrcal's corners.vnl, of a target of six points.
+
+const char fuzz::EXTENSION[] = ".vnl";
+
+void fuzz::tryFile(const std::string& path)
+{
+    for (const auto& image : tools::readCornersVnl(path, 6))
+        promise(image.second.empty() || image.second.size() == 6, "an image has all points or none");
+}

@@ -1,0 +1,15 @@
+#include "file_harness.hpp"
+#include "scene_file.hpp"
+
+// RIG.yml of refract_simulate.
+
+const char fuzz::EXTENSION[] = ".yml";
+
+void fuzz::tryFile(const std::string& path)
+{
+    const tools::Scene scene = tools::readScene(path);
+    promise(!scene.sets.empty(), "a scene has images to render");
+    for (const tools::ImageSet& set : scene.sets)
+        for (const tools::NamedPose& pose : set.poses)
+            promise(cv::checkRange(pose.pose.rvec) && cv::checkRange(pose.pose.tvec), "poses are finite");
+}
