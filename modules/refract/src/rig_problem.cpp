@@ -37,21 +37,6 @@ std::vector<bool> freeMedia(int layers, int flags)
     return isFree;
 }
 
-//! GlassCalibrationFlags -> which lens parameters are free.
-std::vector<bool> freeLens(const Camera& camera, int flags)
-{
-    const int F = GLASS_FIX_FOCAL_LENGTH, C = GLASS_FIX_PRINCIPAL_POINT, P = GLASS_FIX_TANGENT_DIST,
-              S = GLASS_FIX_S1_S2_S3_S4, TAU = GLASS_FIX_TAUX_TAUY;
-    const int opencv[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, P, P, GLASS_FIX_K3, GLASS_FIX_K4, GLASS_FIX_K5,
-                           GLASS_FIX_K6, S, S, S, S, TAU, TAU };
-    const int fisheye[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, GLASS_FIX_K3, GLASS_FIX_K4 };
-    const int* fixedBy = camera.lensModel() == "fisheye" ? fisheye : opencv;
-    std::vector<bool> isFree;
-    for (int i = 0; i < camera.lensCount(); i++)
-        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(flags & fixedBy[i]));
-    return isFree;
-}
-
 //! Thicknesses and focal lengths stay above a small part of their start.
 double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>& values)
 {
@@ -65,6 +50,20 @@ double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>
 }
 
 } // namespace
+
+std::vector<bool> freeLens(const Camera& camera, int flags)
+{
+    const int F = GLASS_FIX_FOCAL_LENGTH, C = GLASS_FIX_PRINCIPAL_POINT, P = GLASS_FIX_TANGENT_DIST,
+              S = GLASS_FIX_S1_S2_S3_S4, TAU = GLASS_FIX_TAUX_TAUY;
+    const int opencv[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, P, P, GLASS_FIX_K3, GLASS_FIX_K4, GLASS_FIX_K5,
+                           GLASS_FIX_K6, S, S, S, S, TAU, TAU };
+    const int fisheye[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, GLASS_FIX_K3, GLASS_FIX_K4 };
+    const int* fixedBy = camera.lensModel() == "fisheye" ? fisheye : opencv;
+    std::vector<bool> isFree;
+    for (int i = 0; i < camera.lensCount(); i++)
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(flags & fixedBy[i]));
+    return isFree;
+}
 
 RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses,
                        const std::vector<PoseKnowledge>& known, const std::vector<CameraKnowledge>& knownCameras, int flags)

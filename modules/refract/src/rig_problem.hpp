@@ -71,6 +71,9 @@ struct RigBlock
     String nameOf(int coordinate) const;
 };
 
+//! GlassCalibrationFlags -> which lens parameters are free.
+std::vector<bool> freeLens(const Camera& camera, int flags);
+
 /** The joint problem: cameras, each behind its own window or several behind one, a pose (object -> camera 1) for each view,
 every observed point of every image, through the window or direct. Maximum likelihood under equal isotropic pixel noise;
 Ceres eliminates the poses.

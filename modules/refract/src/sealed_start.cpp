@@ -3,25 +3,26 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "sealed_start.hpp"
-#include "rotation.hpp"
 
 namespace cv { namespace refract {
 
 namespace {
 
-const int SEARCH_VIEWS = 10;
+const int FEW_VIEWS = 6, MORE_VIEWS = 10;
+const int FEW_ITERATIONS = 20, MORE_ITERATIONS = 100;
+const size_t FINALISTS = 6;
 const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
 
 //! So many of the views, evenly.
-std::vector<int> someOf(const RigStart& start)
+std::vector<int> someOf(const RigStart& start, int atMost)
 {
     std::vector<int> found, some;
     for (int view = 0; view < (int)start.poses.size(); view++)
         if (start.poses[view].found)
             found.push_back(view);
-    const int count = std::min(SEARCH_VIEWS, (int)found.size());
+    const int count = std::min(atMost, (int)found.size());
     for (int i = 0; i < count; i++)
         some.push_back(found[i*found.size()/count]);
     return some;
@@ -57,88 +58,101 @@ double rangeOf(const RigStart& start)
     return sum/count;
 }
 
-//! A start and what its fit leaves.
-struct Trial
+/** A lens that was calibrated through the window as if there were none has taken up the medium beyond: its focal length is
+longer by the ratio of the indices, its distortion and principal point say more of the window than of the lens. */
+Rig withoutMedium(Rig rig, int flags)
 {
-    RigStart fitted;
-    double cost;
-};
-
-class Search
-{
-public:
-    Search(const RigStart& given, const RigViews& views, const RigTask& task)
-        : task_(task), some_(someOf(given)), views_(pick(views, some_))
+    for (Camera& camera : rig.cameras)
     {
-        best_.fitted = given;
-        best_.cost = std::numeric_limits<double>::infinity();
-        tryFrom(given.rig);
+        const GlassWindow window = camera.window();
+        const Size image = camera.imageSize();
+        const std::vector<bool> isFree = freeLens(camera, flags);
+        std::vector<double> lens = camera.lens().parameters();
+        for (int i = 0; i < (int)lens.size(); i++)
+            if (isFree[i] && i < 2)
+                lens[i] *= window.innerIndex/window.outerIndex;
+            else if (isFree[i] && i > 3)
+                lens[i] = 0;
+            else if (isFree[i] && !image.empty())
+                lens[i] = 0.5*((i == 2 ? image.width : image.height) - 1);
+        camera.setLensParameters(Mat(lens));
     }
+    return rig;
+}
 
-    void tryDistances()
-    {
-        const RigStart first = best_.fitted;
+//! The lenses as given and without the medium, each at several distances.
+std::vector<Rig> untilted(const RigStart& given, int flags)
+{
+    std::vector<Rig> rigs(1, given.rig);
+    if (!(flags & GLASS_FREE_DISTANCE))
+        return rigs;
+    rigs.push_back(withoutMedium(given.rig, flags));
+    for (int lens = 0; lens < 2; lens++)
         for (double part : PARTS_OF_RANGE)
         {
-            Rig rig = first.rig;
-            setDistances(rig, part*rangeOf(first));
-            tryFrom(rig);
+            rigs.push_back(rigs[lens]);
+            setDistances(rigs.back(), part*rangeOf(given));
         }
-    }
+    return rigs;
+}
 
-    void tryTilts()
-    {
-        for (int owner = 0; owner < best_.fitted.rig.count(); owner++)
+//! Each rig as it is, and with one of its windows tilted.
+std::vector<Rig> tilted(const std::vector<Rig>& rigs, int owner)
+{
+    std::vector<Rig> all = rigs;
+    for (const Rig& rig : rigs)
+        for (int i = 0; i < AZIMUTHS; i++)
         {
-            if (!best_.fitted.rig.owns(owner))
-                continue;
-            const Rig first = best_.fitted.rig;
-            for (int i = 0; i < AZIMUTHS; i++)
-            {
-                Rig rig = first;
-                const double azimuth = (i + 0.5)*2*CV_PI/AZIMUTHS;
-                setNormal(rig, owner, Vec3d(std::sin(TILT)*std::cos(azimuth), std::sin(TILT)*std::sin(azimuth), std::cos(TILT)));
-                tryFrom(rig);
-            }
+            const double azimuth = (i + 0.5)*2*CV_PI/AZIMUTHS;
+            all.push_back(rig);
+            setNormal(all.back(), owner,
+                      Vec3d(std::sin(TILT)*std::cos(azimuth), std::sin(TILT)*std::sin(azimuth), std::cos(TILT)));
         }
-    }
+    return all;
+}
 
-    const Rig& best() const { return best_.fitted.rig; }
-
-private:
-    void tryFrom(const Rig& rig)
+//! What a fit of so many iterations leaves of some views; infinite where a point has no image. rig is start and result.
+double fitSome(Rig& rig, const RigViews& views, int iterations, int flags)
+{
+    try
     {
-        const TermCriteria rough(TermCriteria::COUNT + TermCriteria::EPS, 60, 1e-8);
-        try
-        {
-            std::vector<Pose> poses(views_.count());
-            addPosesThroughWindow(rig, views_, poses);
-            checkPoses(views_, poses);
-            RigProblem problem(rig, views_, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), task_.flags);
-            problem.solve(rough);
-            const double cost = problem.squaredError();
-            if (!(cost < best_.cost))
-                return;
-            best_.cost = cost;
-            best_.fitted.rig = problem.rig();
-            best_.fitted.poses.clear();
-            for (int view = 0; view < views_.count(); view++)
-                best_.fitted.poses.push_back(problem.pose(view));
-        }
-        catch (const cv::Exception&) {}     // from there a point has no image
+        std::vector<Pose> poses(views.count());
+        addPosesThroughWindow(rig, views, poses);
+        checkPoses(views, poses);
+        RigProblem problem(rig, views, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
+        problem.solve(TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-8));
+        rig = problem.rig();
+        return problem.squaredError();
     }
+    catch (const cv::Exception&)
+    {
+        return std::numeric_limits<double>::infinity();
+    }
+}
 
-    const RigTask& task_;
-    const std::vector<int> some_;
-    const RigViews views_;
-    Trial best_;
-};
+//! The starts, as they are, whose fits are the best after so many iterations; the best first.
+std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, int iterations, int flags)
+{
+    std::vector<std::pair<double, size_t> > costs;
+    for (size_t i = 0; i < starts.size(); i++)
+    {
+        Rig rig = starts[i];
+        costs.push_back(std::make_pair(fitSome(rig, views, iterations, flags), i));
+    }
+    std::sort(costs.begin(), costs.end());
+    std::vector<Rig> best;
+    for (size_t i = 0; i < std::min(atMost, costs.size()); i++)
+        best.push_back(starts[costs[i].second]);
+    return best;
+}
 
 } // namespace
 
 bool isSealed(const RigTask& task)
 {
-    bool tellsMore = !task.knownPoses.empty() || !task.cameras.empty();
+    bool tellsMore = !task.knownPoses.empty();
+    for (const CameraKnowledge& known : task.cameras)
+        tellsMore = tellsMore || known.covariance.size() > 0;
     for (const CameraViews& camera : task.views.cameras)
         tellsMore = tellsMore || seesAnything(camera.direct);
     return !tellsMore && (task.flags & GLASS_FREE_INTRINSICS);
@@ -146,11 +160,14 @@ bool isSealed(const RigTask& task)
 
 RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task)
 {
-    Search search(given, views, task);
-    if (task.flags & GLASS_FREE_DISTANCE)
-        search.tryDistances();
-    search.tryTilts();
-    RigStart start = { search.best(), std::vector<Pose>(views.count()) };
+    const RigViews few = pick(views, someOf(given, FEW_VIEWS)), more = pick(views, someOf(given, MORE_VIEWS));
+    std::vector<Rig> starts = untilted(given, task.flags);
+    for (int owner = 0; owner < given.rig.count(); owner++)
+        if (given.rig.owns(owner))
+            starts = bestStarts(tilted(starts, owner), FINALISTS, few, FEW_ITERATIONS, task.flags);
+    Rig best = bestStarts(starts, 1, more, MORE_ITERATIONS, task.flags)[0];
+    fitSome(best, more, MORE_ITERATIONS, task.flags);
+    RigStart start = { best, std::vector<Pose>(views.count()) };
     addPosesThroughWindow(start.rig, views, start.poses);
     for (int view = 0; view < views.count(); view++)
         if (!start.poses[view].found && given.poses[view].found)

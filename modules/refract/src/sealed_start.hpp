@@ -14,8 +14,8 @@ namespace cv { namespace refract {
 bool isSealed(const RigTask& task);
 
 /** A sealed rig's cost has more than one minimum: distance against focal length, tilt against principal point and tangential
-distortion. Some views are fitted from several distances and from several tilts of one window after the other; the start is
-that of the least cost. */
+distortion. Some views are fitted a little from several lenses and distances, and from tilts of one window after the other;
+the start is what the best of these lead to. */
 RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task);
 
 }} // namespace
