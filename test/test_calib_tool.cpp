@@ -360,26 +360,28 @@ TEST_CASE("refract_calib refines the lens with --free=intrinsics", "[calib_tool]
     CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
 }
 
-TEST_CASE("refract_calib shows a wrong thickness and does not let it spoil the lens", "[calib_tool]")
+TEST_CASE("refract_calib says that the images contradict a wrong thickness, and which would be right", "[calib_tool]")
 {
     const TemporaryFolder f;
     SceneOptions options;
     options.moments = 14;
     writeScene(f, options, 112);
-    const ToolResult refused = runTool(inputs(f, " --thickness=40 --index=1.5437 --lens=opencv4"));
-    INFO(refused.out << refused.err);
-    CHECK(refused.code == 1);
-    CHECK(mentions(refused.err, "--thickness=20 in place of 40"));
-
-    const ToolResult r = runTool(inputs(f, " --thickness=26 --index=1.5437 --lens=opencv4"));
-    INFO(r.out << r.err);
-    REQUIRE(r.code == 0);
-    CHECK(mentions(r.out, "do not agree"));
-    CHECK_FALSE(mentions(r.out, "refined"));
-    CHECK(RefractiveCamera::read(f / "calib.yml")->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
-
+    for (const std::string wrong : {"19", "22", "26", "40"})
+        for (const std::string more : {" --lens=opencv4 --max-error-at=600:5", " --max-rms=50", " --no-robust"})
+        {
+            const ToolResult r = runTool(inputs(f, " --thickness=" + wrong + " --index=1.5437" + more + (more == " --max-rms=50" ? lens(f) : "")));
+            INFO(wrong << more << "\n" << r.out << r.err);
+            CHECK(r.code == 2);
+            CHECK(mentions(r.err, "contradict --thickness=" + wrong));
+            CHECK(mentions(r.err, "thickness would be 20.0"));
+            CHECK(mentions(r.out, more == " --no-robust" ? "Not usable" : "FAIL"));
+            CHECK_FALSE(mentions(r.out, "Good"));
+            CHECK_FALSE(mentions(r.out, "take pairs"));
+        }
     const ToolResult right = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
-    CHECK_FALSE(mentions(right.out, "do not agree"));
+    INFO(right.out << right.err);
+    CHECK(right.code == 0);
+    CHECK_FALSE(mentions(right.out, "contradict"));
     CHECK(mentions(right.out, "refined"));
 }
 

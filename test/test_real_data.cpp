@@ -355,3 +355,45 @@ TEST_CASE("openptv_cavity: dots in water through glass, 3-D", "[real]")
         CHECK(refractive < fck);
     }
 }
+
+TEST_CASE("One view of a real target in water: starts far apart end in one minimum", "[real]")
+{
+    for (int cameraNumber = 1; cameraNumber <= 3; cameraNumber++)
+    {
+        const std::string path = std::string(REFRACT_DATA_DIR) + format("/myptv/cam%d_cal_points", cameraNumber);
+        std::ifstream file(path);
+        if (!file)
+        {
+            WARN("SKIPPED: there is no " << path);
+            return;
+        }
+        std::vector<Point3d> object;
+        std::vector<Point2d> pixels;
+        for (double u, v, x, y, z; file >> u >> v >> x >> y >> z;)
+        {
+            object.push_back({ x, y, z });
+            pixels.push_back({ u, v });
+        }
+        for (int coefficients : { 0, 4 })
+        {
+            std::vector<double> rms;
+            for (double focal : { 5400., 6000., 6600. })
+                for (double distance : { 50., 150., 400. })
+                {
+                    GlassWindow window;
+                    window.distance = distance;
+                    window.outerIndex = 1.33;
+                    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(
+                        Matx33d(focal, 0, 640, 0, focal, 512, 0, 0, 1), std::vector<double>(coefficients, 0.), window);
+                    Mat rvecs, tvecs;
+                    rms.push_back(calibrateGlass(std::vector<Object>{ object }, noArray(), std::vector<Pixels>{ pixels }, camera, rvecs, tvecs,
+                                                 GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS));
+                }
+            CAPTURE(cameraNumber, coefficients, rms);
+            const auto ends = std::minmax_element(rms.begin(), rms.end());
+            std::cout << "[numbers] myptv, camera " << cameraNumber << ", " << coefficients << " coefficients: " << *ends.first
+                      << " to " << *ends.second << " px from nine starts\n";
+            CHECK(*ends.second - *ends.first < 1e-6);
+        }
+    }
+}

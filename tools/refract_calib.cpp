@@ -239,7 +239,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target, quiet, c);
-    const Given given{c.data, c.options, target.square()};
+    const Given given{c.data, c.options, target.square(), c.notices};
     Progress progress("calibrating", 5, quiet);
     try
     {
@@ -251,6 +251,8 @@ RigCalibration calibrate(const Options& o, bool quiet)
     }
     catch (const Failure& e)
     {
+        if (c.wrong.dropped.empty())
+            throw;
         throw Failure(explainError(e.what(), given));
     }
     requireSensible(c, given);

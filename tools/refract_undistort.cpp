@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
 
 static const char MANUAL[] = R"(Turns images taken through the window into those that a pinhole camera without window would take.
@@ -38,7 +39,7 @@ std::vector<double> depthOf(const Options& options)
     if (options.depth.empty() == options.plane.empty())
         throw Failure("give either --depth=Z or --plane=a,b,c,d: the correction depends on where the scene is");
     if (options.depth == "inf")
-        return {};
+        return {std::numeric_limits<double>::infinity()};
     if (!options.plane.empty())
     {
         const cv::Vec4d plane = parsePlane(options.plane);

@@ -12,7 +12,7 @@ namespace {
 const double SURE = 6.;         // standard deviations; corners err a little together, so that they seem more sure than they are
 
 //! One kind of value: how it is set free, and where it stands then.
-struct Given
+struct GivenValue
 {
     int flag;
     const char* word;
@@ -22,7 +22,7 @@ struct Given
     int (*columnOf)(const ParameterColumns&);
 };
 
-std::vector<Given> givenValues(const RigOptions& options)
+std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
     const bool oneLayer = window.thickness.size() == 1, equalMedia = window.innerIndex == window.outerIndex;
@@ -48,7 +48,7 @@ std::string Contradiction::sentence() const
 std::vector<Contradiction> contradictedValues(const RigCalibration& c)
 {
     std::vector<Contradiction> contradictions;
-    for (const Given& given : givenValues(c.options))
+    for (const GivenValue& given : givenValues(c.options))
     {
         if (!given.isGiven || (c.options.flags & given.flag))
             continue;

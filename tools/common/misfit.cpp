@@ -358,7 +358,7 @@ void requireSensible(const RigCalibration& c, const Given& given)
     if (!fault.empty())
     {
         std::vector<std::string> reasons = explainMisfit(given);
-        reasons.insert(reasons.begin(), c.notices.begin(), c.notices.end());
+        reasons.insert(reasons.begin(), given.notices.begin(), given.notices.end());
         throw Failure(fault + ": " + joined(reasons));
     }
 }
@@ -372,7 +372,8 @@ std::string explainError(const std::string& error, const Given& given)
     if (at != std::string::npos)
         text.replace(at, theirs.size(), ": the images hardly determine what is free. Leave out --free=..., give what you know "
                      "(--thickness, --index, --distance, --camera), or add images: pairs, more tilt, more depth");
-    const std::vector<std::string> reasons = explainMisfit(given);
+    std::vector<std::string> reasons = explainMisfit(given);
+    reasons.insert(reasons.begin(), given.notices.begin(), given.notices.end());
     return reasons.empty() ? text : text + ". However, " + joined(reasons);
 }
 

@@ -14,6 +14,7 @@ struct Given
     RigData data;               //!< all of it, wrong points too
     RigOptions options;
     double square;
+    std::vector<std::string> notices = {};      //!< what was noticed before any fit
 };
 
 //! Mistakes that explain images which do not fit, the likely ones first; empty if none of those that are known does.

@@ -474,7 +474,7 @@ same unmoved target. A wrong thickness or index does not throw; it shows in the 
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
         CV_IN_OUT GlassWindow& window, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
 The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
@@ -482,7 +482,7 @@ The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and res
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief calibrateGlass with what the estimate is worth.
 @param objectPoints as above.
@@ -505,7 +505,7 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
         int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
 The same for (cameraMatrix, distCoeffs, window).
@@ -516,7 +516,7 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, OutputArray jacobian,
         int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief calibrateGlass for a rigid pair of cameras: one board pose serves all images of a moment.
 
@@ -545,7 +545,7 @@ CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief calibrateGlass for any number of cameras, each behind its own window or several behind one; the general form of
 calibrateGlass and stereoCalibrateGlass.
@@ -608,7 +608,7 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
         OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
         int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
         InputArrayOfArrays cameraCovariances = noArray());
 
 /** @overload
@@ -620,7 +620,7 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
 @param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess).

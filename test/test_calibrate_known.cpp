@@ -1,0 +1,157 @@
+// What is known of a camera beforehand comes into the joint fit with its covariance.
+#include "rig_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+//! Glass-only views of one camera; the lens that is given is off.
+struct KnownLens
+{
+    RigTruth truth = makeRig(1, { 0 }, 1.);
+    RigScene scene;
+    explicit KnownLens(Random& random) { scene = makeRigScene(truth, ObjectViews(12, board(9, 6, 25)), random, 0.1); }
+
+    //! fx, fy off by so much, and known to that.
+    RigCall call(double offset, const Mat& covariance, int flags)
+    {
+        RigCall call(truth, scene, false);
+        call.windows.clear();
+        Mat lens = call.cameras[0]->lensParameters();
+        lens.at<double>(0) += offset;
+        lens.at<double>(1) += offset;
+        call.cameras[0]->setLensParameters(lens);
+        calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
+                          call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
+                          call.otherMinima, flags, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12),
+                          std::vector<Mat>{ covariance });
+        return call;
+    }
+};
+
+Mat ofFocalLengths(double deviation, int count = 8)
+{
+    Mat covariance = Mat::zeros(count, count, CV_64F);
+    covariance.at<double>(0, 0) = covariance.at<double>(1, 1) = deviation*deviation;
+    return covariance;
+}
+
+} // namespace
+
+TEST_CASE("A lens known with a covariance lies between an exact one and a free one", "[known]")
+{
+    Random random(3300);
+    CAPTURE(seed());
+    KnownLens k(random);
+    const RigCall exact = k.call(0, ofFocalLengths(0), GLASS_FREE_INTRINSICS), sure = k.call(0, ofFocalLengths(1e-4), 0);
+    CHECK(exact.deviations.at<double>(0) == 0);
+    CHECK(exact.cameras[0]->lensParameters().at<double>(0) == k.truth.cameras[0]->lensParameters().at<double>(0));
+    CHECK(norm(exact.cameras[0]->window().normal - sure.cameras[0]->window().normal) < 1e-6);
+
+    const RigCall within = k.call(0, ofFocalLengths(3), 0), free = k.call(0, ofFocalLengths(1e5), 0);
+    CHECK(within.deviations.at<double>(0) > 0.1);
+    CHECK(within.deviations.at<double>(0) < 3);
+    CHECK(within.deviations.at<double>(0) < free.deviations.at<double>(0));
+    // The normal's +- grows with what is not known of the lens.
+    CHECK(within.deviations.at<double>(8) >= exact.deviations.at<double>(8));
+    CHECK(free.deviations.at<double>(8) > exact.deviations.at<double>(8));
+    CHECK(within.deviations.at<double>(2) == 0);        // no variance: exact
+}
+
+TEST_CASE("Errors of a lens that is known so far are what is stated", "[known]")
+{
+    std::vector<double> lens, normal;
+    double statedLens = 0, statedNormal = 0;
+    const double DEVIATION = 5;
+    const int TRIALS = 60;
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(3310 + trial);
+        KnownLens k(random);
+        const double offset = random.normal(DEVIATION);
+        Mat covariance = ofFocalLengths(DEVIATION);
+        covariance.at<double>(0, 1) = covariance.at<double>(1, 0) = 0.9999*DEVIATION*DEVIATION;     // both are off alike
+        const RigCall call = k.call(offset, covariance, 0);
+        lens.push_back(call.cameras[0]->lensParameters().at<double>(0) - k.truth.cameras[0]->lensParameters().at<double>(0));
+        normal.push_back(call.cameras[0]->window().normal[0] - k.truth.cameras[0]->window().normal[0]);
+        statedLens += std::pow(call.deviations.at<double>(0), 2);
+        statedNormal += std::pow(call.deviations.at<double>(8), 2);
+    }
+    const double ofLens = cv::norm(lens)/std::sqrt(statedLens), ofNormal = cv::norm(normal)/std::sqrt(statedNormal);
+    std::cout << "[numbers] lens known with a covariance, error over stated: focal length " << ofLens << ", normal " << ofNormal
+              << std::endl;
+    CHECK(ofLens == Approx(1).margin(0.3));
+    CHECK(ofNormal == Approx(1).margin(0.3));
+}
+
+TEST_CASE("A covariance of the wrong size or sign is refused by name", "[known]")
+{
+    Random random(3320);
+    KnownLens k(random);
+    CHECK_THROWS_WITH(k.call(0, Mat::eye(3, 3, CV_64F), 0), Catch::Contains("cameraCovariances[0] is 3x3"));
+    CHECK_THROWS_WITH(k.call(0, -ofFocalLengths(1), 0), Catch::Contains("negative"));
+    Mat indefinite = ofFocalLengths(1);
+    indefinite.at<double>(0, 1) = indefinite.at<double>(1, 0) = 2;
+    CHECK_THROWS_WITH(k.call(0, indefinite, 0), Catch::Contains("not positive definite"));
+}
+
+TEST_CASE("A thickness known with a tolerance is estimated within it", "[known]")
+{
+    Random random(3330);
+    CAPTURE(seed());
+    RigTruth truth = makeRig(1, { 0 }, 1.);
+    const RigScene scene = makeRigScene(truth, ObjectViews(6, board(9, 6, 25)), random, 0.1);
+    RigCall call(truth, scene, true);
+    GlassWindow window = call.cameras[0]->window();
+    window.thickness[0] = 20.3;
+    call.cameras[0]->setWindow(window);
+    Mat known = Mat::zeros(16, 16, CV_64F);             // lens 8, normal 3, distance, thickness, index, inner, outer
+    known.at<double>(12, 12) = 0.3*0.3;
+    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, std::vector<int>(), call.Rs, call.Ts, call.rvecs,
+                      call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
+                      call.otherMinima, 0, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12),
+                      std::vector<Mat>{ known });
+    const double deviation = call.deviations.at<double>(12);
+    CHECK(deviation > 0);
+    CHECK(deviation < 0.3);
+    CHECK(std::abs(call.cameras[0]->window().thickness[0] - 20) < 4*deviation);
+}
+
+TEST_CASE("Cameras behind one wall, the second nearer to it than the first was thought to be: no crash, an answer", "[known]")
+{
+    // The second camera stands 200 mm in front of the first; a start of 25 mm from the first puts it beyond the wall.
+    for (int flags : { 0, (int)GLASS_ROBUST })
+        for (int run = 0; run < 3; run++)
+        {
+            Random random(3340 + run);
+            CAPTURE(seed(), run, flags);
+            RigTruth rig = makeRig(2, { 0, 1 }, 1.333);
+            rig.windows = { 0, 0 };
+            rig.Ts[1] = Vec3d(-200, 0, -200);
+            GlassWindow window({ 0.05, 0.02, 1 }, 10, 1.49, 260, 1.333);
+            rig.cameras[0]->setWindow(window);
+            const Vec3d there = rig.Rs[1]*window.normal;
+            window.distance = 260 + there.dot(rig.Ts[1]);
+            window.normal = there;
+            rig.cameras[1]->setWindow(window);
+            const RigScene scene = makeRigScene(rig, ObjectViews(10, board(9, 6, 25)), random, 0.1, 700, 1000);
+            RigCall call(rig, scene, false);
+            for (const Ptr<RefractiveCamera>& camera : call.cameras)
+            {
+                GlassWindow start = camera->window();
+                start.distance = 25;
+                start.normal = Vec3d(0, 0, 1);
+                camera->setWindow(start);
+            }
+            call.run(flags | GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+            for (int c = 0; c < 2; c++)
+            {
+                const int at = c*16;
+                CHECK(std::abs(call.cameras[c]->window().distance - rig.cameras[c]->window().distance) <
+                      5*call.deviations.at<double>(at + 11));
+                CHECK(angleBetween(call.cameras[c]->window().normal, rig.cameras[c]->window().normal) < 3);
+            }
+        }
+}
