@@ -75,7 +75,7 @@ if [ $fast = no ]; then
   build build/sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_BENCH=OFF
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
   ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tests '~[slow]~[.]'
-  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tools_tests '~[.]'
+  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tools_tests '~[slow]~[.]'
   run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
 

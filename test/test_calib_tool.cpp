@@ -366,7 +366,11 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     SceneOptions options;
     options.moments = 14;
     writeScene(f, options, 112);
-    for (const std::string wrong : {"19", "22", "26", "40"})
+    const ToolResult far = runTool(inputs(f, " --thickness=40 --index=1.5437" + lens(f)));
+    INFO(far.out << far.err);
+    CHECK(far.code == 1);
+    CHECK(mentions(far.err, "--thickness=20 in place of 40"));
+    for (const std::string wrong : {"19", "22", "26"})
         for (const std::string more : {" --lens=opencv4 --max-error-at=600:5", " --max-rms=50", " --no-robust"})
         {
             const ToolResult r = runTool(inputs(f, " --thickness=" + wrong + " --index=1.5437" + more + (more == " --max-rms=50" ? lens(f) : "")));

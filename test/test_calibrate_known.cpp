@@ -60,7 +60,7 @@ TEST_CASE("A lens known with a covariance lies between an exact one and a free o
     CHECK(within.deviations.at<double>(2) == 0);        // no variance: exact
 }
 
-TEST_CASE("Errors of a lens that is known so far are what is stated", "[known]")
+TEST_CASE("Errors of a lens that is known so far are what is stated", "[known][slow]")
 {
     std::vector<double> lens, normal;
     double statedLens = 0, statedNormal = 0;

@@ -6,8 +6,8 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
 
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
 and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
-or more direct images in all: these serve the lens, unless --camera gives it, and with pairs refine it together with the window. With --direct2 and --glass2 the same
-name means the same moment in both cameras.
+or more direct images in all: these serve the lens, unless --camera gives it, in one fit with the window, so that the lens's
+uncertainty is in every +-. With --direct2 and --glass2 the same name means the same moment in both cameras.
 
 Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
 
@@ -16,7 +16,7 @@ Judge the result by the held-out boards (calibrated on the others in turn), not 
 values would do, and what the next images should show.
 
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
---max-normal-std, --max-error-at) is not met. The same input gives the same bytes: outputs carry the time of the newest image
+--max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs carry the time of the newest image
 (or that of SOURCE_DATE_EPOCH).)";
 
 #include "cli.hpp"

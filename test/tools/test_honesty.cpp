@@ -302,7 +302,7 @@ std::vector<Setup> allSetups()
 
 } // namespace
 
-TEST_CASE("A stated +- of points is true in every flow: a few trials", "[honesty]")
+TEST_CASE("A stated +- of points is true in every flow: a few trials", "[honesty][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
     const struct { Setup setup; int trials; } cases[] = {
@@ -335,7 +335,7 @@ TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
             print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
 }
 
-TEST_CASE("Boards that took no part are as far off as stated, and the check sees where they are not", "[honesty]")
+TEST_CASE("Boards that took no part are as far off as stated, and the check sees where they are not", "[honesty][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
     const Setup setup{Flow::HAND_HELD, Medium::HOUSING, 1};

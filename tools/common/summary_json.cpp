@@ -125,7 +125,7 @@ Json heldOutJson(const HeldOut& h)
         return nullptr;
     return {{"folds", h.folds}, {"views", h.views}, {"views_without_result", h.failed}, {"rms_px", h.px},
             {"rms_px_pinhole_through_glass", h.pinholePx}, {"rms_px_board_from_direct_image", h.transferPx},
-            {"length_rms", h.lengthRms}, {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
+            {"error_over_stated", h.misfit.calibrationRatio()}, {"length_rms", h.lengthRms}, {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
 }
 
 Json nearFarJson(const NearFar& n)
