@@ -4,7 +4,7 @@ distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "paper_rig.hpp"
 #include "sight.hpp"
 #include "wrong_points.hpp"
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <map>
 
 using namespace cv;
@@ -358,4 +358,122 @@ TEST_CASE("Boards that took no part are as far off as stated, and the check sees
     CHECK(stated.ratio() == Approx(1.).margin(0.4));
     CHECK(stated.calibrationRatio() == Approx(1.).margin(0.4));
     CHECK(tooSure.calibrationRatio() > 2.);
+}
+
+namespace {
+
+//! The variance that a calibration's covariance gives to the length between two points that both cameras see.
+double lengthVariance(const Fit& fit, const Point3d& a, const Point3d& b)
+{
+    const std::vector<Point3d> points = {a, b};
+    const Vec3d along = normalize(Vec3d(b - a));
+    Eigen::RowVectorXd byParameters;
+    for (int i = 0; i < 2; i++)
+    {
+        const ViewDerivatives view = differentiateView(fit.rig, points, Vec3d(), Vec3d(), {{0, true, {i}}, {1, true, {i}}});
+        const Eigen::MatrixXd B = view.byPose.rightCols(3);        // the pose is the identity: by its T is by the point
+        const Eigen::MatrixXd dX = (B.transpose() * B).inverse() * B.transpose() * view.byParameters;
+        const Eigen::RowVectorXd part = Eigen::RowVector3d(along[0], along[1], along[2]) * dX;
+        byParameters = i == 0 ? Eigen::RowVectorXd(part) : Eigen::RowVectorXd(byParameters - part);
+    }
+    return byParameters * toEigen(fit.covariance) * byParameters.transpose();
+}
+
+//! Two cameras before a wall or each behind its port, in water; few views from afar, some corners wrong.
+struct SealedRig
+{
+    Rig truth;
+    RigData data;
+    bool shared;
+
+    explicit SealedRig(scenes::Random& random) : shared(random.uniform(0, 1) < 0.5)
+    {
+        truth = paperRig(2);
+        const double toe = random.uniform(0.05, 0.25);
+        Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.R);
+        truth.T = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
+        GlassWindow window(Vec3d(random.normal(0.1), random.normal(0.1), 1), 12, 1.49, random.uniform(120, 300), 1.333);
+        truth.cameras[0]->setWindow(window);
+        window.normal = truth.R * window.normal;
+        window.distance += window.normal.dot(truth.T);
+        if (!shared)
+            window.normal = normalize(Vec3d(random.normal(0.1), random.normal(0.1), 1));
+        window.distance = std::max(window.distance, 10.);
+        if (shared)
+        {
+            GlassWindow first = truth.cameras[0]->window();
+            first.distance = window.distance - window.normal.dot(truth.T);
+            truth.cameras[0]->setWindow(first);
+        }
+        truth.cameras[1]->setWindow(window);
+        data.cameraCount = 2;
+        data.objectPoints = board(9, 6, 60.);
+        data.imageSize[0] = data.imageSize[1] = Size(1280, 1024);
+        const int views = 5 + (int)random.uniform(0, 6);
+        for (int i = 0; i < views; i++)
+        {
+            const double z = random.uniform(1000, 3000);
+            Moment m = observe(truth, data.objectPoints, random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1) * z,
+                               random.uniform(-0.08, 0.08) * z, z), false, 0.3, random);
+            m.stem = "view" + std::to_string(i);
+            for (int c = 0; c < 2; c++)
+            {
+                for (Point2d& p : m.glass[c])
+                    if (!Rect2d(0, 0, 1280, 1024).contains(p))
+                        p = Point2d(NAN, NAN);
+                displaceSome(m.glass[c], 0.05, random);
+                if (std::count_if(m.glass[c].begin(), m.glass[c].end(), seen) < 12)
+                    m.glass[c].clear();
+            }
+            data.moments.push_back(m);
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no crash, and intervals of lengths hold", "[.honesty]")
+{
+    const char* given = std::getenv("TRIALS");
+    const int trials = given ? std::atoi(given) : 500;
+    Ratio lengths;
+    int answers = 0;
+    std::map<std::string, int> refusals;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        scenes::Random random(20000 + trial);
+        const SealedRig scene(random);
+        try
+        {
+            RigOptions options;
+            options.window = scene.truth.cameras[0]->window();
+            options.window.normal = Vec3d(0, 0, 1);
+            options.window.distance = 60.;
+            options.flags = GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | (scene.shared ? (int)GLASS_SHARED_WINDOW : 0);
+            options.lensCoefficients = 4;
+            std::vector<LensSource> sources;
+            RigData data = scene.data;
+            Rig start = startRig(data, options, sources);
+            if (!dropWrongPoints(data, start, options.flags).dropped.empty())
+                start = startRig(data, options, sources);
+            const Fit fit = fitAll(data, start, sources, options.flags);
+            const Point3d a(-60, 20, 1800), b(60, -30, 2000);
+            std::vector<Point2d> pixels1, pixels2;
+            std::vector<Point3d> points;
+            refractiveProjectPoints(std::vector<Point3d>{a, b}, Vec3d(), Vec3d(), scene.truth.cameras[0], pixels1);
+            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.R), scene.truth.T, scene.truth.cameras[1], pixels2);
+            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.R, fit.rig.T, pixels1, pixels2, points);
+            answers++;
+            lengths.add(norm(points[1] - points[0]) - norm(b - a), std::sqrt(lengthVariance(fit, points[0], points[1])));
+        }
+        catch (const std::exception& e)
+        {
+            refusals[std::string(e.what()).substr(0, 60)]++;
+        }
+    }
+    std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << trials << " answer; 95 % intervals of a length hold "
+              << 100 * lengths.within(1.96) << " %, error over stated " << lengths.value() << std::endl;
+    for (const auto& refusal : refusals)
+        std::cout << "    " << refusal.second << " x " << refusal.first << std::endl;
+    CHECK(answers > 0);
 }
