@@ -16,8 +16,8 @@ Judge the result by the held-out boards (calibrated on the others in turn), not 
 values would do, and what the next images should show.
 
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
---max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs carry the time of the newest image
-(or that of SOURCE_DATE_EPOCH).)";
+--max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
+carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "cli.hpp"
 #include "data_checks.hpp"
