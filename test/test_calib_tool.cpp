@@ -389,7 +389,7 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     CHECK(mentions(right.out, "refined"));
 }
 
-TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[calib_tool]")
+TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[calib_tool][slow]")
 {
     const TemporaryFolder f;
     SceneOptions options;
