@@ -122,7 +122,8 @@ double fitSome(Rig& rig, const RigViews& views, int iterations, int flags)
         RigProblem problem(rig, views, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
         problem.solve(TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-8));
         rig = problem.rig();
-        return problem.squaredError();
+        const double cost = problem.squaredError();
+        return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();     // it is sorted by
     }
     catch (const cv::Exception&)
     {
