@@ -1,6 +1,6 @@
 #include "window_check.hpp"
 #include "f_distribution.hpp"
-#include "view_derivatives.hpp"
+#include "sight.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -21,60 +21,6 @@ const double CONVERGED = 1e-9;          // radians
 const double DEGREES = 180. / CV_PI;
 const char* const NO_TILT = "no tilt of the window explains the new images: did the target move between the images of a pair, or "
                             "are images and calibration not of the same cameras?";
-
-//! Images of one moment, the pixels in the order of differentiateView, and the board's pose so far.
-struct Sight
-{
-    std::vector<ImageOfView> images;
-    VectorXd pixels;
-    Vec3d rvec, tvec;
-};
-
-//! Poses are found in the first of: direct image, glass image; of camera 1, of camera 2.
-bool startPose(const Rig& rig, const std::vector<Point3d>& object, const Moment& m, Sight& sight)
-{
-    for (bool glass : {false, true})
-        for (int c = 0; c < (int)rig.cameras.size(); c++)
-        {
-            const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
-            const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : withWindow(rig.cameras[c], GlassWindow());
-            if (pixels.empty() || !refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec))
-                continue;
-            if (c == 1)
-            {
-                Rig back = rig;
-                back.R = rig.R.t();
-                back.T = -(rig.R.t() * rig.T);
-                poseInCamera(back, 1, sight.rvec, sight.tvec);
-            }
-            return true;
-        }
-    return false;
-}
-
-Sight sightOf(const Rig& rig, const std::vector<Point3d>& object, const Moment& m)
-{
-    Sight sight;
-    if (!startPose(rig, object, m, sight))
-        throw Failure("no pose of the target explains its points in view '" + m.stem + "': check --size and --square");
-    std::vector<double> pixels;
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-        for (bool glass : {false, true})
-        {
-            const std::vector<Point2d>& points = glass ? m.glass[c] : m.direct[c];
-            ImageOfView image{c, glass, {}};
-            for (size_t i = 0; i < points.size(); i++)
-                if (seen(points[i]))
-                {
-                    image.points.push_back((int)i);
-                    pixels.insert(pixels.end(), {points[i].x, points[i].y});
-                }
-            if (!image.points.empty())
-                sight.images.push_back(image);
-        }
-    sight.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
-    return sight;
-}
 
 //! A window whose tilt is looked for: n = n0 + basis delta, normalised.
 struct FreeNormal
