@@ -10,8 +10,6 @@ namespace tools {
 
 namespace {
 
-const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
-
 //! The moments that a fit with these flags learns from.
 std::vector<int> usefulMoments(const RigData& data, int flags)
 {
@@ -81,7 +79,7 @@ int countPriors(const Rig& rig, int flags)
 
 } // namespace
 
-Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags)
+Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags, int maxIterations)
 {
     Fit fit;
     fit.rig = start.clone();
@@ -103,7 +101,8 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
                                 fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
                                 fit.inliers, fit.otherMinima, rigFlags, noArray(),
                                 TermCriteria(TermCriteria::COUNT + TermCriteria::EPS,
-                                             flags & GLASS_ROBUST ? MAX_ROBUST_ITERATIONS : MAX_ITERATIONS, 1e-12),
+                                             flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations,
+                                             1e-12),
                                 covariancesOf(fit.rig));
     if (stereo)
     {

@@ -79,8 +79,11 @@ cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<cv::Po
 //! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
 Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
 
+const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
+
 //! calibrateGlassRig on some of the moments.
-Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags);
+Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags,
+           int maxIterations = MAX_ITERATIONS);
 
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
 images are views too, each with its own pose. The windows are found first, with the lenses held.

@@ -20,6 +20,7 @@ const double EXPLAINS = 0.3;            // a mistake undone leaves less than thi
 const double AS_GOOD = 3.;              // as the best of them
 const double WHOLE_SQUARES = 0.25;      // of a shift remains if it is one by whole squares
 const double USUAL_INDEX = 1.5;
+const int ITERATIONS = 100;             // what explains the images fits them soon; a wrong guess may creep for a thousand
 const double NO_FIT = std::numeric_limits<double>::infinity();
 
 double median(std::vector<double> values)
@@ -59,7 +60,7 @@ double misfitOf(const RigData& data, const RigOptions& options, Rig* result = nu
     try
     {
         std::vector<LensSource> sources;
-        const Fit fit = fitRig(data, startRig(data, options, sources), allMoments(data), options.flags);
+        const Fit fit = fitRig(data, startRig(data, options, sources), allMoments(data), options.flags, ITERATIONS);
         if (result)
             *result = fit.rig;
         return medianOf(data, residualsOf(data, fit));
