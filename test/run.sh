@@ -30,27 +30,44 @@ run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
     *) failed=$((failed + 1)); echo "FAILED: $name" ;;
   esac
 }
-suite() {   # suite EXECUTABLE [FILTER]: all cases of a Catch2 program, counted one by one
-  report=$(mktemp)
-  { "$@" || true; } | tee "$report"
-  # "All tests passed (1234 assertions in 56 test cases)" or "test cases: 56 | 55 passed | 1 failed"
-  p=$(sed -n 's/^All tests passed .* in \([0-9]*\) test case.*/\1/p; s/^test cases:.*| *\([0-9]*\) passed.*/\1/p' "$report")
-  f=$(sed -n 's/^test cases:.*| *\([0-9]*\) failed.*/\1/p' "$report")
-  passed=$((passed + ${p:-0})); failed=$((failed + ${f:-0}))
-  if [ -z "$p$f" ]; then      # a crash prints no counts
-    failed=$((failed + 1)); echo "FAILED: $1 ended before its last test"
-  fi
-  rm -f "$report"
+suites=""
+suite() {   # suite NAME EXECUTABLE [FILTER]: a Catch2 program, in the background, as it takes one thread only
+  log=build/$1.log; shift
+  { echo "$*"; "$@" || true; } >"$log" 2>&1 &
+  suites="$suites $!:$log"
+}
+count_suites() {    # waits for all suites, shows what they printed, counts their cases one by one
+  for suite in $suites; do
+    wait "${suite%%:*}"
+    log=${suite#*:}
+    cat "$log"
+    # "All tests passed (1234 assertions in 56 test cases)" or "test cases: 56 | 55 passed | 1 failed"
+    p=$(sed -n 's/^All tests passed .* in \([0-9]*\) test case.*/\1/p; s/^test cases:.*| *\([0-9]*\) passed.*/\1/p' "$log")
+    f=$(sed -n 's/^test cases:.*| *\([0-9]*\) failed.*/\1/p' "$log")
+    passed=$((passed + ${p:-0})); failed=$((failed + ${f:-0}))
+    if [ -z "$p$f" ]; then      # a crash prints no counts
+      failed=$((failed + 1)); echo "FAILED: $log ends before its last test"
+    fi
+  done
+  suites=""
 }
 
 mkdir -p build
 build build/release
-suite build/release/bin/refract_tests
-suite build/release/bin/refract_tools_tests
+test/python.sh "$@" >build/python.log 2>&1 &     # one thread as well, most of the time
+python=$!
+suite tests build/release/bin/refract_tests
+suite tools_tests build/release/bin/refract_tools_tests
+count_suites
+# A kernel's rounding, and what it accepts, differ from one instruction set to the next.
+OPENCV_CPU_DISABLE=AVX512-SKX suite tests_avx2 build/release/bin/refract_tests '~[slow]~[.]'
+OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 suite tests_baseline build/release/bin/refract_tests '~[slow]~[.]'
+count_suites
+run "Python package, its tests and samples" wait $python
+cat build/python.log
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 run "Debian package: unpacked, its tools run" test/package.sh build/release
-run "Python package, its tests and samples" test/python.sh "$@"
 run "the same hundred values from every build" test/agreement/run.sh build/release
 # OpenCV itself is not compiled here: that takes the whole script, without --short.
 for version in 4.14.0.94 5.0.0.93; do
@@ -58,12 +75,6 @@ for version in 4.14.0.94 5.0.0.93; do
     test/opencv_in_tree.sh $version --short
 done
 run "the kernels compiled for 64-bit ARM, run in an emulator" test/aarch64.sh --short     # everything: without --short
-# A kernel's rounding, and what it accepts, differ from one instruction set to the next.
-for isa in baseline avx2; do
-  disabled=AVX512-SKX
-  [ $isa = avx2 ] || disabled=$disabled,AVX2
-  OPENCV_CPU_DISABLE=$disabled suite build/release/bin/refract_tests '~[slow]~[.]'
-done
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do
   run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa
@@ -72,10 +83,16 @@ for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"
 done
 if [ $fast = no ]; then
-  build build/sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_BENCH=OFF
+  # One build for the suites and the fuzzers, which want clang.
+  tools/install_dependencies.sh fuzz
+  build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
+    -DREFRACT_BUILD_BENCH=OFF
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
-  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tests '~[slow]~[.]'
-  ASAN_OPTIONS=detect_leaks=0 suite build/sanitize/bin/refract_tools_tests '~[slow]~[.]'
+  ASAN_OPTIONS=detect_leaks=0; export ASAN_OPTIONS
+  suite tests_sanitize build/sanitize/bin/refract_tests '~[slow]~[.]'
+  suite tools_tests_sanitize build/sanitize/bin/refract_tools_tests '~[slow]~[.]'
+  count_suites
   run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
 

@@ -17,6 +17,17 @@ export PKG_CONFIG_PATH
 c++ -std=c++11 "$here/consumer.cpp" -o "$work/consumer" $(pkg-config --cflags --libs opencv_refract)
 LD_LIBRARY_PATH=$libdir "$work/consumer"
 
+# The kinds of camera are the library's own.
+cat >"$work/outsider.cpp" <<'EOF'
+#include <opencv2/refract.hpp>
+struct Outsider : cv::refract::RefractiveCamera { Outsider() : cv::refract::RefractiveCamera() {} };
+EOF
+# shellcheck disable=SC2046
+if c++ -std=c++11 -fsyntax-only "$work/outsider.cpp" $(pkg-config --cflags opencv_refract) 2>"$work/outsider.log" ||
+   ! grep -q "is private" "$work/outsider.log"; then
+  echo "FAILED: others can derive from RefractiveCamera" >&2; exit 1
+fi
+
 # Nothing but the API is exported.
 others=$(nm -DC --defined-only "$libdir/libopencv_refract.so" | sed 's/^[0-9a-f]* . //' |
   grep -v -e '^cv::refract::' -e '^\(vtable\|typeinfo\|typeinfo name\) for cv::refract::RefractiveCamera$' || true)

@@ -2,7 +2,7 @@
 # Feeds every parser and every public call with made-up input (libFuzzer, address and undefined-behaviour sanitizers): first the
 # inputs that once were findings, each once, then the corpus and what is mutated from it. A crash, a sanitizer's report, an
 # exception that no caller expects, an answer that breaks a promise of refract.hpp, or more than ten seconds for one input is a
-# finding; its input is left in build/fuzz/findings. Prints what was run of each harness, and ends non-zero on any finding.
+# finding; its input is left in build/sanitize/findings. Prints what was run of each harness, and ends non-zero on any finding.
 #
 # Usage: test/fuzz/run.sh [SECONDS | --runs=N] [HARNESS...]     ten seconds each of all harnesses; --runs=N: N inputs each
 set -eu
@@ -16,11 +16,11 @@ esac
 tools/install_dependencies.sh fuzz
 launcher=""
 command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
-build=build/fuzz
+build=build/sanitize        # as test/run.sh has it
 mkdir -p build
 cmake -S . -B $build -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 $launcher -DCMAKE_BUILD_TYPE=Debug \
-  -DCMAKE_CXX_FLAGS_DEBUG="-O2 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
-  -DREFRACT_BUILD_TESTS=OFF -DREFRACT_BUILD_SAMPLES=OFF -DREFRACT_BUILD_BENCH=OFF >$build.log 2>&1 || { cat $build.log; exit 1; }
+  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
+  -DREFRACT_BUILD_BENCH=OFF >$build.log 2>&1 || { cat $build.log; exit 1; }
 cmake --build $build --target fuzzers
 [ $# != 0 ] || set -- $(ls test/fuzz/fuzz_*.cpp | sed 's,.*/fuzz_\(.*\)\.cpp,\1,')
 
@@ -30,13 +30,13 @@ export ASAN_OPTIONS
 mkdir -p $build/findings $build/logs
 # Corpora grow in the build directory; what is committed is only read. Whole paths, as a harness may change its folder.
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
-  mkdir -p "$0/build/fuzz/corpus/NAME"
-  exec >build/fuzz/logs/NAME.log 2>&1
-  options="-timeout=10 -rss_limit_mb=3072 -artifact_prefix=$0/build/fuzz/findings/NAME-"
+  mkdir -p "$0/build/sanitize/corpus/NAME"
+  exec >build/sanitize/logs/NAME.log 2>&1
+  options="-timeout=10 -rss_limit_mb=3072 -artifact_prefix=$0/build/sanitize/findings/NAME-"
   set -- "$0"/test/fuzz/regressions/NAME/*
-  [ ! -e "$1" ] || build/fuzz/bin/fuzz_NAME $options "$@" || exit 0
-  build/fuzz/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 '$limit' \
-    "$0/build/fuzz/corpus/NAME" "$0/test/fuzz/corpus/NAME" && echo "no finding"
+  [ ! -e "$1" ] || build/sanitize/bin/fuzz_NAME $options "$@" || exit 0
+  build/sanitize/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 '$limit' \
+    "$0/build/sanitize/corpus/NAME" "$0/test/fuzz/corpus/NAME" && echo "no finding"
   exit 0' "$PWD"
 
 failed=0
