@@ -127,7 +127,7 @@ TEST_CASE("The normal is as good as the Cramer-Rao bound, and as good as stated:
     }
 }
 
-TEST_CASE("The normal is as good as the Cramer-Rao bound: a few trials", "[calibrate_glass]")
+TEST_CASE("The normal is as good as the Cramer-Rao bound: a few trials", "[calibrate_glass][slow]")
 {
     CAPTURE(seed());
     for (const Case& c : CASES)

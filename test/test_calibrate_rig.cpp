@@ -116,7 +116,7 @@ TEST_CASE("Known poses: one view through the window determines its normal", "[ri
     CHECK(error < 4*sigma);
 }
 
-TEST_CASE("Poses known with a covariance: between none and exact, and as good as stated", "[rig_glass]")
+TEST_CASE("Poses known with a covariance: between none and exact, and as good as stated", "[rig_glass][slow]")
 {
     const int runs = 100;
     double mahalanobis = 0, exact = 0, uncertain = 0, unknown = 0;

@@ -235,7 +235,7 @@ TEST_CASE("Lengths by 20 sealed stereo rigs", "[.monte-carlo]")
         CHECK(range.honesty() == Approx(1).margin(0.25));       // 20 rigs: errors of one rig are alike
 }
 
-TEST_CASE("Lengths by two sealed stereo rigs", "[stereo_glass]")
+TEST_CASE("Lengths by two sealed stereo rigs", "[stereo_glass][slow]")
 {
     CAPTURE(seed());
     const std::vector<Ranging> ranges = measureSealedRigs(2, 3);
