@@ -193,10 +193,9 @@ void readImages(const Options& o, const Target& target, bool quiet, RigCalibrati
 //! Lens and start, wrong points, the fit; then what a user would do instead.
 void fit(const Options& o, RigCalibration& c, Progress& progress)
 {
-    c.start = startRig(c.data, c.options, c.lensSources);
     if (o.robust)
-        c.wrong = dropWrongPoints(c.data, c.start, c.options.flags);
-    if (!c.wrong.dropped.empty())     // they have been in the lens and in the start of R and T
+        c.wrong = startWithoutWrongPoints(c.data, c.options, c.start, c.lensSources);
+    else
         c.start = startRig(c.data, c.options, c.lensSources);
     progress.step();
     c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);

@@ -253,12 +253,11 @@ Fit calibrate(const Images& images, const Setup& setup, const Rig& truth, scenes
     if (!setup.hasDirect())
         options.flags |= GLASS_FREE_INTRINSICS;
     std::vector<LensSource> sources;
-    Rig start = startRig(data, options, sources);
+    Rig start;
     if (setup.flow == Flow::ROBUST)
-    {
-        dropWrongPoints(data, start, options.flags);
+        startWithoutWrongPoints(data, options, start, sources);
+    else
         start = startRig(data, options, sources);
-    }
     if (setup.flow == Flow::KNOWN_POSES)
         return fitAtKnownPoses(data, images.poses, start, options.flags, random);
     return fitAll(data, start, sources, options.flags);
@@ -564,9 +563,8 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             options.lensCoefficients = 4;
             std::vector<LensSource> sources;
             RigData data = scene.data;
-            Rig start = startRig(data, options, sources);
-            if (!dropWrongPoints(data, start, options.flags).dropped.empty())
-                start = startRig(data, options, sources);
+            Rig start;
+            startWithoutWrongPoints(data, options, start, sources);
             const Fit fit = fitAll(data, start, sources, options.flags);
             const Point3d a(-60, 20, 1800), b(60, -30, 2000);
             std::vector<Point2d> pixels1, pixels2;

@@ -72,6 +72,12 @@ Fit robustFit(const RigData& data, const Rig& start, int flags)
     return fit;
 }
 
+bool areSame(const std::vector<Dropped>& a, const std::vector<Dropped>& b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Dropped& x, const Dropped& y)
+           { return x.view == y.view && x.camera == y.camera && x.glass == y.glass && x.points == y.points; });
+}
+
 } // namespace
 
 std::string Dropped::sentence() const
@@ -103,6 +109,28 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
                           fit.inliers[fit.imageStatus.cols * i + column], dropped))
                     wrong.dropped.push_back(dropped);
             }
+    return wrong;
+}
+
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start, std::vector<LensSource>& lensSources)
+{
+    const int MOST_ROUNDS = 5;
+    const RigData all = data;
+    start = startRig(all, options, lensSources);
+    WrongPoints wrong;
+    bool settled = false;
+    for (int round = 0; round < MOST_ROUNDS && !settled; round++)
+    {
+        RigData rest = all;
+        const WrongPoints found = dropWrongPoints(rest, start, options.flags);
+        if (!found.fault.empty() && round > 0)
+            break;
+        settled = areSame(found.dropped, wrong.dropped);
+        wrong = found;
+        data = rest;
+        if (!settled)
+            start = startRig(data, options, lensSources);
+    }
     return wrong;
 }
 
