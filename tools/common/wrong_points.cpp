@@ -72,6 +72,11 @@ Fit robustFit(const RigData& data, const Rig& start, int flags)
     return fit;
 }
 
+bool fromImages(const std::vector<LensSource>& sources)
+{
+    return std::any_of(sources.begin(), sources.end(), [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
+}
+
 bool areSame(const std::vector<Dropped>& a, const std::vector<Dropped>& b)
 {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Dropped& x, const Dropped& y)
@@ -122,7 +127,9 @@ WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Ri
     for (int round = 0; round < MOST_ROUNDS && !settled; round++)
     {
         RigData rest = all;
-        const WrongPoints found = dropWrongPoints(rest, start, options.flags);
+        WrongPoints found = dropWrongPoints(rest, start, options.flags);
+        if (!found.fault.empty() && fromImages(lensSources))        // so wrong a lens that nothing fits it
+            found = dropWrongPoints(rest, start, options.flags | GLASS_FREE_INTRINSICS);
         if (!found.fault.empty() && round > 0)
             break;
         settled = areSame(found.dropped, wrong.dropped);
