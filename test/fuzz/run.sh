@@ -26,7 +26,7 @@ cmake --build $build --target fuzzers
 
 # Ceres and OpenCV keep their thread pools until the process ends: leaks are not what this looks for.
 ASAN_OPTIONS=detect_leaks=0:malloc_context_size=6:quarantine_size_mb=16
-export ASAN_OPTIONS
+export ASAN_OPTIONS limit
 mkdir -p $build/findings $build/logs
 # Corpora grow in the build directory; what is committed is only read. Whole paths, as a harness may change its folder.
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
@@ -35,7 +35,7 @@ printf '%s\n' "$@" | xargs -P "$(nproc)" -I NAME sh -c '
   options="-timeout=10 -rss_limit_mb=3072 -artifact_prefix=$0/build/sanitize/findings/NAME-"
   set -- "$0"/test/fuzz/regressions/NAME/*
   [ ! -e "$1" ] || build/sanitize/bin/fuzz_NAME $options "$@" || exit 0
-  build/sanitize/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 '$limit' \
+  build/sanitize/bin/fuzz_NAME $options -max_len=4096 -print_final_stats=1 $limit \
     "$0/build/sanitize/corpus/NAME" "$0/test/fuzz/corpus/NAME" && echo "no finding"
   exit 0' "$PWD"
 
