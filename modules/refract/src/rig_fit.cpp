@@ -124,6 +124,7 @@ RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
     RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
     const std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
     addPosesThroughWindow(start.rig, views, start.poses);
+    keepGivenNormals(rig, views, start.poses, start.rig);
     fit.otherMinima.create(rig.count(), 4, CV_64F);
     for (int c = 0; c < rig.count(); c++)
     {

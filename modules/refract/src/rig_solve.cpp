@@ -156,6 +156,8 @@ int RigProblem::solveInside(ceres::TrustRegionStrategyType strategy, double chan
     }
     for (const RigImage& image : images_)
     {
+        if (image.usedCount() == 0)     // a view that is left with none of them has no pose
+            continue;
         std::vector<double*> values(1, poses_[image.view].data());
         for (int i : blocksOf(image))
             values.push_back(blocks_[i].values.data());

@@ -44,6 +44,10 @@ distance has a bound at 0, so that no camera comes to lie beyond. Where the star
 @return one per camera; only the given owner's may hold a minimum */
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags);
 
+/** The given normal for a window whose start hides what was seen through it: noisy pairs through a thin window have their least
+error anywhere. */
+void keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig);
+
 //! The distance of every window from its owner.
 void setDistances(Rig& rig, double distance);
 //! The normal of the window of an owner, in its frame.

@@ -358,4 +358,31 @@ void setNormal(Rig& rig, int owner, const Vec3d& normal)
     transferToOthers(rig);
 }
 
+static bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses)
+{
+    const Extrinsics toCamera(rig.extrinsics[c]);
+    for (int view = 0; view < views.count(); view++)
+    {
+        const std::vector<Point2d>& pixels = views.cameras[c].refracted[view];
+        const Extrinsics toCamera1(poses[view]);
+        for (size_t i = 0; i < pixels.size() && poses[view].found; i++)
+        {
+            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(views.object[view][i])));
+            double u, v;
+            uchar status = REFRACT_OK;
+            rig.cameras[c].project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+            if (status != REFRACT_OK && !std::isnan(pixels[i].x))
+                return false;
+        }
+    }
+    return true;
+}
+
+void keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig)
+{
+    for (int c = 0; c < rig.count(); c++)
+        if (!showsWhatWasSeen(rig, c, views, poses))
+            setNormal(rig, rig.owner[c], given.cameras[rig.owner[c]].window().normal);
+}
+
 }} // namespace
