@@ -50,7 +50,7 @@ aarch64-linux-gnu-objdump -d --no-show-raw-insn "$object" >"$work/kernels/neon.s
 roots=$(grep -c 'fsqrt[[:space:]]*v[0-9]*\.2d' "$work/kernels/neon.s") || true
 single=$(grep -c 'fsqrt[[:space:]]*d' "$work/kernels/neon.s") || true
 if [ "$roots" = 0 ] || [ "$single" != 0 ]; then
-  echo "FAILED: $roots square roots of two lanes, $single of one: see modules/refract/src/lanes.hpp" >&2
+  echo "FAILED: $roots square roots of two lanes, $single of one: see modules/refract/src/simd/lanes.hpp" >&2
   exit 1
 fi
 echo "passed: the kernels on NEON"

@@ -1,5 +1,5 @@
 // Types and shapes of arrays: what calib3d takes, this module takes; what it cannot take it refuses by name.
-#include "arrays.hpp"
+#include "arrays/arrays.hpp"
 #include "scenes.hpp"
 
 using namespace cv;

@@ -1,5 +1,5 @@
 // The inner loops, compiled for every instruction set of this machine, through the inner header.
-#include "layers.hpp"
+#include "window/layers.hpp"
 #include "scenes.hpp"
 
 #include <array>

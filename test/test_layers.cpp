@@ -1,5 +1,5 @@
 // The physics of parallel layers, through the inner header.
-#include "layers.hpp"
+#include "window/layers.hpp"
 #include "scenes.hpp"
 
 #include <memory>

@@ -1,5 +1,5 @@
 // One battery over all lens models, through the inner header.
-#include "lens.hpp"
+#include "lens/lens.hpp"
 #include "scenes.hpp"
 
 using namespace cv;

@@ -1,5 +1,5 @@
 #include "calibration_scenes.hpp"
-#include "residual.hpp"
+#include "calibrate/residual.hpp"
 
 using namespace cv;
 using namespace cv::refract;

@@ -1,6 +1,6 @@
 // What the baseline's kernels compute, one "name value" a line, for compare.py of ../agreement. All input is made by exact
 // arithmetic or decimal literals, so that every build starts from the same bits.
-#include "kernels.hpp"
+#include "dispatch/kernels.hpp"
 
 #include <array>
 #include <cmath>

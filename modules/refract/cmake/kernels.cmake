@@ -1,4 +1,4 @@
-# How the kernels are compiled (src/kernels.hpp), for every build that compiles the module's sources.
+# How the kernels are compiled (src/dispatch), for every build that compiles the module's sources.
 #
 # Each level gets the instructions that its name says; a compiler that does not know the flags compiles an empty level.
 # Products and sums may be contracted into one rounding: the formulas do not rely on the rounding of a product.
@@ -25,6 +25,6 @@ function(refract_kernel_options source_dir)
     endif()
   endif()
   foreach(level baseline avx2 avx512)
-    set_source_files_properties(${source_dir}/kernels_${level}.cpp PROPERTIES COMPILE_OPTIONS "${common};${${level}}")
+    set_source_files_properties(${source_dir}/dispatch/kernels_${level}.cpp PROPERTIES COMPILE_OPTIONS "${common};${${level}}")
   endforeach()
 endfunction()

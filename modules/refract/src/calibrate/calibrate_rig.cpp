@@ -1,0 +1,377 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Public functions of the joint fit for several cameras: arguments and results. */
+
+#include "calibrate/calibrate_rig.hpp"
+#include "arrays/arrays.hpp"
+#include "math/rotation.hpp"
+#include <Eigen/Cholesky>
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! Refuses what no data can determine.
+void checkWindow(const GlassWindow& window, int flags)
+{
+    const bool equalMedia = window.innerIndex == window.outerIndex;
+    if (window.thickness.empty() && equalMedia)
+        CV_Error_(Error::StsBadArg, ("window has no layer and equal media (index %g): it does not refract, so that its "
+                                     "normal is undetermined", window.innerIndex));
+    if (window.thickness.empty() && (flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX)))
+        CV_Error_(Error::StsBadFlag, ("flags is %d, but window has no layer whose thickness or index could be free", flags));
+    if (equalMedia && (flags & GLASS_FREE_DISTANCE))
+        CV_Error_(Error::StsBadFlag, ("flags has GLASS_FREE_DISTANCE, but innerIndex and outerIndex are both %g: the "
+                                      "distance has no effect then and is undetermined", window.innerIndex));
+}
+
+} // namespace
+
+void checkFlags(int flags, int allowed)
+{
+    if (flags & ~allowed)
+        CV_Error_(Error::StsBadFlag, ("flags is %d; %d has no meaning here", flags, flags & ~allowed));
+}
+
+void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names)
+{
+    for (int owner = 0; owner < rig.count(); owner++)
+    {
+        if (!rig.owns(owner))
+            continue;
+        checkWindow(rig.cameras[owner].window(), flags);
+        bool isSeen = false;
+        for (int c = owner; c < rig.count(); c++)
+            isSeen = isSeen || (rig.owner[c] == owner && seesAnything(views.cameras[c].refracted));
+        if (!isSeen)
+            CV_Error_(Error::StsBadArg, ("%s has no point that was seen", names[owner].c_str()));
+    }
+}
+
+namespace {
+
+std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names)
+{
+    std::vector<Camera> cameras;
+    for (size_t c = 0; c < handles.size(); c++)
+    {
+        cameras.push_back(cameraOf(handles[c], names[c].c_str()));
+        for (size_t earlier = 0; earlier < c; earlier++)
+            if (handles[earlier] == handles[c])
+                CV_Error_(Error::StsBadArg, ("%s and %s are one object; each holds its own result",
+                                             names[earlier].c_str(), names[c].c_str()));
+    }
+    return cameras;
+}
+
+//! The first camera that looks through the same window; as many layers as it are given to the others. Empty: each its own.
+void setOwners(Rig& rig, const std::vector<int>& windowOfCamera)
+{
+    for (int c = 0; c < rig.count(); c++)
+    {
+        if (windowOfCamera.empty())
+        {
+            rig.owner.push_back(c);
+            continue;
+        }
+        rig.owner.push_back((int)(std::find(windowOfCamera.begin(), windowOfCamera.end(), windowOfCamera[c]) -
+                                  windowOfCamera.begin()));
+        rig.cameras[c].setWindow(rig.cameras[rig.owner[c]].window());
+    }
+}
+
+Pose readPose(const Mat& R, const Mat& T, const String& nameR, const String& nameT)
+{
+    Pose pose;
+    pose.rvec = rotationVector(readRotation(R, nameR.c_str()));
+    pose.tvec = readVec3(T, nameT.c_str());
+    pose.found = true;
+    return pose;
+}
+
+void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handles)
+{
+    for (int c = 0; c < rig.count(); c++)
+        cameraOf(handles[c]) = rig.cameras[c];
+}
+
+String numbered(const char* name, int i) { return format("%s[%d]", name, i); }
+
+//! One entry per camera; fewer only if it may be left out altogether.
+void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
+{
+    if ((int)count != expected && !(mayBeEmpty && count == 0))
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
+}
+
+std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
+{
+    const double ROUNDING = 1e-6;
+    std::vector<Pose> extrinsics(1);
+    if (cameras == 1)
+        return extrinsics;
+    std::vector<Mat> R, T;
+    Rs.getMatVector(R);
+    Ts.getMatVector(T);
+    checkCount(R.size(), cameras, "Rs", false);
+    checkCount(T.size(), cameras, "Ts", false);
+    for (int c = 0; c < cameras; c++)
+    {
+        const Pose pose = readPose(R[c], T[c], numbered("Rs", c), numbered("Ts", c));
+        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > ROUNDING)
+            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
+                                         "be the identity and 0", norm(pose.rvec), norm(pose.tvec)));
+        if (c > 0)
+            extrinsics.push_back(pose);
+    }
+    return extrinsics;
+}
+
+void writeExtrinsics(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts)
+{
+    std::vector<Mat> R, T;
+    for (const Pose& pose : rig.extrinsics)
+    {
+        R.push_back(Mat(rotationMatrix(pose.rvec)));
+        T.push_back(Mat(pose.tvec, true));
+    }
+    const auto write = [](const std::vector<Mat>& from, InputOutputArrayOfArrays to)
+    {
+        to.create((int)from.size(), 1, CV_64F);
+        for (int c = 0; c < (int)from.size(); c++)
+        {
+            to.create(from[c].size(), CV_64F, c, true);
+            from[c].copyTo(to.getMat(c));
+        }
+    };
+    write(R, Rs);
+    write(T, Ts);
+}
+
+//! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors.
+std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name)
+{
+    std::vector<Vec3d> vectors;
+    if (a.isMatVector() || a.kind() == _InputArray::STD_VECTOR_VECTOR)
+        for (int i = 0; i < (int)a.total(); i++)
+            vectors.push_back(readVec3(a.getMat(i), numbered(name, i).c_str()));
+    else
+        for (const Point3d& p : readPoints3(a, name))
+            vectors.push_back(readVec3(Mat(Vec3d(p)), name));
+    if ((int)vectors.size() != count)
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, objectPoints %d views; with GLASS_USE_POSES they must "
+                                             "agree", name, (int)vectors.size(), count));
+    return vectors;
+}
+
+PoseKnowledge readKnowledge(InputArray covariance, const String& name)
+{
+    PoseKnowledge knowledge;
+    knowledge.kind = PoseKnowledge::EXACT;
+    const std::vector<double> c = readNumbers(covariance, name.c_str());
+    if (c.empty())
+        return knowledge;
+    if (c.size() != 36)
+        CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 6x6, or empty", name.c_str(), (int)c.size()));
+    const Eigen::LLT<Matrix6> root(Eigen::Map<const Matrix6>(c.data()));
+    if (root.info() != Eigen::Success)
+        CV_Error_(Error::StsBadArg, ("%s is not positive definite", name.c_str()));
+    knowledge.kind = PoseKnowledge::UNCERTAIN;
+    knowledge.inverseRoot = root.matrixL().solve(Matrix6::Identity());
+    return knowledge;
+}
+
+void readKnownPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArrayOfArrays covariances, RigTask& task)
+{
+    const int count = task.views.count();
+    const std::vector<Vec3d> r = readVectors(rvecs, count, "rvecs"), t = readVectors(tvecs, count, "tvecs");
+    const int given = covariances.empty() ? 0 : (int)covariances.total();
+    if (given != 0 && given != count)
+        CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, objectPoints %d views; they must agree",
+                                             given, count));
+    for (int view = 0; view < count; view++)
+    {
+        Pose pose;
+        pose.rvec = r[view];
+        pose.tvec = t[view];
+        pose.found = true;
+        task.knownPoses.push_back(pose);
+        task.knowledge.push_back(readKnowledge(given ? covariances.getMat(view) : Mat(),
+                                               numbered("poseCovariances", view)));
+    }
+}
+
+//! LxL or PxP of each camera, or nothing.
+void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
+{
+    if (covariances.empty())
+        return;
+    std::vector<Mat> all;
+    covariances.getMatVector(all);
+    checkCount(all.size(), (int)cameras.size(), "cameraCovariances", false);
+    for (int c = 0; c < (int)all.size(); c++)
+    {
+        const String name = numbered("cameraCovariances", c);
+        const int lens = cameras[c].lensCount(), both = cameras[c].parameterCount(), side = all[c].rows;
+        if (!all[c].empty() && (all[c].channels() != 1 || all[c].cols != side || (side != lens && side != both)))
+            CV_Error_(Error::StsBadSize, ("%s is %dx%d with %d channels; it must be %dx%d (lens), %dx%d (lens and window) or "
+                                          "empty", name.c_str(), side, all[c].cols, all[c].channels(), lens, lens, both, both));
+        CameraKnowledge knowledge;
+        Mat_<double> numbers;
+        all[c].convertTo(numbers, CV_64F);
+        if (!numbers.empty())
+            knowledge.covariance = Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), side, side);
+        for (int i = 0; i < knowledge.covariance.rows(); i++)
+            if (knowledge.covariance(i, i) < 0)
+                CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
+                                             knowledge.covariance(i, i), i));
+        task.cameras.push_back(knowledge);
+    }
+}
+
+//! As the arrays have them: an empty list is no view.
+std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
+{
+    return imagePoints.empty() ? std::vector<Mat>() : imagePoints[camera];
+}
+
+void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
+{
+    if (!out.needed())
+        return;
+    out.create((int)masks.size(), 1, CV_8U);
+    for (int i = 0; i < (int)masks.size(); i++)
+    {
+        if (masks[i].empty())
+        {
+            out.create(0, 0, CV_8U, i, true);
+            continue;
+        }
+        out.create(masks[i].size(), CV_8U, i, true);
+        masks[i].copyTo(out.getMat(i));
+    }
+}
+
+} // namespace
+
+//! What both forms do, but for the results beside cameras, Rs and Ts.
+static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
+                        InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                        InputArrayOfArrays cameraCovariances)
+{
+    const int count = (int)cameras.size();
+    if (count == 0)
+        CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
+    checkCount(imagePointsDirect.size(), count, "imagePointsDirect", true);
+    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
+
+    RigTask task;
+    std::vector<String> names, refractedNames;
+    task.views.object = readObjectViews(objectPoints, "objectPoints");
+    for (int c = 0; c < count; c++)
+    {
+        names.push_back(numbered("cameras", c));
+        refractedNames.push_back(numbered("imagePointsRefracted", c));
+        task.views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c),
+                                                     numbered("imagePointsDirect", c).c_str(),
+                                                     imagePointsRefracted[c], refractedNames[c].c_str(),
+                                                     task.views.object));
+    }
+    Rig rig;
+    rig.cameras = camerasOf(cameras, names);
+    rig.extrinsics = readExtrinsics(Rs, Ts, count);
+    setOwners(rig, windowOfCamera);
+    checkWindows(rig, task.views, flags, refractedNames);
+    if (flags & GLASS_USE_POSES)
+        readKnownPoses(rvecs, tvecs, poseCovariances, task);
+    readCameraKnowledge(cameraCovariances, rig.cameras, task);
+    task.flags = flags;
+    task.criteria = criteria;
+
+    const RigFit fit = fitCheckingPairs(rig, task);
+    setCameras(rig, cameras);
+    if (flags & GLASS_FREE_EXTRINSICS)
+        writeExtrinsics(rig, Rs, Ts);
+    return fit;
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints,
+                         const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
+                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                         InputArrayOfArrays cameraCovariances)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances);
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeMat(fit.imageStatus, imageStatus);
+    writeMasks(fit.inliers, inliers);
+    writeMat(fit.otherMinima, otherMinima);
+    return fit.rms;
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, OutputArrayOfArrays rvecs,
+                         OutputArrayOfArrays tvecs, int flags, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 noArray(), noArray(), flags, noArray(), criteria, noArray());
+    writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
+    return fit.rms;
+}
+
+double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
+                            InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+                            InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
+                            const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+                            InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs,
+                            OutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                            OutputArray perViewErrors, int flags, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_SHARED_WINDOW);
+    Rig rig;
+    rig.cameras = camerasOf({ camera1, camera2 }, { "camera1", "camera2" });
+    rig.extrinsics = { Pose(), readPose(R.getMat(), T.getMat(), "R", "T") };
+    setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
+    RigTask task;
+    task.views.object = readObjectViews(objectPoints, "objectPoints");
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect1, "imagePointsDirect1", imagePointsRefracted1,
+                                                 "imagePointsRefracted1", task.views.object));
+    task.views.cameras.push_back(readCameraViews(imagePointsDirect2, "imagePointsDirect2", imagePointsRefracted2,
+                                                 "imagePointsRefracted2", task.views.object));
+    checkWindows(rig, task.views, flags, { "imagePointsRefracted1", "imagePointsRefracted2" });
+    task.flags = flags;
+    task.criteria = criteria;
+
+    const RigFit fit = fitCheckingPairs(rig, task);
+    setCameras(rig, { camera1, camera2 });
+    if (flags & GLASS_FREE_EXTRINSICS)
+    {
+        Mat(rotationMatrix(rig.extrinsics[1].rvec)).copyTo(R);
+        Mat(rig.extrinsics[1].tvec).copyTo(T);
+    }
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    return fit.rms;
+}
+
+}} // namespace

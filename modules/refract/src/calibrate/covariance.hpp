@@ -1,0 +1,19 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_COVARIANCE_HPP
+#define OPENCV_REFRACT_COVARIANCE_HPP
+
+#include "calibrate/rig_problem.hpp"
+
+namespace cv { namespace refract {
+
+/** What the data can and cannot tell: covariance of the public parameters of a solved problem, P x P; 0 where fixed. Throws,
+naming the direction, if the data do not determine what is free.
+@param variance of a pixel coordinate */
+Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_COVARIANCE_HPP

@@ -1,0 +1,193 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "calibrate/residual.hpp"
+#include "arrays/arrays.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+template<int Columns>
+using RowsMap = Eigen::Map<Eigen::Matrix<double, 2, Columns, Eigen::RowMajor>, 0, Eigen::OuterStride<> >;
+typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Matrix3Map;
+
+//! The two rows that point i fills in the jacobian of one block.
+template<int Columns>
+RowsMap<Columns> rowsOf(double* jacobian, int i, int size = Columns)
+{ return RowsMap<Columns>(jacobian + (size_t)2*i*size, 2, size, Eigen::OuterStride<>(size)); }
+
+Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
+
+} // namespace
+
+ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights,
+                             const Image& image)
+    : rig_(camera), points_(points), rootWeights_(rootWeights), refracted_(image.refracted)
+{
+    set_num_residuals(2*(int)points.pixel.size());
+    std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
+    const auto addBlock = [&](bool exists, int size)
+    {
+        if (exists)
+            sizes.push_back(size);
+        return exists ? (int)sizes.size() - 1 : -1;
+    };
+    addBlock(true, 6);
+    extrinsics_ = addBlock(!image.isCamera1, 6);
+    lens_ = addBlock(true, camera.lensCount());
+    normal_ = addBlock(image.refracted, 3);
+    media_ = addBlock(image.refracted, camera.mediaCount());
+    owner_ = addBlock(image.refracted && camera.window && !image.ownerIsCamera1, 6);
+}
+
+ceres::CostFunction* ImageResidual::Create(const RigCamera& camera, const ImagePoints& points,
+                                           const std::vector<double>& rootWeights, const Image& image)
+{
+    return new ImageResidual(camera, points, rootWeights, image);
+}
+
+//! One point on its way, and the derivatives of its weighted pixel.
+struct ImageResidual::Point
+{
+    Vec3d inObject, inCamera1;
+    Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> byParameters;
+};
+
+//! The rows of point i in every jacobian that is wanted.
+void ImageResidual::writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const
+{
+    const auto wanted = [&](int block) { return block >= 0 && jacobians[block]; };
+    if (wanted(0))
+    {
+        RowsMap<6> pose = rowsOf<6>(jacobians[0], i);
+        pose.rightCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.R);
+        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(object.derivativeOf(point.inObject));
+    }
+    if (wanted(extrinsics_))
+    {
+        RowsMap<6> rows = rowsOf<6>(jacobians[extrinsics_], i);
+        rows.leftCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.derivativeOf(point.inCamera1));
+        rows.rightCols<3>() = point.byPoint;
+    }
+    const int lensCount = parameter_block_sizes()[lens_];
+    if (wanted(lens_))
+        rowsOf<Eigen::Dynamic>(jacobians[lens_], i, lensCount) = point.byParameters.leftCols(lensCount);
+    if (!refracted_)
+        return;
+
+    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount);     // normal, distance
+    if (rig_.window)
+    {
+        if (wanted(extrinsics_))
+            rowsOf<6>(jacobians[extrinsics_], i) += byWindow*rig_.window->byCamera;
+        if (wanted(owner_))
+            rowsOf<6>(jacobians[owner_], i) = byWindow*rig_.window->byOwner;
+        byWindow *= rig_.window->byWindow;
+    }
+    if (wanted(normal_))
+        rowsOf<3>(jacobians[normal_], i) = byWindow.leftCols<3>();
+    if (!wanted(media_))
+        return;
+    const int mediaCount = parameter_block_sizes()[media_];
+    RowsMap<Eigen::Dynamic> media = rowsOf<Eigen::Dynamic>(jacobians[media_], i, mediaCount);
+    media.col(0) = byWindow.col(3);
+    media.rightCols(mediaCount - 1) = point.byParameters.rightCols(mediaCount - 1);
+}
+
+bool ImageResidual::linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const
+{
+    const Rotation object(pose);
+    const Vec3d t(pose + 3);
+    const std::vector<int32_t>& sizes = parameter_block_sizes();
+    // Known windows and lenses do without the derivatives by camera parameters.
+    const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes.size(),
+                                          [](const double* jacobian) { return jacobian != nullptr; }) ||
+                              (rig_.window && extrinsics_ >= 0 && jacobians[extrinsics_]);
+    const int SMALL = 32, count = camera.parameterCount();      // so many points' derivatives stay in the cache
+    AutoBuffer<double, 2*32*SMALL> buffer(2*(3 + count)*SMALL);
+    const Columns byPoint = { buffer.data(), 3, SMALL };
+    const Columns byParameter = { byParameters ? buffer.data() + 6*SMALL : nullptr, count, SMALL };
+    double x[SMALL], y[SMALL], z[SMALL], u[SMALL], v[SMALL];
+    uchar status[SMALL];
+    Point point;
+    point.byParameters.setZero(2, count);
+    for (int begin = 0; begin < (int)points_.pixel.size(); begin += SMALL)
+    {
+        const int n = std::min(SMALL, (int)points_.pixel.size() - begin);
+        placePoints(object.R, t, begin, n, x, y, z, status);
+        camera.projectJacobian(n, x, y, z, u, v, byPoint, byParameter, status);
+        for (int k = 0; k < n; k++)
+        {
+            const int i = begin + k;
+            if (!writeResidual(i, u[k], v[k], status[k], residuals))
+                return false;
+            const double w = rootWeights_[i];
+            point.inObject = points_.object[i];
+            point.inCamera1 = object.R*point.inObject + t;
+            for (int r = 0; r < 2; r++)
+            {
+                for (int c = 0; c < 3; c++)
+                    point.byPoint(r, c) = w == 0 ? 0 : w*byPoint.at(r, c)[k];
+                for (int c = 0; c < count && byParameters; c++)
+                    point.byParameters(r, c) = w == 0 ? 0 : w*byParameter.at(r, c)[k];
+            }
+            writeJacobians(object, point, i, jacobians);
+        }
+    }
+    return true;
+}
+
+//! Points begin ... begin + n - 1 in the camera's frame.
+void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
+                                uchar* status) const
+{
+    const Extrinsics& toCamera = rig_.extrinsics;
+    const Matx33d R = toCamera.rotation.R*R1;
+    const Vec3d t = toCamera.apply(t1);
+    for (int k = 0; k < n; k++)
+    {
+        const Vec3d X = R*Vec3d(points_.object[begin + k]) + t;
+        x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+        status[k] = REFRACT_OK;
+    }
+}
+
+//! False if the point has a weight and no image.
+bool ImageResidual::writeResidual(int i, double u, double v, uchar status, double* residuals) const
+{
+    const double w = rootWeights_[i];
+    residuals[2*i] = w == 0 ? 0 : w*(u - points_.pixel[i].x);
+    residuals[2*i + 1] = w == 0 ? 0 : w*(v - points_.pixel[i].y);
+    return w == 0 || status == REFRACT_OK;
+}
+
+bool ImageResidual::project(const Camera& camera, const double* pose, double* residuals) const
+{
+    const Matx33d R = Rotation(pose).R;
+    double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
+    uchar status[BLOCK];
+    for (int begin = 0; begin < (int)points_.pixel.size(); begin += BLOCK)
+    {
+        const int n = std::min(BLOCK, (int)points_.pixel.size() - begin);
+        placePoints(R, Vec3d(pose + 3), begin, n, x, y, z, status);
+        camera.project(n, x, y, z, nullptr, u, v, status);
+        for (int k = 0; k < n; k++)
+            if (!writeResidual(begin + k, u[k], v[k], status[k], residuals))
+                return false;
+    }
+    return true;
+}
+
+bool ImageResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
+{
+    const Camera* camera = rig_.camera(refracted_);
+    if (!camera)
+        return false;
+    return jacobians ? linearize(*camera, parameters[0], residuals, jacobians)
+                     : project(*camera, parameters[0], residuals);
+}
+
+}} // namespace

@@ -1,0 +1,205 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "calibrate/rig_fit.hpp"
+#include "arrays/arrays.hpp"
+#include "calibrate/covariance.hpp"
+#include "calibrate/information.hpp"
+#include "calibrate/rig_robust.hpp"
+#include "calibrate/sealed_start.hpp"
+#include "calibrate/rig_start.hpp"
+#include <opencv2/core/eigen.hpp>
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+//! Both limits in force: what the caller left open is generous.
+TermCriteria checkedCriteria(TermCriteria criteria)
+{
+    if (!(criteria.type & (TermCriteria::COUNT | TermCriteria::EPS)))
+        CV_Error_(Error::StsBadArg, ("criteria.type is %d; it must have COUNT, EPS or both", criteria.type));
+    if (!(criteria.type & TermCriteria::COUNT))
+        criteria.maxCount = 1000;
+    if (criteria.maxCount < 1)
+        CV_Error_(Error::StsOutOfRange, ("criteria.maxCount is %d; it must be at least 1", criteria.maxCount));
+    if ((criteria.type & TermCriteria::EPS) && !(criteria.epsilon >= 0))
+        CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must not be negative", criteria.epsilon));
+    return criteria;
+}
+
+void checkFreedom(const RigProblem& rig)
+{
+    if (rig.freedom() <= 0)
+        CV_Error_(Error::StsBadArg, ("%d points were observed, which give %d equations for %d unknowns; take more views",
+                                     rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
+}
+
+//! Solves; where something is known with a covariance, until it is weighed against the pixels' own noise.
+RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const TermCriteria& criteria)
+{
+    const int ROUNDS = 20;
+    RobustOutcome outcome;
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        if (task.flags & GLASS_ROBUST)
+            outcome = solveRobustly(rig, seenCount, criteria);
+        else
+        {
+            outcome.converged = rig.solve(criteria);
+            outcome.varianceFactor = 1;
+            outcome.imageStatus.assign(rig.images().size(), (uchar)GLASS_IMAGE_USED);
+        }
+        if (!rig.hasPriors() || !outcome.converged)
+            break;
+        const double before = rig.pixelSigma();
+        rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(rig.freedom(), 1)));
+        if (std::abs(rig.pixelSigma() - before) < 1e-4*before)
+            break;
+    }
+    return outcome;
+}
+
+void describeImages(const RigProblem& rig, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
+{
+    const int columns = 2*rig.cameraCount();
+    fit.perViewErrors = Mat(rig.viewCount(), columns, CV_64F, Scalar(NaN));
+    fit.imageStatus = Mat(rig.viewCount(), columns, CV_8U, Scalar(GLASS_IMAGE_ABSENT));
+    fit.inliers.assign(rig.viewCount()*columns, Mat());
+    double sum = 0;
+    for (size_t i = 0; i < rig.images().size(); i++)
+    {
+        const RigImage& image = rig.images()[i];
+        const int column = 2*image.camera + (image.refracted ? 1 : 0), used = image.usedCount();
+        const double squares = rig.residuals(image).squaredNorm();
+        sum += squares;
+        fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
+        fit.imageStatus.at<uchar>(image.view, column) = status[i];
+        Mat mask((int)task.views.object[image.view].size(), 1, CV_8U, Scalar(0));
+        for (size_t k = 0; k < image.points.index.size(); k++)
+            mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
+        fit.inliers[image.view*columns + column] = mask;
+    }
+    fit.rms = std::sqrt(sum/rig.pointCount());
+}
+
+//! Images that gave no pose to start from.
+void markUnusable(const RigTask& task, RigFit& fit)
+{
+    for (int view = 0; view < task.views.count(); view++)
+        for (int column = 0; column < fit.imageStatus.cols; column++)
+        {
+            const CameraViews& seen = task.views.cameras[column/2];
+            const std::vector<Point2d>& pixels = (column % 2 == 0 ? seen.direct : seen.refracted)[view];
+            uchar& status = fit.imageStatus.at<uchar>(view, column);
+            if (status != GLASS_IMAGE_ABSENT || countSeen(pixels) == 0)
+                continue;
+            status = GLASS_IMAGE_UNUSABLE;
+            fit.inliers[view*fit.imageStatus.cols + column] = Mat((int)pixels.size(), 1, CV_8U, Scalar(0));
+        }
+}
+
+//! Takes images that no pose agrees with out of the task.
+void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigTask& task)
+{
+    for (int c = 0; c < (int)agreeing.cameras.size(); c++)
+        for (int view = 0; view < agreeing.count(); view++)
+        {
+            CameraViews& seen = task.views.cameras[c];
+            if (agreeing.cameras[c].direct[view].empty() || !poses[view].found)
+                seen.direct[view].clear();
+            if (agreeing.cameras[c].refracted[view].empty() || !poses[view].found)
+                seen.refracted[view].clear();
+        }
+}
+
+//! Starts of windows and poses. Robust: images without a pose are taken out of the task.
+RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
+{
+    const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
+    const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
+    RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+    const std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
+    addPosesThroughWindow(start.rig, views, start.poses);
+    keepGivenNormals(rig, views, start.poses, start.rig);
+    fit.otherMinima.create(rig.count(), 4, CV_64F);
+    for (int c = 0; c < rig.count(); c++)
+    {
+        Mat(minima[c].normal.t()).copyTo(fit.otherMinima(Rect(0, c, 3, 1)));
+        fit.otherMinima.at<double>(c, 3) = minima[c].excess;
+    }
+    if (isRobust)
+        dropUnusable(views, start.poses, task);
+    else
+        checkPoses(views, start.poses);
+    return isSealed(task) ? bestSealedStart(start, views, task) : start;
+}
+
+} // namespace
+
+static int seenCount(const RigViews& views)
+{
+    int count = 0;
+    for (const CameraViews& camera : views.cameras)
+        for (int view = 0; view < views.count(); view++)
+            count += countSeen(camera.refracted[view]) + countSeen(camera.direct[view]);
+    return count;
+}
+
+RigFit fitRig(Rig& rig, const RigTask& task_)
+{
+    const TermCriteria criteria = checkedCriteria(task_.criteria);
+    RigFit fit;
+    RigTask task = task_;
+    const RigStart start = findStart(rig, task, fit);
+    RigProblem problem(start.rig, task.views, start.poses, task.knowledge, task.cameras, task.flags);
+    if (!(task.flags & GLASS_ROBUST))
+        checkFreedom(problem);
+    const RobustOutcome outcome = solve(problem, task, seenCount(task_.views), criteria);
+    checkFreedom(problem);
+
+    // First, as what is undetermined is also what does not converge.
+    const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
+    eigen2cv(rigCovariance(problem, variance), fit.covariance);
+    if (!outcome.converged)
+        CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
+                                     "what the views hardly determine", criteria.maxCount));
+    sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
+    describeImages(problem, task, outcome.imageStatus, fit);
+    markUnusable(task_, fit);
+    if (task.wantsJacobian)
+        eigen2cv(rigJacobian(problem), fit.jacobian);
+    for (int view = 0; view < problem.viewCount(); view++)
+        fit.poses.push_back(problem.pose(view));
+    rig = problem.rig();
+    return fit;
+}
+
+static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, OutputArrayOfArrays out)
+{
+    std::vector<Vec3d> vectors;
+    for (const Pose& pose : poses)
+        vectors.push_back(pose.found ? pose.*member : Vec3d::all(NaN));
+    writeVectors(vectors, out);
+}
+
+void writeMat(const Mat& from, OutputArray to)
+{
+    if (to.needed())
+        from.copyTo(to);
+}
+
+void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
+              OutputArray covariance, OutputArray perViewErrors)
+{
+    writeVectors(fit.poses, &Pose::rvec, rvecs);
+    writeVectors(fit.poses, &Pose::tvec, tvecs);
+    writeMat(fit.stdDeviations, stdDeviations);
+    writeMat(fit.covariance, covariance);
+    writeMat(fit.perViewErrors, perViewErrors);
+}
+
+}} // namespace

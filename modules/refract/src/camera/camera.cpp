@@ -1,0 +1,132 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "camera/camera.hpp"
+#include "arrays/arrays.hpp"
+
+namespace cv { namespace refract {
+
+Camera::Camera(const Ptr<Lens>& lens, const GlassWindow& window) : lens_(lens), window_(window), layers_(window) {}
+
+void Camera::project(int n, const double* x, const double* y, const double* z, const double* w,
+                     double* u, double* v, uchar* status) const
+{
+    double dx[BLOCK], dy[BLOCK], dz[BLOCK];
+    CV_DbgAssert(n <= BLOCK);
+    layers_.solveIn(n, x, y, z, w, dx, dy, dz, status);
+    lens_->project(n, dx, dy, dz, u, v, status);
+}
+
+void Camera::unproject(int n, const double* u, const double* v,
+                       double* tau, double* dx, double* dy, double* dz, uchar* status) const
+{
+    double wx[BLOCK], wy[BLOCK], wz[BLOCK];
+    CV_DbgAssert(n <= BLOCK);
+    lens_->unproject(n, u, v, wx, wy, wz, status);
+    layers_.traceOut(n, wx, wy, wz, tau, dx, dy, dz, status);
+}
+
+void Camera::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                             const Columns& byPoint, const Columns& byParameters, uchar* status) const
+{
+    double dx[BLOCK], dy[BLOCK], dz[BLOCK], ratio[BLOCK], D[6*BLOCK];
+    CV_DbgAssert(n <= BLOCK);
+    const Columns byDirection = { D, 3, BLOCK };
+    layers_.solveIn(n, x, y, z, NULL, dx, dy, dz, status, ratio);
+    lens_->projectJacobian(n, dx, dy, dz, u, v, byDirection, byParameters, status);
+    layers_.chain(2, n, x, y, z, ratio, byDirection, byPoint, byParameters.from(lensCount()));
+}
+
+uchar Camera::projectJacobian(const Vec3d& X, Vec2d& pixel, double* dPoint, double* dParameters) const
+{
+    uchar status = REFRACT_OK;
+    const Columns byPoint = { dPoint, 3, 1 }, byParameters = { dParameters, parameterCount(), 1 };
+    projectJacobian(1, &X[0], &X[1], &X[2], &pixel[0], &pixel[1], byPoint, byParameters, &status);
+    return status;
+}
+
+std::vector<double> Camera::parameters() const
+{
+    std::vector<double> p = lens_->parameters();
+    p.insert(p.end(), window_.normal.val, window_.normal.val + 3);
+    p.push_back(window_.distance);
+    p.insert(p.end(), window_.thickness.begin(), window_.thickness.end());
+    p.insert(p.end(), window_.index.begin(), window_.index.end());
+    p.push_back(window_.innerIndex);
+    p.push_back(window_.outerIndex);
+    return p;
+}
+
+void Camera::setParameters(const std::vector<double>& p)
+{
+    CV_Assert((int)p.size() == parameterCount());
+    const size_t layers = window_.thickness.size();
+    const double* w = p.data() + lensCount();
+    GlassWindow window;
+    window.normal = normalize(Vec3d(w[0], w[1], w[2]));
+    window.distance = w[3];
+    window.thickness.assign(w + 4, w + 4 + layers);
+    window.index.assign(w + 4 + layers, w + 4 + 2*layers);
+    window.innerIndex = w[4 + 2*layers];
+    window.outerIndex = w[5 + 2*layers];
+    setWindow(window);
+    lens_ = lens_->withParameters(std::vector<double>(p.data(), w));
+}
+
+void Camera::setWindow(const GlassWindow& window)
+{
+    layers_ = Layers(window);
+    window_ = window;
+}
+
+Mat Camera::lensParameters() const
+{
+    std::vector<double> all = lens_->parameters();
+    return Mat((int)all.size(), 1, CV_64F, all.data()).clone();     // OpenCV 5 makes a row of a std::vector
+}
+
+void Camera::setLensParameters(InputArray parameters)
+{
+    const std::vector<double> p = readNumbers(parameters, "parameters");
+    if ((int)p.size() != lensCount())
+        CV_Error_(Error::StsBadSize, ("parameters has %d values; %s has %d", (int)p.size(),
+                                      lens_->model().c_str(), lensCount()));
+    if (!(p[0] > 0) || !(p[1] > 0))
+        CV_Error_(Error::StsBadArg, ("parameters has focal lengths (%g, %g); they must be positive", p[0], p[1]));
+    lens_ = lens_->withParameters(p);
+}
+
+Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name)
+{
+    if (!camera)
+        CV_Error_(Error::StsNullPtr, ("%s is empty; make one with RefractiveCamera::create", name));
+    return static_cast<Camera&>(*camera);
+}
+
+RefractiveCamera::RefractiveCamera() {}
+RefractiveCamera::RefractiveCamera(const RefractiveCamera&) {}
+RefractiveCamera& RefractiveCamera::operator=(const RefractiveCamera&) { return *this; }
+RefractiveCamera::~RefractiveCamera() {}
+
+Ptr<RefractiveCamera> RefractiveCamera::create(InputArray cameraMatrix, InputArray distCoeffs,
+                                               const GlassWindow& window)
+{
+    return makePtr<Camera>(makeOpenCVLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
+                                          readDistCoeffs(distCoeffs, "distCoeffs")), window);
+}
+
+Ptr<RefractiveCamera> RefractiveCamera::createFisheye(InputArray cameraMatrix, InputArray distCoeffs,
+                                                      const GlassWindow& window)
+{
+    return makePtr<Camera>(makeFisheyeLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
+                                           readNumbers(distCoeffs, "distCoeffs")), window);
+}
+
+Ptr<RefractiveCamera> RefractiveCamera::createMrcal(const String& lensModel, InputArray intrinsics,
+                                                    const GlassWindow& window)
+{
+    return makePtr<Camera>(makeMrcalLens(lensModel, readNumbers(intrinsics, "intrinsics")), window);
+}
+
+}} // namespace

@@ -1,0 +1,140 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays/arrays.hpp"
+#include "camera/camera.hpp"
+#include "camera/cameramodel.hpp"
+#include "camera/storage.hpp"
+#include <cstdio>
+#include <fstream>
+#ifdef _WIN32
+#define NOMINMAX
+#include <windows.h>
+#endif
+
+/* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
+
+namespace cv { namespace refract {
+
+void Camera::write(FileStorage& fs) const
+{
+    fs << "image_width" << size_.width << "image_height" << size_.height;
+    fs << "camera_matrix" << cameraMatrix() << "distortion_coefficients" << distCoeffs();
+    fs << "lens_model" << lensModel();
+    fs << "glass_window";
+    window_.write(fs);
+}
+
+static Ptr<Lens> readLens(const FileNode& node, const String& filename)
+{
+    const Mat K = readStoredMatrix(node, "camera_matrix", filename);
+    const Mat D = readStoredMatrix(node, "distortion_coefficients", filename);
+    if (K.empty())
+        CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
+    const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
+    const Matx33d cameraMatrix = readCameraMatrix(K, "camera_matrix");
+    if (model == "opencv")
+        return makeOpenCVLens(cameraMatrix, readDistCoeffs(D, "distortion_coefficients"));
+    if (model == "fisheye")
+        return makeFisheyeLens(cameraMatrix, readNumbers(D, "distortion_coefficients"));
+    std::vector<double> intrinsics = { cameraMatrix(0, 0), cameraMatrix(1, 1), cameraMatrix(0, 2), cameraMatrix(1, 2) };
+    const std::vector<double> d = readNumbers(D, "distortion_coefficients");
+    intrinsics.insert(intrinsics.end(), d.begin(), d.end());
+    return makeMrcalLens(model, intrinsics);
+}
+
+static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filename)
+{
+    GlassWindow window;
+    if (!node["glass_window"].empty())
+        window.read(node["glass_window"]);
+    Ptr<RefractiveCamera> camera = makePtr<Camera>(readLens(node, filename), window);
+    if (node["image_width"].isInt() && node["image_height"].isInt())
+        camera->setImageSize(Size((int)node["image_width"], (int)node["image_height"]));
+    return camera;
+}
+
+Ptr<RefractiveCamera> RefractiveCamera::read(const FileNode& node)
+{
+    CV_INSTRUMENT_REGION();
+
+    if (!node.isMap())
+        CV_Error(Error::StsBadArg, "node is not a map; it must hold camera_matrix and distortion_coefficients");
+    return readNode(node, node.isNamed() ? node.name() : String("node"));
+}
+
+Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const String& name)
+{
+    CV_INSTRUMENT_REGION();
+
+    const String suffix = ".cameramodel";
+    if (filename.size() > suffix.size() && filename.substr(filename.size() - suffix.size()) == suffix)
+    {
+        const CameraModel model = readCameraModel(filename);
+        Ptr<RefractiveCamera> camera = createMrcal(model.lensModel, model.intrinsics);
+        camera->setImageSize(model.imageSize);
+        return camera;
+    }
+    const FileStorage fs = openStorage(filename);
+    FileNode node = fs.root();
+    if (node.isMap() && !name.empty())
+        node = node[name];
+    else if (node.isMap() && node["camera_matrix"].empty())
+        node = node["camera1"];
+    if (!node.isMap())
+        CV_Error_(Error::StsParseError, ("%s holds no camera%s%s: camera_matrix and distortion_coefficients are missing",
+                                         filename.c_str(), name.empty() ? "" : " ", name.c_str()));
+    return readNode(node, filename);
+}
+
+//! path/name.yml -> path/name.part.yml: the extension chooses FileStorage's format.
+static String partName(const String& filename)
+{
+    const size_t slash = filename.find_last_of("/\\"), dot = filename.rfind('.');
+    const bool hasExtension = dot != String::npos && (slash == String::npos || dot > slash);
+    return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
+}
+
+void RefractiveCamera::write(const Ptr<FileStorage>& fs, const String& name) const
+{
+    CV_INSTRUMENT_REGION();
+
+    if (!fs || !fs->isOpened())
+        CV_Error(Error::StsBadArg, "fs is not open for writing");
+    if (!name.empty())
+        *fs << name << "{";
+    write(*fs);
+    if (!name.empty())
+        *fs << "}";
+}
+
+//! In one step where the system has one.
+static bool moveOver(const String& from, const String& to)
+{
+#ifdef _WIN32
+    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+#else
+    return std::rename(from.c_str(), to.c_str()) == 0;
+#endif
+}
+
+void RefractiveCamera::save(const String& filename) const
+{
+    CV_INSTRUMENT_REGION();
+
+    const String part = partName(filename);
+    // FileStorage would log a line of its own.
+    if (!std::ofstream(part.c_str()))
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    FileStorage fs(part, FileStorage::WRITE);
+    write(fs);
+    fs.release();
+    if (!moveOver(part, filename))
+    {
+        std::remove(part.c_str());
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    }
+}
+
+}} // namespace

@@ -1,0 +1,175 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "camera/cameramodel.hpp"
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <locale>
+#include <sstream>
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! Recursive descent over the subset of Python literals that a .cameramodel uses.
+class Parser
+{
+public:
+    Parser(const std::string& text, const String& filename) : p_(text.c_str()), filename_(filename) {}
+
+    CameraModel parse()
+    {
+        CameraModel model;
+        std::vector<double> size;
+        expect('{');
+        while (!accept('}'))
+        {
+            const std::string key = string();
+            expect(':');
+            if (key == "lensmodel")
+                model.lensModel = string();
+            else if (key == "intrinsics")
+                model.intrinsics = numbers();
+            else if (key == "extrinsics")
+                model.extrinsics = numbers();
+            else if (key == "imagersize")
+                size = numbers();
+            else
+                skip();
+            if (!accept(','))
+            {
+                expect('}');
+                break;
+            }
+        }
+        if (model.lensModel.empty() || model.intrinsics.empty())
+            fail("lensmodel or intrinsics is missing");
+        for (double side : size)
+            if (!(side >= 0 && side <= INT_MAX))
+                fail("imagersize is not two numbers of pixels");
+        if (size.size() == 2)
+            model.imageSize = Size((int)size[0], (int)size[1]);
+        return model;
+    }
+
+private:
+    void fail(const char* what) const
+    {
+        CV_Error_(Error::StsParseError, ("%s is not an mrcal .cameramodel: %s", filename_.c_str(), what));
+    }
+
+    void space()
+    {
+        for (;; ++p_)
+            if (*p_ == '#')
+            {
+                while (p_[1] && *p_ != '\n')
+                    ++p_;
+            }
+            else if (!*p_ || !std::isspace((unsigned char)*p_))
+                return;
+    }
+
+    bool accept(char c)
+    {
+        space();
+        if (*p_ != c)
+            return false;
+        ++p_;
+        return true;
+    }
+
+    void expect(char c)
+    {
+        if (!accept(c))
+            fail(format(*p_ ? "'%c' expected" : "it ends where '%c' is expected", c).c_str());
+    }
+
+    std::string string()
+    {
+        space();
+        if (*p_ == 'b')         // bytes
+            ++p_;
+        const char quote = *p_;
+        if (quote != '\'' && quote != '"')
+            fail("a string is expected");
+        const char* begin = ++p_;
+        while (*p_ && *p_ != quote)
+            p_ += *p_ == '\\' && p_[1] ? 2 : 1;
+        if (!*p_)
+            fail("a string does not end");
+        return std::string(begin, p_++);
+    }
+
+    double number()
+    {
+        space();
+        const char* begin = p_;
+        while (*p_ && std::strchr("+-.0123456789eE", *p_))
+            ++p_;
+        std::istringstream text(std::string(begin, p_));
+        text.imbue(std::locale::classic());     // the user's may have a decimal comma
+        double value;
+        if (!(text >> value) || !text.eof())
+            fail("a number is expected");
+        return value;
+    }
+
+    std::vector<double> numbers()
+    {
+        std::vector<double> values;
+        const char close = accept('(') ? ')' : (expect('['), ']');
+        while (!accept(close))
+        {
+            values.push_back(number());
+            if (!accept(','))
+            {
+                expect(close);
+                break;
+            }
+        }
+        return values;
+    }
+
+    //! Passes over any value: strings may hold anything, brackets nest.
+    void skip()
+    {
+        int nesting = 0;
+        for (space(); *p_; space())
+        {
+            if (nesting == 0 && (*p_ == ',' || *p_ == '}'))
+                return;
+            if (*p_ == '\'' || *p_ == '"')
+            {
+                string();
+                continue;
+            }
+            if (*p_ == '[' || *p_ == '(' || *p_ == '{')
+                ++nesting;
+            else if (*p_ == ']' || *p_ == ')' || *p_ == '}')
+                --nesting;
+            ++p_;
+        }
+        fail("it ends within a value");
+    }
+
+    const char* p_;
+    String filename_;
+};
+
+} // namespace
+
+CameraModel readCameraModel(const String& filename)
+{
+    std::ifstream file(filename.c_str());
+    if (!file)
+        CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
+    std::stringstream text;
+    text << file.rdbuf();
+    return Parser(text.str(), filename).parse();
+}
+
+}} // namespace

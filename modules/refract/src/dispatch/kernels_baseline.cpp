@@ -1,0 +1,11 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "dispatch/table.hpp"
+
+namespace cv { namespace refract {
+
+const Kernels* kernelsBaseline() { return &table; }
+
+}} // namespace

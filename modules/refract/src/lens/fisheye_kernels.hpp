@@ -1,0 +1,86 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_KERNELS_FISHEYE_HPP
+#define OPENCV_REFRACT_KERNELS_FISHEYE_HPP
+
+#include "lens/fisheye_bend.hpp"
+#include "simd/angles.hpp"
+#include "simd/polynomial.hpp"
+
+/* cv::fisheye's lens model, see lens_fisheye.cpp. */
+
+namespace cv { namespace refract { namespace {
+
+bool projectFisheye(const FisheyeModel& model, int n, const double* px, const double* py, const double* pz,
+                    double* u, double* v)
+{
+    const FisheyeModel m = model;
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes X = load(px, at), Y = load(py, at), r = sqrt(X*X + Y*Y), theta = angleOf(load(pz, at), r);
+        Lanes factor, slope;
+        bendFactor(m, theta*theta, factor, slope);
+        const Lanes scale = theta*factor/larger(r, all(1e-300)), x = X*scale, y = Y*scale;
+        const Mask good = theta < m.thetaMax;
+        store(answers.where(good, m.fx*(x + m.alpha*y) + m.cx), u, at);
+        store(m.fy*y + m.cy, v, at);
+    });
+    return answers.complete();
+}
+
+//! A search for the angle theta that is bent to |(xd, yd)|.
+struct AngleSearch
+{
+    Lanes xd, yd, target, theta, slope, move;
+};
+
+/* Newton from a polynomial's guess; only a root in the middle of the domain is accepted here, as for OpenCV's model. */
+bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const double* pv,
+                      double* px, double* py, double* pz)
+{
+    const FisheyeModel m = model;
+    const double ENOUGH = 1e-8, REGULAR = 1e-3, fx = 1/m.fx, fy = 1/m.fy;   // the error is the square of the last move
+    const int STEPS = 8;
+    Answers answers;
+    eachGroup<AngleSearch>(n, [&](Group<AngleSearch>& group)
+    {
+        group.each([&](AngleSearch& a, Part at)
+        {
+            a.yd = (load(pv, at) - m.cy)*fy;
+            a.xd = (load(pu, at) - m.cx)*fx - m.alpha*a.yd;
+            const Lanes target2 = a.xd*a.xd + a.yd*a.yd;
+            a.target = sqrt(target2);
+            a.theta = a.target*guessRatio(m.inverse, target2);
+        });
+        bool more = true;
+        for (int k = 0; k < STEPS && more; ++k)
+        {
+            group.each([&](AngleSearch& a, Part)
+            {
+                Lanes factor;
+                bendFactor(m, a.theta*a.theta, factor, a.slope);
+                a.move = (a.target - a.theta*factor)*roughInverse(a.slope);
+                a.theta += a.move;
+            });
+            more = group.some([&](const AngleSearch& a) { return absolute(a.move) > ENOUGH; });
+        }
+        group.each([&](AngleSearch& a, Part at)
+        {
+            const Mask good = (absolute(a.move) <= ENOUGH) & (a.theta >= 0) & (a.theta < m.thetaMax) & (a.slope > REGULAR);
+            Lanes sine, cosine;
+            sineCosine(a.theta, sine, cosine);
+            const Lanes scale = select(a.target > 0, sine/larger(a.target, all(1e-300)), all(1));
+            store(answers.where(good, a.xd*scale), px, at);
+            store(a.yd*scale, py, at);
+            store(cosine, pz, at);
+        });
+    });
+    return answers.complete();
+}
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_KERNELS_FISHEYE_HPP

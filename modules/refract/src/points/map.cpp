@@ -1,0 +1,234 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays/arrays.hpp"
+#include "camera/camera.hpp"
+#include "dispatch/kernels.hpp"
+#include "points/plane.hpp"
+
+/* Pixels of the pinhole camera without window -> raw pixels, for whole images (initRefractiveUndistortRectifyMap).
+
+The map is smooth almost everywhere and is wanted to float32 or 1/32 px. So the new image is cut into tiles; in each
+the exact answer is found at Chebyshev's nodes only, and the pixels follow from the polynomial through them. Whether
+it is good enough is measured where the error of such a polynomial is largest, corners, middles of the sides and
+centre of the tile: it must be below TOLERANCE, a tenth of the rounding to float32 beyond pixel 16. A tile where it is
+not, or where a pixel that is asked has no answer, is solved pixel by pixel. */
+
+namespace cv { namespace refract {
+
+namespace {
+
+const int TILE = 64;
+const double TOLERANCE = 1e-7;
+
+//! The new image, and the plane that it shows.
+struct NewImage
+{
+    const Camera& camera;
+    Matx33d newToCamera;
+    Vec4d plane;
+
+    //! Pixel -> direction -> homogeneous point on the plane -> raw pixel; at most a block.
+    void toRaw(int n, const double* column, const double* row, double* u, double* v, uchar* status) const
+    {
+        double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK];
+        for (int i = 0; i < n; ++i)
+        {
+            const Vec3d X = newToCamera*Vec3d(column[i], row[i], 1);
+            x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
+            w[i] = (plane[0]*x[i] + plane[1]*y[i] + plane[2]*z[i])/plane[3];
+            status[i] = w[i] >= 0 && std::isfinite(w[i]) ? REFRACT_OK : REFRACT_NO_INTERSECTION;
+        }
+        camera.project(n, x, y, z, w, u, v, status);
+    }
+};
+
+double nodeAngle(int k) { return CV_PI*(k + 0.5)/NODES; }
+
+/* What the values at the nodes contribute at some places of a tile's row or column: Lagrange's polynomials of
+Chebyshev's nodes, L_k(x) = (1 + 2 sum T_m(x_k) T_m(x))/NODES. x = -1 and 1 are one pixel outside the tile: the
+border of what has an answer, should it bend, does not pass between the places that are asked. */
+template<int N>
+struct Weights
+{
+    double place[N], node[NODES];       //!< px from the tile's first
+    double byNode[NODES][N], byPlace[N][NODES];
+
+    Weights(double first, double step)
+    {
+        for (int k = 0; k < NODES; ++k)
+            node[k] = CENTRE + HALF*std::cos(nodeAngle(k));
+        for (int i = 0; i < N; ++i)
+        {
+            place[i] = first + step*i;
+            const double angle = std::acos((place[i] - CENTRE)/HALF);
+            for (int k = 0; k < NODES; ++k)
+            {
+                double sum = 1;
+                for (int m = 1; m < NODES; ++m)
+                    sum += 2*std::cos(m*nodeAngle(k))*std::cos(m*angle);
+                byNode[k][i] = byPlace[i][k] = sum/NODES;
+            }
+        }
+    }
+    static constexpr double CENTRE = (TILE - 1)/2., HALF = (TILE + 1)/2.;
+};
+
+typedef Weights<TILE> PixelWeights;
+typedef Weights<3> CheckWeights;
+
+//! Raw pixels at a tile's nodes, row by row.
+struct Nodes { double u[NODES*NODES], v[NODES*NODES]; };
+
+//! False if the polynomial through the nodes is not the map of this tile.
+bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
+{
+    static const CheckWeights check(-1, PixelWeights::HALF);
+    enum { GRID = NODES*NODES, CHECKS = 9, ALL = GRID + CHECKS };
+    static_assert(GRID <= BLOCK, "one block");
+    double column[ALL], row[ALL], u[ALL], v[ALL];
+    uchar status[ALL];
+    for (int i = 0; i < ALL; ++i)
+    {
+        const int c = i - GRID;
+        column[i] = tile.x + (c < 0 ? check.node[i % NODES] : check.place[c % 3]);
+        row[i] = tile.y + (c < 0 ? check.node[i/NODES] : check.place[c/3]);
+    }
+    image.toRaw(GRID, column, row, u, v, status);
+    image.toRaw(CHECKS, column + GRID, row + GRID, u + GRID, v + GRID, status + GRID);
+    bool good = std::count(status, status + ALL, (uchar)REFRACT_OK) == ALL;
+    for (int r = 0; r < 3; ++r)
+    {
+        double a[3], b[3];
+        kernels().interpolate(u, check.byPlace[r], check.byNode[0], 3, a);
+        kernels().interpolate(v, check.byPlace[r], check.byNode[0], 3, b);
+        for (int c = 0; c < 3; ++c)
+            good = good && std::hypot(a[c] - u[GRID + 3*r + c], b[c] - v[GRID + 3*r + c]) < TOLERANCE;
+    }
+    std::copy(u, u + GRID, nodes.u);
+    std::copy(v, v + GRID, nodes.v);
+    return good;
+}
+
+//! Stores one run of a row in the formats of cv::initUndistortRectifyMap.
+void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u, const double* v)
+{
+    const int BITS = 5, SIZE = 1 << BITS;   // INTER_BITS, INTER_TAB_SIZE of imgproc
+    if (map1.type() == CV_32FC2)
+        kernels().store(map1.ptr<Vec2f>(row) + column, true, n, u, v, NULL);
+    else if (map1.type() == CV_32FC1)
+    {
+        std::transform(u, u + n, map1.ptr<float>(row) + column, [](double a) { return (float)a; });
+        std::transform(v, v + n, map2.ptr<float>(row) + column, [](double a) { return (float)a; });
+    }
+    else
+        for (int i = 0; i < n; ++i)
+        {
+            const int a = saturate_cast<int>(u[i]*SIZE), b = saturate_cast<int>(v[i]*SIZE);
+            map1.at<Vec2s>(row, column + i) = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
+            map2.at<ushort>(row, column + i) = (ushort)((b & (SIZE - 1))*SIZE + (a & (SIZE - 1)));
+        }
+}
+
+//! One run of a tile's row, every pixel by itself; (-1, -1) where there is no answer.
+void solveRow(const NewImage& image, int row, int column, int n, double* u, double* v)
+{
+    double columns[TILE], rows[TILE];
+    uchar status[TILE];
+    for (int i = 0; i < n; ++i)
+    {
+        columns[i] = column + i;
+        rows[i] = row;
+    }
+    image.toRaw(n, columns, rows, u, v, status);
+    for (int i = 0; i < n; ++i)
+        if (status[i] != REFRACT_OK)
+            u[i] = v[i] = -1;
+}
+
+//! A tile, or what of it is in the image.
+void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
+{
+    static const PixelWeights pixels(0, 1);
+    Nodes nodes;
+    const bool smooth = findNodes(image, tile.tl(), nodes);
+    for (int r = 0; r < tile.height; ++r)
+    {
+        double u[TILE], v[TILE];
+        if (smooth)
+        {
+            kernels().interpolate(nodes.u, pixels.byPlace[r], pixels.byNode[0], TILE, u);
+            kernels().interpolate(nodes.v, pixels.byPlace[r], pixels.byNode[0], TILE, v);
+        }
+        else
+            solveRow(image, tile.y + r, tile.x, tile.width, u, v);
+        storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
+    }
+}
+
+} // namespace
+
+//! The scene of the map: one number z, or four numbers of a plane.
+static Vec4d scenePlane(InputArray depth, bool isNeeded)
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    const DepthReader d(depth, "depth", 1, isNeeded);
+    if (d.size() == 1)
+        return planeOfDepth(d.at(0), "depth");
+    if (d.size() != 4)
+        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane)", d.size()));
+    const Vec4d plane(d.at(0), d.at(1), d.at(2), d.at(3));
+    checkPlane(plane, "depth");
+    return plane[3] == -infinity ? -plane : plane;
+}
+
+void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R_,
+                                       InputArray newCameraMatrix, Size size, int m1type,
+                                       OutputArray map1_, OutputArray map2_)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Camera& cam = cameraOf(camera);
+    if (m1type <= 0)
+        m1type = CV_16SC2;
+    if (m1type != CV_16SC2 && m1type != CV_32FC1 && m1type != CV_32FC2)
+        CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
+                                                typeToString(m1type).c_str()));
+    if (size.width < 0 || size.height < 0)
+        CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
+    const Vec4d plane = scenePlane(depth, cam.refracts());
+    const Matx33d R = readRotation(R_, "R");
+    const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
+                                              : readProjection(newCameraMatrix, "newCameraMatrix");
+    if (determinant(K) == 0)
+        CV_Error(Error::StsBadArg, "newCameraMatrix is singular");
+    const NewImage image = { cam, R.t()*K.inv(), plane };
+
+    map1_.create(size, m1type);
+    Mat map1 = map1_.getMat(), map2;
+    if (m1type == CV_32FC2)
+        map2_.release();
+    else
+    {
+        map2_.create(size, m1type == CV_32FC1 ? CV_32FC1 : CV_16UC1);
+        map2 = map2_.getMat();
+    }
+    const int tileRows = (size.height + TILE - 1)/TILE;
+    parallel_for_(Range(0, tileRows), [&](const Range& range)
+    {
+        for (int t = range.start; t < range.end; ++t)
+            for (int column = 0; column < size.width; column += TILE)
+                mapTile(image, Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size), map1, map2);
+    });
+}
+
+void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+                                       InputArray depth, InputArray R, InputArray newCameraMatrix, Size size,
+                                       int m1type, OutputArray map1, OutputArray map2)
+{
+    initRefractiveUndistortRectifyMap(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, R,
+                                      newCameraMatrix, size, m1type, map1, map2);
+}
+
+}} // namespace

@@ -1,0 +1,95 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "points/plane.hpp"
+#include "arrays/arrays.hpp"
+
+namespace cv { namespace refract {
+
+Vec4d planeOfDepth(double depth, const char* name)
+{
+    if (!(depth > 0))
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, depth));
+    return Vec4d(0, 0, 1, depth);
+}
+
+void checkPlane(const Vec4d& p, const char* name)
+{
+    const double length = cv::norm(Vec3d(p[0], p[1], p[2]));
+    if (!(length > 0) || !std::isfinite(length) || std::isnan(p[3]))
+        CV_Error_(Error::StsBadArg, ("%s is (%g, %g, %g, %g); (a, b, c) must be finite and not zero",
+                                     name, p[0], p[1], p[2], p[3]));
+}
+
+void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const double* tau,
+               const double* dx, const double* dy, const double* dz,
+               double* x, double* y, double* z, double* mu, uchar* status)
+{
+    if (kernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
+        return;
+    const Vec3d& normal = layers.normal();
+    const double axis = abc.dot(normal);
+    for (int i = 0; i < n; ++i)
+    {
+        if (status[i] != REFRACT_OK || !std::isnan(x[i]))
+            continue;
+        const Vec3d d(dx[i], dy[i], dz[i]);
+        const double along = abc.dot(d), ahead = planeD[i] - tau[i]*axis;
+        const double m = along/ahead;
+        const Vec3d X = d + m*tau[i]*normal;
+        x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
+        if (mu)
+            mu[i] = m;
+        if (std::isnan(planeD[i]))
+            status[i] = REFRACT_NOT_FINITE;
+        else if (along == 0)
+            status[i] = REFRACT_PARALLEL_RAYS;
+        else if (!(m >= 0) || std::signbit(m) || std::isinf(m))
+            status[i] = REFRACT_NO_INTERSECTION;
+        else if (!layers.isBeyond(x[i], y[i], z[i], m))
+            status[i] = REFRACT_BEHIND_WINDOW;
+    }
+}
+
+void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
+                             const Ptr<RefractiveCamera>& camera, const Vec4d& plane, OutputArray status)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Camera& cam = cameraOf(camera);
+    const PointReader in(imagePoints, 2, "imagePoints");
+    checkPlane(plane, "plane");
+    if (!std::isfinite(plane[3]))
+        CV_Error_(Error::StsBadArg, ("plane[3] is %g; it must be finite", plane[3]));
+    const Vec3d abc(plane[0], plane[1], plane[2]);
+    PointWriter out(points3D, in.size(), 3, in.depth());
+    StatusWriter outStatus(status, in.size());
+    forEachBlock(in.size(), [&](int begin, int n)
+    {
+        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+        double x[BLOCK], y[BLOCK], z[BLOCK], mu[BLOCK], planeD[BLOCK];
+        uchar st[BLOCK];
+        std::fill(planeD, planeD + n, plane[3]);
+        in.load(begin, n, u, v, NULL, st);
+        cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        out.prepare(begin, n);
+        meetPlane(cam.layers(), n, abc, planeD, tau, dx, dy, dz, x, y, z, mu, st);
+        for (int i = 0; i < n; ++i)
+        {
+            x[i] /= mu[i]; y[i] /= mu[i]; z[i] /= mu[i];
+        }
+        out.store(begin, n, x, y, z, st);
+        outStatus.store(begin, n, st);
+    });
+}
+
+void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
+                             InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+                             const Vec4d& plane, OutputArray status)
+{
+    refractivePointsOnPlane(imagePoints, points3D, RefractiveCamera::create(cameraMatrix, distCoeffs, window),
+                            plane, status);
+}
+
+}} // namespace

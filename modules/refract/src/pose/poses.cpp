@@ -1,0 +1,380 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Pose of a target seen through lens and window.
+
+Start: every pixel's ray has its own origin tau*normal; about the mean origin the rays are nearly central, so the pose is
+found by cv::solvePnP on the rays' directions, in a frame that looks along their mean (wide lenses see beyond 90 degrees),
+and moved by the mean origin. A planar target has two such poses (IPPE gives both); the likelihood decides. */
+
+#include "pose/poses.hpp"
+#include "arrays/arrays.hpp"
+#include "calibrate/rig_camera.hpp"
+#include "math/rotation.hpp"
+#include "arrays/views.hpp"
+#include <ceres/tiny_solver.h>
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+//! Rank of the points' scatter: 0 one place, 1 a line, 2 a plane, 3 space.
+int scatterRank(const std::vector<Point3d>& points)
+{
+    Vec3d mean;
+    for (const Point3d& p : points)
+        mean += Vec3d(p)/(double)points.size();
+    Matx33d scatter = Matx33d::zeros();
+    for (const Point3d& p : points)
+        scatter += (Vec3d(p) - mean)*(Vec3d(p) - mean).t();
+    Vec3d values;
+    eigen(scatter, values);
+    int rank = 0;
+    for (int i = 0; i < 3; i++)
+        rank += values[i] > 1e-12*values[0];    // squares: flat to one in a million
+    return rank;
+}
+
+//! Rotation that turns the unit vector a to the z axis.
+Matx33d turnToZ(const Vec3d& a)
+{
+    const Vec3d axis = a.cross(Vec3d(0, 0, 1));
+    const double sine = norm(axis);
+    return sine > 0 ? rotationMatrix(axis*(std::atan2(sine, a[2])/sine)) : Matx33d::eye();
+}
+
+Pose makePose(const Matx33d& R, const Vec3d& t)
+{
+    Pose pose;
+    pose.rvec = rotationVector(R);
+    pose.tvec = t;
+    pose.found = true;
+    return pose;
+}
+
+//! The points that have a ray in front, as a pinhole at the rays' mean origin sees them.
+struct CentralView
+{
+    std::vector<Point3d> object;
+    std::vector<Point2d> normalized;
+    std::vector<int> point;         //!< in the image
+    Matx33d turn;                   //!< camera -> pinhole
+    Vec3d origin;                   //!< of the pinhole, in the camera
+};
+
+CentralView centralView(const Camera& camera, const ImagePoints& points)
+{
+    CentralView view;
+    const int count = (int)points.pixel.size();
+    std::vector<Vec3d> directions(count);
+    std::vector<uchar> status(count, REFRACT_OK);
+    Vec3d look;
+    double sumTau = 0;
+    int found = 0;
+    for (int i = 0; i < count; i++)
+    {
+        double tau;
+        Vec3d& d = directions[i];
+        camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status[i]);
+        if (status[i] != REFRACT_OK)
+            continue;
+        look += d;
+        sumTau += tau;
+        found++;
+    }
+    if (!(norm(look) > 0))
+        return view;
+    view.turn = turnToZ(look/norm(look));
+    view.origin = camera.layers().normal()*(sumTau/found);
+    for (int i = 0; i < count; i++)
+    {
+        const Vec3d d = view.turn*directions[i];
+        if (status[i] != REFRACT_OK || !(d[2] > 0.05))      // normalised coordinates end before 90 degrees
+            continue;
+        view.object.push_back(points.object[i]);
+        view.normalized.push_back(Point2d(d[0]/d[2], d[1]/d[2]));
+        view.point.push_back(i);
+    }
+    return view;
+}
+
+std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
+{
+    const CentralView view = centralView(camera, points);
+    std::vector<Pose> poses;
+    const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
+    if (rank < 2)
+        return poses;
+    std::vector<Mat> rvecs, tvecs;
+    solvePnPGeneric(view.object, view.normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
+                    rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
+    for (size_t i = 0; i < rvecs.size(); i++)
+    {
+        if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
+            poses.push_back(makePose(view.turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
+                                     view.turn.t()*Vec3d(tvecs[i].ptr<double>()) + view.origin));
+    }
+    return poses;
+}
+
+//! Reprojection errors of one image by the pose, for ceres::TinySolver.
+struct PoseErrors
+{
+    typedef double Scalar;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
+    const Camera& camera;
+    const ImagePoints& points;
+
+    int NumResiduals() const { return 2*(int)points.pixel.size(); }
+
+    //! The jacobian is column-major. Where a point has no image the errors are infinite: no step is taken there.
+    bool operator()(const double* pose, double* errors, double* jacobian) const
+    {
+        const Rotation object(pose);
+        Eigen::Map<Eigen::MatrixXd> byPose(jacobian, NumResiduals(), jacobian ? 6 : 0);
+        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], derivatives[6*BLOCK];
+        uchar status[BLOCK];
+        const Columns byPoint = { derivatives, 3, BLOCK }, none = { nullptr, camera.parameterCount(), BLOCK };
+        for (int begin = 0; begin < (int)points.pixel.size(); begin += BLOCK)
+        {
+            const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
+            for (int k = 0; k < n; k++)
+            {
+                const Vec3d X = object.R*Vec3d(points.object[begin + k]) + Vec3d(pose + 3);
+                x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+                status[k] = REFRACT_OK;
+            }
+            if (jacobian)
+                camera.projectJacobian(n, x, y, z, u, v, byPoint, none, status);
+            else
+                camera.project(n, x, y, z, nullptr, u, v, status);
+            if (std::any_of(status, status + n, [](uchar s) { return s != REFRACT_OK; }))
+            {
+                std::fill(errors, errors + NumResiduals(), std::numeric_limits<double>::infinity());
+                return false;
+            }
+            for (int k = 0; k < n; k++)
+            {
+                const int i = begin + k;
+                errors[2*i] = u[k] - points.pixel[i].x;
+                errors[2*i + 1] = v[k] - points.pixel[i].y;
+                if (!jacobian)
+                    continue;
+                const Matx33d byRvec = object.derivativeOf(Vec3d(points.object[i]));
+                for (int r = 0; r < 2; r++)
+                    for (int c = 0; c < 3; c++)
+                    {
+                        byPose(2*i + r, 3 + c) = byPoint.at(r, c)[k];
+                        byPose(2*i + r, c) = byPoint.at(r, 0)[k]*byRvec(0, c) + byPoint.at(r, 1)[k]*byRvec(1, c) +
+                                             byPoint.at(r, 2)[k]*byRvec(2, c);
+                    }
+            }
+        }
+        return true;
+    }
+};
+
+//! Maximum likelihood from a start; the RMS, NaN if it failed.
+double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
+{
+    const PoseErrors errors = { camera, points };
+    Eigen::Matrix<double, 6, 1> six;
+    six << pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2];
+    std::vector<double> atStart(errors.NumResiduals());
+    if (!errors(six.data(), atStart.data(), nullptr))       // a start that gives some point no image is none
+        return NaN;
+    ceres::TinySolver<PoseErrors> solver;
+    solver.options.max_num_iterations = 100;
+    solver.options.function_tolerance = 1e-15*errors.NumResiduals();        // square pixels
+    solver.options.parameter_tolerance = 1e-14;
+    solver.options.gradient_tolerance = solver.options.cost_threshold = 0;
+    const double cost = solver.Solve(errors, &six).final_cost;
+    if (!six.allFinite() || !std::isfinite(cost))
+        return NaN;
+    pose.rvec = Vec3d(six.data());
+    pose.tvec = Vec3d(six.data() + 3);
+    return std::sqrt(2*cost/(double)points.pixel.size());
+}
+
+} // namespace
+
+std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
+                                     const std::vector<Point2d>& imagePoints)
+{
+    const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what the rays' different origins do
+    const int TRIALS = 500;                     // a third of the points right: still 6 samples of four right ones
+    const ImagePoints points = observed(objectPoints, imagePoints);
+    const CentralView view = centralView(camera, points);
+    std::vector<Point2d> agreeing;
+    if (view.object.size() < 4 || scatterRank(view.object) < 2)
+        return agreeing;
+    const double focalLength = camera.lens().parameters()[0];
+    const double least = std::max(4., LEAST_AGREEING*(double)points.pixel.size());
+    std::vector<int> inliers;
+    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
+    {
+        Vec3d rvec, tvec;
+        if (!solvePnPRansac(view.object, view.normalized, Matx33d::eye(), noArray(), rvec, tvec, false, TRIALS,
+                            (float)(limit/focalLength), 0.9999, inliers, SOLVEPNP_AP3P))
+            inliers.clear();
+    }
+    if ((double)inliers.size() < least)
+        return agreeing;
+    agreeing.assign(imagePoints.size(), Point2d(NaN, NaN));
+    for (int i : inliers)
+        agreeing[points.index[view.point[i]]] = points.pixel[view.point[i]];
+    return agreeing;
+}
+
+Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
+{
+    const Matx33d Rt = rotationMatrix(extrinsics.rvec).t();
+    Pose pose;
+    pose.rvec = rotationVector(Rt*rotationMatrix(inCamera.rvec));
+    pose.tvec = Rt*(inCamera.tvec - extrinsics.tvec);
+    pose.found = true;
+    return pose;
+}
+
+namespace {
+
+//! A minimum of the reprojection error.
+struct Minimum
+{
+    Pose pose;
+    double rms;
+};
+
+bool isSame(const Pose& a, const Pose& b)
+{
+    const double ROUNDING = 1e-6;
+    return norm(rotationMatrix(a.rvec) - rotationMatrix(b.rvec)) < ROUNDING && norm(a.tvec - b.tvec) < ROUNDING*norm(b.tvec);
+}
+
+//! All minima that the starts lead to, the smallest first.
+std::vector<Minimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
+{
+    std::vector<Minimum> minima;
+    if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
+        return minima;
+    for (const Pose& candidate : start.found ? std::vector<Pose>(1, start) : closedFormPoses(camera, points))
+    {
+        Minimum minimum = { candidate, 0 };
+        minimum.rms = refinePose(camera, points, minimum.pose);
+        if (!std::isnan(minimum.rms) && std::none_of(minima.begin(), minima.end(), [&](const Minimum& other)
+                                                     { return isSame(other.pose, minimum.pose); }))
+            minima.push_back(minimum);
+    }
+    std::stable_sort(minima.begin(), minima.end(), [](const Minimum& a, const Minimum& b) { return a.rms < b.rms; });
+    return minima;
+}
+
+} // namespace
+
+Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
+               const Pose& start, double& rms)
+{
+    const std::vector<Minimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
+    rms = minima.empty() ? NaN : minima[0].rms;
+    return minima.empty() ? Pose() : minima[0].pose;
+}
+
+static std::vector<Minimum> solvePnP(InputArray objectPoints_, InputArray imagePoints_, const Camera& camera,
+                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
+{
+    const std::vector<Point3d> objectPoints = readPoints3(objectPoints_, "objectPoints");
+    const std::vector<Point2d> imagePoints = readPoints2(imagePoints_, "imagePoints");
+    const size_t least = useExtrinsicGuess ? 3 : 4;
+    if (objectPoints.size() != imagePoints.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("objectPoints has %d points, imagePoints %d; they must agree",
+                                             (int)objectPoints.size(), (int)imagePoints.size()));
+    if (objectPoints.size() < least)
+        CV_Error_(Error::StsBadArg, ("objectPoints has %d points; a pose needs at least %d",
+                                     (int)objectPoints.size(), (int)least));
+    for (const Point3d& p : objectPoints)
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            CV_Error_(Error::StsBadArg, ("objectPoints holds the point (%g, %g, %g); it must be finite", p.x, p.y, p.z));
+
+    Pose start;
+    if (useExtrinsicGuess)
+        start = makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
+    return findMinima(camera, observed(objectPoints, imagePoints), start);
+}
+
+//! As cv::solvePnPGeneric's: of coordinates, not of distances.
+static void writeErrors(const std::vector<Minimum>& minima, OutputArray reprojectionError)
+{
+    if (!reprojectionError.needed())
+        return;
+    Mat errors((int)minima.size(), 1, CV_64F);
+    for (int i = 0; i < errors.rows; i++)
+        errors.at<double>(i) = minima[i].rms/std::sqrt(2.);
+    errors.copyTo(reprojectionError);
+}
+
+static void writePoses(const std::vector<Minimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
+{
+    std::vector<Vec3d> r, t;
+    for (const Minimum& minimum : minima)
+    {
+        r.push_back(minimum.pose.rvec);
+        t.push_back(minimum.pose.tvec);
+    }
+    writeVectors(r, rvecs);
+    writeVectors(t, tvecs);
+}
+
+bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
+                        InputArray distCoeffs, const GlassWindow& window, InputOutputArray rvec,
+                        InputOutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    return refractiveSolvePnP(objectPoints, imagePoints, RefractiveCamera::create(cameraMatrix, distCoeffs, window),
+                              rvec, tvec, useExtrinsicGuess, reprojectionError);
+}
+
+bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess,
+                        OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    minima.resize(std::min<size_t>(minima.size(), 1));
+    writeErrors(minima, reprojectionError);
+    if (minima.empty())
+        return false;
+    Mat(minima[0].pose.rvec).copyTo(rvec);
+    Mat(minima[0].pose.tvec).copyTo(tvec);
+    return true;
+}
+
+int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                              OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, bool useExtrinsicGuess,
+                              InputArray rvec, InputArray tvec, OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    const std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    writePoses(minima, rvecs, tvecs);
+    writeErrors(minima, reprojectionError);
+    return (int)minima.size();
+}
+
+int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
+                              InputArray distCoeffs, const GlassWindow& window, OutputArrayOfArrays rvecs,
+                              OutputArrayOfArrays tvecs, bool useExtrinsicGuess, InputArray rvec, InputArray tvec,
+                              OutputArray reprojectionError)
+{
+    CV_INSTRUMENT_REGION();
+
+    return refractiveSolvePnPGeneric(objectPoints, imagePoints,
+                                     RefractiveCamera::create(cameraMatrix, distCoeffs, window), rvecs, tvecs,
+                                     useExtrinsicGuess, rvec, tvec, reprojectionError);
+}
+
+}} // namespace

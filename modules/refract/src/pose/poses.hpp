@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_POSES_HPP
+#define OPENCV_REFRACT_POSES_HPP
+
+#include "camera/camera.hpp"
+
+namespace cv { namespace refract {
+
+//! Object -> camera.
+struct Pose
+{
+    Vec3d rvec, tvec;
+    bool found = false;
+};
+
+//! Object -> camera, with camera 1 -> camera, gives object -> camera 1.
+Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
+
+/** Pose of a target seen through lens and window: closed-form start on the bearings (solvePnP on the pinhole directions),
+then maximum likelihood. NaN image points are left out.
+@param start if found, the start
+@param rms reprojection error in pixels by cv::calibrateCamera's definition */
+Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
+               const Pose& start, double& rms);
+
+//! The part of an image's points that must agree with one pose, else the image is of no use.
+const double LEAST_AGREEING = 1./3;
+
+/** The image points that one pose agrees with to a few pixels, found by random samples (the same ones every time); the
+others NaN. Empty if they are fewer than LEAST_AGREEING, or fewer than 4. */
+std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
+                                     const std::vector<Point2d>& imagePoints);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_POSES_HPP

@@ -1,0 +1,86 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_LAYERS_HPP
+#define OPENCV_REFRACT_LAYERS_HPP
+
+#include "precomp.hpp"
+#include "dispatch/kernels.hpp"
+
+namespace cv { namespace refract {
+
+/* The physics of parallel layers. With n the unit normal, c = n.w the cosine of the inner direction w, and
+p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_i = sqrt(n_i^2 - p^2):
+
+    tau(p) = sum_i h_i (1 - q_out / q_i) = sum_i h_i (n_i^2 - n_out^2) / (q_i (q_i + q_out))
+
+is where the outgoing line meets the axis O + tau n; the second form does not cancel, and vanishes exactly for a gap
+whose medium is the scene's. (The kernels leave such a gap out and take the first form: what cancels is the rounding of h_i.)
+For one pane in air: equations (12) and (16) of Plate2024.
+
+The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
+results are not meaningful. */
+class Layers
+{
+public:
+    explicit Layers(const GlassWindow& window = GlassWindow());
+    Layers(const Layers& other) { *this = other; }
+    Layers& operator=(const Layers& other);
+
+    //! False: no window; directions pass unchanged and origins are the centre of projection.
+    bool refracts() const { return stack_.refracts; }
+
+    //! Inner directions (unit) -> height tau of the outgoing line on the axis, outer directions (unit).
+    void traceOut(int n, const double* wx, const double* wy, const double* wz,
+                  double* tau, double* dx, double* dy, double* dz, uchar* status) const;
+
+    /** Homogeneous scene points (x, y, z, w), w >= 0 (0 = infinitely far; null = all 1) -> inner directions, not unit:
+    n + kappa (X - (n.X) n). Domain: beyond the last surface.
+    @param ratio what chain() wants to know of the paths; may be null */
+    void solveIn(int n, const double* x, const double* y, const double* z, const double* w,
+                 double* dx, double* dy, double* dz, uchar* status, double* ratio = NULL) const;
+
+    //! Number of window parameters: normal (3), distance, thickness[], index[], innerIndex, outerIndex.
+    int parameterCount() const { return 6 + 2 * ((int)height_.size() - 1); }
+
+    /** Chain rule through solveIn for finite points: rows of derivatives by the direction -> by the point (3 columns) and by
+    the window (parameterCount() columns, by the *unnormalised* normal; may be null).
+    @param ratio as solveIn gave it */
+    void chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
+               const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const;
+
+    //! True where the homogeneous point lies beyond the last surface (always true without window).
+    bool isBeyond(double x, double y, double z, double w = 1.) const
+    { return !stack_.refracts || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*stack_.total; }
+
+    /** 1/s at which a ray tau n + s d leaves the last surface (infinity without window): it exists for smaller 1/s.
+    @param cosine n.d */
+    double leavingMu(double tau, double cosine) const
+    { return stack_.refracts && stack_.total > tau ? cosine/(stack_.total - tau) : std::numeric_limits<double>::infinity(); }
+
+    const Vec3d& normal() const { return normal_; }
+
+    //! The layers as the kernels see them; it lives as long as this object.
+    const Stack& stack() const { return stack_; }
+
+private:
+    void pointIntoVectors();    //!< where stack_ has pointers
+    //! One lane of traceOut and solveIn that the kernel left without an answer: the answer, or why there is none.
+    uchar traceOne(const Vec3d& w, double& tau, Vec3d& d) const;
+    uchar solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const;
+    //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
+    uchar solveTangent(double U, double V, double w, double& ratio) const;
+
+    Vec3d normal_;
+    std::vector<double> height_;    //!< inner gap, then the layers
+    std::vector<double> index_;     //!< of the same
+    std::vector<Medium> media_;     //!< the same by index, the rarest first
+    /* Not made anew for every call of a kernel: to read, as a whole, what was just written in parts, a processor waits until
+    everything written before has reached memory. */
+    Stack stack_;
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_LAYERS_HPP
