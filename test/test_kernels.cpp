@@ -75,13 +75,13 @@ TEST_CASE("Every level computes the same, and no more points than it is given", 
                 const Vec3d X = 900*stack.normal[2]*layers.normal() + random.vector(150);
                 x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
             }
-            REQUIRE(level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(), NULL));
+            REQUIRE(level->layers.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(), NULL));
             for (int i = 0; i < n; ++i)
             {
                 const double length = std::sqrt(dx[i]*dx[i] + dy[i]*dy[i] + dz[i]*dz[i]);
                 dx[i] /= length; dy[i] /= length; dz[i] /= length;
             }
-            REQUIRE(level->traceOut(stack, n, dx.data(), dy.data(), dz.data(), tau.data(), ox.data(), oy.data(), oz.data()));
+            REQUIRE(level->layers.traceOut(stack, n, dx.data(), dy.data(), dz.data(), tau.data(), ox.data(), oy.data(), oz.data()));
             for (const Array* a : { &dx, &dy, &dz, &tau, &ox, &oy, &oz })
                 REQUIRE((*a)[n] == -7);
             for (int i = 0; i < n; ++i)     // the ray meets its point
@@ -103,10 +103,10 @@ TEST_CASE("Angles, sines and cosines of every level against long double", "[kern
             const long double theta = 3.14159265358979323846264L*i/20001;
             const double X = (double)std::sin(theta), Y = 0, Z = (double)std::cos(theta);
             double u, v, x, y, z;
-            REQUIRE(level->projectFisheye(angles(), 1, &X, &Y, &Z, &u, &v));
+            REQUIRE(level->fisheye.project(angles(), 1, &X, &Y, &Z, &u, &v));
             const long double expected = std::atan2((long double)X, (long double)Z);
             worst = std::max(worst, std::abs(u - expected)/std::max(expected, 1e-300L));
-            REQUIRE(level->unprojectFisheye(angles(), 1, &u, &v, &x, &y, &z));
+            REQUIRE(level->fisheye.unproject(angles(), 1, &u, &v, &x, &y, &z));
             worstBack = std::max(worstBack, std::abs(x - std::sin((long double)u)));
             worstBack = std::max(worstBack, std::abs(z - std::cos((long double)u)));
         }
@@ -128,7 +128,7 @@ TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[k
                 x[i] = 10*i; y[i] = 5; z[i] = i == bad ? -800 : 800;
             }
             CAPTURE(level->instructions, bad);
-            REQUIRE_FALSE(level->solveIn(layers.stack(), 19, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(),
+            REQUIRE_FALSE(level->layers.solveIn(layers.stack(), 19, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(),
                                          NULL));
             for (int i = 0; i < 19; ++i)
                 REQUIRE(std::isnan(dx[i]) == (i == bad));
@@ -159,7 +159,7 @@ TEST_CASE("A chord is close where the cubic through its points stays within the 
                     vMiddle[i] = curve(tMiddle[i]);
                 }
                 slack[n] = -7;
-                const bool all = level->areClose(n, TOLERANCE, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(),
+                const bool all = level->points.areClose(n, TOLERANCE, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(),
                                                  vMiddle.data(), slack.data());
                 CAPTURE(level->instructions, n, trial);
                 REQUIRE(slack[n] == -7);
@@ -199,7 +199,7 @@ TEST_CASE("Where the middle of a chord is out of sight it has no answer, where t
             Array vMiddle = v;
             vMiddle[bad] = NAN;
             CAPTURE(level->instructions, bad);
-            CHECK(level->areClose(19, 0.01, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(), vMiddle.data(),
+            CHECK(level->points.areClose(19, 0.01, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(), vMiddle.data(),
                                   slack.data()) == (bad == 19));
             for (int i = 0; i < 19; ++i)
                 REQUIRE(std::isnan(slack[i]) == (i == bad));
@@ -218,12 +218,12 @@ TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
             Array x, y, z, u, v, w, tau;
             x.fill(1); y.fill(2); z.fill(500);
             const auto clean = [](const std::function<void()>& call) { call(); return !upperHalvesInUse(); };
-            CHECK(clean([&] { level->transform(R, t, n, x.data(), y.data(), z.data()); }));
-            CHECK(clean([&] { level->solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
-            CHECK(clean([&] { level->traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
-            CHECK(clean([&] { level->chordRoots(n, x.data(), y.data(), u.data()); }));
-            CHECK(clean([&] { level->areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(),
+            CHECK(clean([&] { level->points.transform(R, t, n, x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->layers.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
+            CHECK(clean([&] { level->layers.traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->points.chordRoots(n, x.data(), y.data(), u.data()); }));
+            CHECK(clean([&] { level->points.areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(),
                                               tau.data()); }));
-            CHECK(clean([&] { level->pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
+            CHECK(clean([&] { level->points.pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
         }
 }

@@ -56,7 +56,7 @@ Points scene(const Kernels& kernels)
         interleaved[3*i + 2] = 560.f + 9*i;
     }
     Points points;
-    print("load", kernels.load(interleaved.data(), true, N, points.x.data(), points.y.data(), points.z.data()));
+    print("load", kernels.arrays.load(interleaved.data(), true, N, points.x.data(), points.y.data(), points.z.data()));
     return points;
 }
 
@@ -78,10 +78,10 @@ Points throughWindow(const Kernels& kernels, const Points& points)
     const Stack stack = { { 0.28, 0.2688, 0.9216 }, true, 70, 1, 1.333, 1, media, 3, heights, indices, 2 };
     Points inner, outer;
     Array tau;
-    print("solveIn", kernels.solveIn(stack, N, points.x.data(), points.y.data(), points.z.data(), nullptr,
+    print("solveIn", kernels.layers.solveIn(stack, N, points.x.data(), points.y.data(), points.z.data(), nullptr,
                                      inner.x.data(), inner.y.data(), inner.z.data(), nullptr));
     normalize(inner);
-    print("traceOut", kernels.traceOut(stack, N, inner.x.data(), inner.y.data(), inner.z.data(),
+    print("traceOut", kernels.layers.traceOut(stack, N, inner.x.data(), inner.y.data(), inner.z.data(),
                                        tau.data(), outer.x.data(), outer.y.data(), outer.z.data()));
     print("inner", inner);
     print("tau", tau);
@@ -92,7 +92,7 @@ Points throughWindow(const Kernels& kernels, const Points& points)
         Points behind = points;
         behind.z[missing] = -behind.z[missing];
         const std::string name = "behind" + std::to_string(missing);
-        print(name, kernels.solveIn(stack, N, behind.x.data(), behind.y.data(), behind.z.data(), nullptr,
+        print(name, kernels.layers.solveIn(stack, N, behind.x.data(), behind.y.data(), behind.z.data(), nullptr,
                                     outer.x.data(), outer.y.data(), outer.z.data(), nullptr));
         for (int i = 0; i < N; ++i)
             print(name + "[" + std::to_string(i) + "]", !std::isnan(outer.x[i]));
@@ -125,11 +125,11 @@ int main()
     plane.k[K1] = -0.208; plane.k[K2] = 0.136; plane.k[P1] = 0.001; plane.k[P2] = -0.0005; plane.k[K3] = 0.03;
     plane.sMax = std::numeric_limits<double>::infinity();
     plane.untilt[0] = 1/plane.fx; plane.untilt[4] = 1/plane.fy; plane.untilt[8] = 1;
-    throughLens("opencv", plane, kernels.projectOpenCV, kernels.unprojectOpenCV, directions);
+    throughLens("opencv", plane, kernels.openCV.project, kernels.openCV.unproject, directions);
 
     FisheyeModel sphere = {};
     sphere.fx = 820; sphere.fy = 822.5; sphere.cx = 644.25; sphere.cy = 500.5;
     sphere.k[0] = -0.02; sphere.k[1] = 0.004; sphere.k[2] = -0.001;
     sphere.thetaMax = 1.5;
-    throughLens("fisheye", sphere, kernels.projectFisheye, kernels.unprojectFisheye, directions);
+    throughLens("fisheye", sphere, kernels.fisheye.project, kernels.fisheye.unproject, directions);
 }

@@ -2,172 +2,23 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_KERNELS_ARRAYS_HPP
-#define OPENCV_REFRACT_KERNELS_ARRAYS_HPP
+#ifndef OPENCV_REFRACT_ARRAY_KERNELS_HPP
+#define OPENCV_REFRACT_ARRAY_KERNELS_HPP
 
-#include "dispatch/kernels.hpp"
-#include "simd/lanes.hpp"
+/* No OpenCV in here, see dispatch/kernels.hpp. */
 
-/* Interleaved points <-> arrays, the linear maps between frames, interpolation. */
+namespace cv { namespace refract {
 
-namespace cv { namespace refract { namespace {
-
-template<typename T>
-inline void deinterleave(const T* p, int n, double* x, double* y, double* z)
+//! Blocks of points, to and from what users gave.
+struct ArrayKernels
 {
-    if (z)
-        for (int i = 0; i < n; ++i)
-        {
-            x[i] = p[3*i];
-            y[i] = p[3*i + 1];
-            z[i] = p[3*i + 2];
-        }
-    else
-        for (int i = 0; i < n; ++i)
-        {
-            x[i] = p[2*i];
-            y[i] = p[2*i + 1];
-        }
-}
+    //! n interleaved points of 2 (z null) or 3 coordinates -> arrays; true if all are finite.
+    bool (*load)(const void* points, bool isFloat, int n, double* x, double* y, double* z);
+    void (*store)(void* points, bool isFloat, int n, const double* x, const double* y, const double* z);
+};
 
-bool loadPoints(const void* points, bool isFloat, int n, double* x, double* y, double* z)
-{
-    if (isFloat)
-        deinterleave((const float*)points, n, x, y, z);
-    else
-        deinterleave((const double*)points, n, x, y, z);
-    Answers answers;
-    eachRegister(n, [&](auto at)
-    {
-        Lanes sum = load(x, at) + load(y, at);
-        if (z)
-            sum += load(z, at);
-        answers.where(sum - sum == 0, sum);
-    });
-    return answers.complete();
-}
+const ArrayKernels& arrayKernels();
 
-template<typename T>
-inline void interleave(T* p, int n, const double* x, const double* y, const double* z)
-{
-    if (z)
-        for (int i = 0; i < n; ++i)
-        {
-            p[3*i] = (T)x[i];
-            p[3*i + 1] = (T)y[i];
-            p[3*i + 2] = (T)z[i];
-        }
-    else
-        for (int i = 0; i < n; ++i)
-        {
-            p[2*i] = (T)x[i];
-            p[2*i + 1] = (T)y[i];
-        }
-}
+}} // namespace
 
-void storePoints(void* points, bool isFloat, int n, const double* x, const double* y, const double* z)
-{
-    if (isFloat)
-        interleave((float*)points, n, x, y, z);
-    else
-        interleave((double*)points, n, x, y, z);
-}
-
-void transform(const double* rotation, const double* translation, int n, double* x, double* y, double* z)
-{
-    const Constants<9> R(rotation);
-    const Constants<3> t(translation);
-    eachRegister(n, [&](auto at)
-    {
-        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
-        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, at);
-        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, at);
-        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, at);
-    });
-}
-
-void multiples(const double* vector, int n, const double* factor, double* x, double* y, double* z)
-{
-    const Constants<3> v(vector);
-    eachRegister(n, [&](auto at)
-    {
-        const Lanes f = load(factor, at);
-        store(f*v[0], x, at);
-        store(f*v[1], y, at);
-        store(f*v[2], z, at);
-    });
-}
-
-bool pinhole(const double* matrix, const double* direction, int n, const double* x, const double* y, const double* z,
-             double* u, double* v)
-{
-    const Constants<9> H(matrix);
-    const Constants<3> axis(direction);
-    Answers answers;
-    eachRegister(n, [&](auto at)
-    {
-        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
-        const Lanes inverse = 1/(H[6]*a + H[7]*b + H[8]*c);
-        const Mask good = axis[0]*a + axis[1]*b + axis[2]*c > 0;
-        store(answers.where(good, (H[0]*a + H[1]*b + H[2]*c)*inverse), u, at);
-        store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, at);
-    });
-    return answers.complete();
-}
-
-void chordRoots(int n, const double* u, const double* v, double* roots)
-{
-    eachRegister(n, [&](auto at)
-    {
-        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 2, at), vB = load(v + 2, at);
-        const Lanes chordU = uB - uA, chordV = vB - vA, aU = load(u + 1, at) - uA, aV = load(v + 1, at) - vA;
-        const Lanes length2 = larger(chordU*chordU + chordV*chordV, all(1e-300));
-        const Lanes distance = absolute(aU*chordV - aV*chordU)*inverseSqrt(length2);
-        store(select(distance - distance == 0, sqrt(distance), all(0)), roots, at);
-    });
-}
-
-bool areClose(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
-              const double* uMiddle, const double* vMiddle, double* slack)
-{
-    Answers answers;
-    eachRegister(n, [&](auto at)
-    {
-        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 1, at), vB = load(v + 1, at);
-        const Lanes chordU = uB - uA, chordV = vB - vA;
-        const auto height = [&](const double* pu, const double* pv)     // over the chord, times its length
-        { return chordU*(load(pv, at) - vA) - chordV*(load(pu, at) - uA); };
-        const Lanes place = 2*(load(tMiddle + 1, at) - load(tMiddle, at))/(load(t + 1, at) - load(t, at));
-        const Lanes middle = height(uMiddle, vMiddle), other = height(uMiddle + 1, vMiddle + 1);
-        const Lanes skew = (other/(1 - place*place) - middle)/place, most = absolute(middle);
-        const Lanes near = 0.25*skew*skew/most, far = 0.385*absolute(skew), more = select(near < far, near, far);
-        const Lanes reach = most + select(more == more, more, all(0));      // else the fourth point is out of sight
-        const Lanes enough = 0.95*tolerance + 1e-13*(absolute(uB) + absolute(vB));  // far out, pixels are rounding
-        const Lanes rest = enough*enough*(chordU*chordU + chordV*chordV) - reach*reach;
-        store(answers.where(rest >= 0, rest), slack, at);
-    });
-    return answers.complete();
-}
-
-void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
-{
-    double along[NODES];
-    for (int c = 0; c < NODES; c += LANES)
-    {
-        Lanes sum = all(0);
-        for (int r = 0; r < NODES; ++r)
-            sum += row[r]*load(values + NODES*r, Part{ c, NODES });
-        store(sum, along, Part{ c, NODES });
-    }
-    eachRegister(n, [&](auto at)
-    {
-        Lanes sum = all(0);
-        for (int c = 0; c < NODES; ++c)
-            sum += along[c]*load(columns + n*c, at);
-        store(sum, out, at);
-    });
-}
-
-}}} // namespace
-
-#endif // OPENCV_REFRACT_KERNELS_ARRAYS_HPP
+#endif // OPENCV_REFRACT_ARRAY_KERNELS_HPP

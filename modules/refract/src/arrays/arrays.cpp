@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "arrays/arrays.hpp"
-#include "dispatch/kernels.hpp"
+#include "arrays/array_kernels.hpp"
 #include "math/rotation.hpp"
 
 namespace cv { namespace refract {
@@ -65,7 +65,7 @@ void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar*
 {
     std::fill(status, status + n, (uchar)REFRACT_OK);
     const size_t pointSize = (size_t)(z ? 3 : 2)*points_.elemSize1();
-    const bool finite = kernels().load(points_.data + begin*pointSize, depth_ == CV_32F, n, x, y, z);
+    const bool finite = arrayKernels().load(points_.data + begin*pointSize, depth_ == CV_32F, n, x, y, z);
     prefetchAhead(points_.data, pointSize, size_, begin, n);
     if (finite)
         return;
@@ -104,7 +104,7 @@ void PointWriter::store(int begin, int n, const double* x, const double* y, cons
     const bool isFloat = points_.depth() == CV_32F;
     const int channels = z ? 3 : 2;
     uchar* points = points_.data + (size_t)channels*begin*points_.elemSize1();
-    kernels().store(points, isFloat, n, x, y, z);
+    arrayKernels().store(points, isFloat, n, x, y, z);
     uchar reasons = 0;
     for (int i = 0; i < n; ++i)
         reasons |= status[i];

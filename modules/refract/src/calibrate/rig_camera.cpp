@@ -3,29 +3,11 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "calibrate/rig_camera.hpp"
-#include "math/rotation.hpp"
 
 namespace cv { namespace refract {
 
 typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Map33;
 typedef Eigen::Map<const Eigen::Vector3d> Map3;
-
-Rotation::Rotation(const double* rvec)
-{
-    R = rotationMatrix(Vec3d(rvec), dR);
-}
-
-Matx33d Rotation::derivativeOf(const Vec3d& v) const
-{
-    Matx33d d;
-    for (int i = 0; i < 3; i++)
-    {
-        const Vec3d column = dR[i]*v;
-        for (int k = 0; k < 3; k++)
-            d(k, i) = column[k];
-    }
-    return d;
-}
 
 static const double NOWHERE_ELSE[6] = { 0, 0, 0, 0, 0, 0 };
 

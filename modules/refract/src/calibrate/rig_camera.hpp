@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_RIG_CAMERA_HPP
 
 #include "camera/camera.hpp"
+#include "math/rotation.hpp"
 #include "pose/poses.hpp"
 #include <Eigen/Core>
 
@@ -15,16 +16,6 @@ namespace cv { namespace refract {
 template<int Rows, int Columns>
 using PlainMatrix = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor | Eigen::DontAlign>;
 typedef PlainMatrix<6, 6> Matrix6;
-
-//! A rotation vector's matrix and the derivatives of the matrix.
-struct Rotation
-{
-    explicit Rotation(const double* rvec);
-    Matx33d R;
-    Matx33d dR[3];
-    //! d(R v)/drvec
-    Matx33d derivativeOf(const Vec3d& v) const;
-};
 
 //! Where a camera of the rig is: X = R X1 + T.
 struct Extrinsics

@@ -22,4 +22,10 @@ const Kernels& kernels()
     return chosen;
 }
 
+const ArrayKernels& arrayKernels() { return kernels().arrays; }
+const LayerKernels& layerKernels() { return kernels().layers; }
+const LensKernels<OpenCVModel>& openCVKernels() { return kernels().openCV; }
+const LensKernels<FisheyeModel>& fisheyeKernels() { return kernels().fisheye; }
+const PointKernels& pointKernels() { return kernels().points; }
+
 }} // namespace

@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_LENS_HPP
 
 #include "precomp.hpp"
-#include "dispatch/kernels.hpp"
+#include "simd/columns.hpp"
 
 namespace cv { namespace refract {
 

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "lens/fisheye_bend.hpp"
+#include "lens/fisheye_model.hpp"
 #include "lens/lens.hpp"
 #include "math/monotone.hpp"
 #include "math/once.hpp"
@@ -82,7 +82,7 @@ double FisheyeLens::bend(double theta, double& slope) const
 void FisheyeLens::project(int n, const double* x, const double* y, const double* z,
                           double* u, double* v, uchar* status) const
 {
-    if (kernels().projectFisheye(m_, n, x, y, z, u, v))
+    if (fisheyeKernels().project(m_, n, x, y, z, u, v))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(u[i]))
@@ -93,7 +93,7 @@ void FisheyeLens::unproject(int n, const double* u, const double* v,
                             double* x, double* y, double* z, uchar* status) const
 {
     fitStartOnce_([this] { fitStart(); });
-    if (kernels().unprojectFisheye(m_, n, u, v, x, y, z))
+    if (fisheyeKernels().unproject(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(x[i]))
@@ -114,7 +114,7 @@ uchar FisheyeLens::unprojectOne(double u, double v, double& x, double& y, double
 void FisheyeLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
                                   const Columns& byDirection, const Columns& byParameters, uchar* status) const
 {
-    if (kernels().projectJacobianFisheye(m_, n, x, y, z, u, v, byDirection, byParameters))
+    if (fisheyeKernels().projectJacobian(m_, n, x, y, z, u, v, byDirection, byParameters))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(u[i]))

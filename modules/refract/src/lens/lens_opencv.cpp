@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "lens/distortion.hpp"
+#include "lens/opencv_model.hpp"
 #include "lens/lens.hpp"
 #include "math/monotone.hpp"
 #include "math/once.hpp"
@@ -178,7 +178,7 @@ double OpenCVLens::radial(double r, double& slope) const
 void OpenCVLens::project(int n, const double* x, const double* y, const double* z,
                          double* u, double* v, uchar* status) const
 {
-    if (kernels().projectOpenCV(m_, n, x, y, z, u, v))
+    if (openCVKernels().project(m_, n, x, y, z, u, v))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(u[i]))
@@ -237,7 +237,7 @@ void OpenCVLens::unproject(int n, const double* u, const double* v,
                            double* x, double* y, double* z, uchar* status) const
 {
     fitStartOnce_([this] { fitStart(); });
-    if (kernels().unprojectOpenCV(m_, n, u, v, x, y, z))
+    if (openCVKernels().unproject(m_, n, u, v, x, y, z))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(x[i]))
@@ -259,7 +259,7 @@ uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double&
 void OpenCVLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
                                  const Columns& byDirection, const Columns& byParameters, uchar* status) const
 {
-    if (kernels().projectJacobianOpenCV(m_, n, x, y, z, u, v, byDirection, byParameters))
+    if (openCVKernels().projectJacobian(m_, n, x, y, z, u, v, byDirection, byParameters))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(u[i]))

@@ -24,4 +24,21 @@ Vec3d rotationVector(const Matx33d& R)
     return rvec;
 }
 
+Rotation::Rotation(const double* rvec)
+{
+    R = rotationMatrix(Vec3d(rvec), dR);
+}
+
+Matx33d Rotation::derivativeOf(const Vec3d& v) const
+{
+    Matx33d d;
+    for (int i = 0; i < 3; i++)
+    {
+        const Vec3d column = dR[i]*v;
+        for (int k = 0; k < 3; k++)
+            d(k, i) = column[k];
+    }
+    return d;
+}
+
 }} // namespace

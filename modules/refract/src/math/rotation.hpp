@@ -16,6 +16,16 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian = NULL);
 //! The rotation vector of a rotation matrix.
 Vec3d rotationVector(const Matx33d& R);
 
+//! A rotation vector's matrix and the derivatives of the matrix.
+struct Rotation
+{
+    explicit Rotation(const double* rvec);
+    Matx33d R;
+    Matx33d dR[3];
+    //! d(R v)/drvec
+    Matx33d derivativeOf(const Vec3d& v) const;
+};
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_ROTATION_HPP

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "points/epipolar_curve.hpp"
-#include "dispatch/kernels.hpp"
+#include "points/point_kernels.hpp"
 #include "math/rotation.hpp"
 
 /* The curve of possible partners of a pixel, as a polyline. A chord over a step of t misses the curve by |second difference
@@ -38,7 +38,7 @@ void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
     double slack[Projection::CAPACITY/2];
     const double *t = p.t() + begin, *u = p.u() + begin, *v = p.v() + begin;
     const int middles = segments + 1;
-    const bool allClose = kernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
+    const bool allClose = pointKernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
     for (int j = 0; j < segments; ++j)
         if (allClose || depth == 0 || line.size() >= most || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
             line.push_back(Vec2d(u[j + 1], v[j + 1]));
@@ -68,7 +68,7 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
 {
     double root[SAMPLES], share[SAMPLES];   // root of the distance from the neighbours' chord; its sum so far
     double slope[SAMPLES];                  // of t by that sum, to the next sample
-    kernels().chordRoots(SAMPLES - 2, p.u() + samples, p.v() + samples, root + 1);
+    pointKernels().chordRoots(SAMPLES - 2, p.u() + samples, p.v() + samples, root + 1);
     root[0] = root[1];
     root[SAMPLES - 1] = root[SAMPLES - 2];
     share[0] = 0;

@@ -4,7 +4,8 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
-#include "dispatch/kernels.hpp"
+#include "arrays/array_kernels.hpp"
+#include "points/point_kernels.hpp"
 #include "points/plane.hpp"
 
 /* Pixels of the pinhole camera without window -> raw pixels, for whole images (initRefractiveUndistortRectifyMap).
@@ -101,8 +102,8 @@ bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
     for (int r = 0; r < 3; ++r)
     {
         double a[3], b[3];
-        kernels().interpolate(u, check.byPlace[r], check.byNode[0], 3, a);
-        kernels().interpolate(v, check.byPlace[r], check.byNode[0], 3, b);
+        pointKernels().interpolate(u, check.byPlace[r], check.byNode[0], 3, a);
+        pointKernels().interpolate(v, check.byPlace[r], check.byNode[0], 3, b);
         for (int c = 0; c < 3; ++c)
             good = good && std::hypot(a[c] - u[GRID + 3*r + c], b[c] - v[GRID + 3*r + c]) < TOLERANCE;
     }
@@ -116,7 +117,7 @@ void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u,
 {
     const int BITS = 5, SIZE = 1 << BITS;   // INTER_BITS, INTER_TAB_SIZE of imgproc
     if (map1.type() == CV_32FC2)
-        kernels().store(map1.ptr<Vec2f>(row) + column, true, n, u, v, NULL);
+        arrayKernels().store(map1.ptr<Vec2f>(row) + column, true, n, u, v, NULL);
     else if (map1.type() == CV_32FC1)
     {
         std::transform(u, u + n, map1.ptr<float>(row) + column, [](double a) { return (float)a; });
@@ -158,8 +159,8 @@ void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
         double u[TILE], v[TILE];
         if (smooth)
         {
-            kernels().interpolate(nodes.u, pixels.byPlace[r], pixels.byNode[0], TILE, u);
-            kernels().interpolate(nodes.v, pixels.byPlace[r], pixels.byNode[0], TILE, v);
+            pointKernels().interpolate(nodes.u, pixels.byPlace[r], pixels.byNode[0], TILE, u);
+            pointKernels().interpolate(nodes.v, pixels.byPlace[r], pixels.byNode[0], TILE, v);
         }
         else
             solveRow(image, tile.y + r, tile.x, tile.width, u, v);

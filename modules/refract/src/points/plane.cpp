@@ -4,6 +4,7 @@
 
 #include "points/plane.hpp"
 #include "arrays/arrays.hpp"
+#include "points/point_kernels.hpp"
 
 namespace cv { namespace refract {
 
@@ -26,7 +27,7 @@ void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* plan
                const double* dx, const double* dy, const double* dz,
                double* x, double* y, double* z, double* mu, uchar* status)
 {
-    if (kernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
+    if (pointKernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
         return;
     const Vec3d& normal = layers.normal();
     const double axis = abc.dot(normal);

@@ -4,7 +4,7 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
-#include "dispatch/kernels.hpp"
+#include "points/point_kernels.hpp"
 #include "math/rotation.hpp"
 
 /* Object points -> pixels, and pixels -> rays: the two arrows of Camera over arrays. */
@@ -28,7 +28,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
         uchar st[BLOCK];
         in.load(begin, n, x, y, z, st);
         out.prepare(begin, n);
-        kernels().transform(R.val, t.val, n, x, y, z);
+        pointKernels().transform(R.val, t.val, n, x, y, z);
         cam.project(n, x, y, z, NULL, u, v, st);
         out.store(begin, n, u, v, NULL, st);
         outStatus.store(begin, n, st);
@@ -87,10 +87,10 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
             const int n = std::min(SMALL, blockBegin + blockSize - begin);
             in.load(begin, n, x, y, z, st);
             std::copy(x, x + n, X); std::copy(y, y + n, Y); std::copy(z, z + n, Z);
-            kernels().transform(R.val, t.val, n, X, Y, Z);
+            pointKernels().transform(R.val, t.val, n, X, Y, Z);
             cam.projectJacobian(n, X, Y, Z, u, v, byPoint, columns.from(6), st);
             for (int k = 0; k < 3; ++k)
-                kernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
+                pointKernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
             if (!J.empty())
                 storeRows(columns, n, st, J.ptr<double>(2*begin));
             out.store(begin, n, u, v, NULL, st);
@@ -117,7 +117,7 @@ void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, Outp
         outOrigins.prepare(begin, n);
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
         outDirections.prepare(begin, n);
-        kernels().multiples(normal.val, n, tau, ox, oy, oz);
+        pointKernels().multiples(normal.val, n, tau, ox, oy, oz);
         outOrigins.store(begin, n, ox, oy, oz, st);
         outDirections.store(begin, n, dx, dy, dz, st);
         outStatus.store(begin, n, st);

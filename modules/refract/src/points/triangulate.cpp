@@ -4,7 +4,7 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
-#include "dispatch/kernels.hpp"
+#include "points/point_kernels.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Dense>
 
@@ -129,10 +129,10 @@ void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
     for (int k = 0; k < STEPS && missing > 0; ++k)
     {
         std::copy(x, x + n, x2); std::copy(y, y + n, y2); std::copy(z, z + n, z2);
-        kernels().transform(pair.R.val, pair.T.val, n, x2, y2, z2);
+        pointKernels().transform(pair.R.val, pair.T.val, n, x2, y2, z2);
         pair.camera1.projectJacobian(n, x, y, z, predicted, predicted + BLOCK, byPoint1, none, st);
         pair.camera2.projectJacobian(n, x2, y2, z2, predicted + 2*BLOCK, predicted + 3*BLOCK, byPoint2, none, st);
-        kernels().gaussNewton(n, pair.R.val, observed, prediction, byPoint1, byPoint2, x, y, z, moved);
+        pointKernels().gaussNewton(n, pair.R.val, observed, prediction, byPoint1, byPoint2, x, y, z, moved);
         missing = 0;
         for (int i = 0; i < n; ++i)
         {

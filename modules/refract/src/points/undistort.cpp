@@ -4,7 +4,7 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
-#include "dispatch/kernels.hpp"
+#include "points/point_kernels.hpp"
 #include "points/plane.hpp"
 
 /* Raw pixels -> pixels of the pinhole camera without window. The way back, for whole images, is in map.cpp. */
@@ -15,7 +15,7 @@ namespace cv { namespace refract {
 static void pinhole(const Matx33d& H, const Vec3d& axis, int n, const double* x, const double* y, const double* z,
                     double* u, double* v, uchar* status)
 {
-    if (kernels().pinhole(H.val, axis.val, n, x, y, z, u, v))
+    if (pointKernels().pinhole(H.val, axis.val, n, x, y, z, u, v))
         return;
     for (int i = 0; i < n; ++i)
         if (status[i] == REFRACT_OK && std::isnan(u[i]) && !(axis.dot(Vec3d(x[i], y[i], z[i])) > 0))

@@ -10,7 +10,6 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 
 #include "pose/poses.hpp"
 #include "arrays/arrays.hpp"
-#include "calibrate/rig_camera.hpp"
 #include "math/rotation.hpp"
 #include "arrays/views.hpp"
 #include <ceres/tiny_solver.h>

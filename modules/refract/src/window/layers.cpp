@@ -72,7 +72,7 @@ void Layers::traceOut(int n, const double* wx, const double* wy, const double* w
         std::copy(wx, wx + n, dx); std::copy(wy, wy + n, dy); std::copy(wz, wz + n, dz);
         return;
     }
-    if (kernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
+    if (layerKernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
         return;
     for (int i = 0; i < n; ++i)
     {
@@ -156,7 +156,7 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
         std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
         return;
     }
-    if (kernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
+    if (layerKernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
         return;
     for (int i = 0; i < n; ++i)
     {
@@ -189,7 +189,7 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
 {
     if (stack_.refracts)
     {
-        kernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
+        layerKernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
         return;
     }
     for (int r = 0; r < rows; ++r)

@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_LAYERS_HPP
 
 #include "precomp.hpp"
-#include "dispatch/kernels.hpp"
+#include "window/layer_kernels.hpp"
 
 namespace cv { namespace refract {
 

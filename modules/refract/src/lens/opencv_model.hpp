@@ -2,15 +2,42 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_DISTORTION_HPP
-#define OPENCV_REFRACT_DISTORTION_HPP
+#ifndef OPENCV_REFRACT_OPENCV_MODEL_HPP
+#define OPENCV_REFRACT_OPENCV_MODEL_HPP
 
-#include "dispatch/kernels.hpp"
+#include "lens/lens_kernels.hpp"
 #include "simd/polynomial.hpp"
 
 /* The formula of OpenCV's lens model (lens_opencv.cpp states it), for one point (T = double) and for many (T = Lanes). */
 
-namespace cv { namespace refract { namespace {
+namespace cv { namespace refract {
+
+//! Positions in OpenCV's order of coefficients.
+enum { K1, K2, P1, P2, K3, K4, K5, K6, S1, S2, S3, S4, TAUX, TAUY, DIST_COEFFS };
+
+//! Terms of the rough guess of the inverse radial function.
+enum { ROUGH_TERMS = 3 };
+
+//! OpenCV's lens model as the kernels see it.
+struct OpenCVModel
+{
+    double fx, fy, cx, cy;
+    double k[DIST_COEFFS];
+    double sMax;                //!< square of the radius where the radial part stops growing
+    bool rational, prism, tilted;       //!< whether D, s1 ... s4, the tilt do anything
+    double tilt[9];
+    double untilt[9];                   //!< homography: pixels, from the principal point -> distorted points without tilt
+    double dTilt[2][9];                 //!< derivatives of tilt by tau_x, tau_y
+    int given;                          //!< how many coefficients are parameters
+    double inverse[TERMS];      //!< r = rd (1 + rd^2 (inverse[0] + rd^2 (...))): where the search begins
+    double rough[ROUGH_TERMS];  //!< the same, good to as much as is not radial
+    int shifts;                 //!< how often that start is shifted for what is not radial
+    double sNear, near2;        //!< where r^2 and the square of a Newton step are smaller, the step's error is nothing
+};
+
+const LensKernels<OpenCVModel>& openCVKernels();
+
+namespace {
 
 //! A distorted point before tilt, and its 2x2 Jacobian.
 template<typename T>
@@ -140,4 +167,4 @@ inline T homography(const double* H, T& x, T& y)
 
 }}} // namespace
 
-#endif // OPENCV_REFRACT_DISTORTION_HPP
+#endif // OPENCV_REFRACT_OPENCV_MODEL_HPP

@@ -2,12 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_KERNELS_FISHEYE_HPP
-#define OPENCV_REFRACT_KERNELS_FISHEYE_HPP
+#ifndef OPENCV_REFRACT_FISHEYE_SIMD_HPP
+#define OPENCV_REFRACT_FISHEYE_SIMD_HPP
 
-#include "lens/fisheye_bend.hpp"
+#include "lens/fisheye_model.hpp"
 #include "simd/angles.hpp"
-#include "simd/polynomial.hpp"
+#include "simd/vectors.hpp"
 
 /* cv::fisheye's lens model, see lens_fisheye.cpp. */
 
@@ -81,6 +81,53 @@ bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const 
     return answers.complete();
 }
 
+/* With e = (X, Y)/r: d(x, y) = theta_d/r (I - e e^T) + e theta_d' dtheta, dtheta = (Z e, -r)/|d|^2. On the axis theta_d/r
+and theta_d' Z/|d|^2 are both 1/Z and e drops out. */
+bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, const double* py, const double* pz,
+                            double* u, double* v, const Columns& byDirection, const Columns& byParameters)
+{
+    const FisheyeModel m = model;
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes X = load(px, at), Y = load(py, at), Z = load(pz, at), r2 = X*X + Y*Y, r = sqrt(r2);
+        const Lanes theta = angleOf(Z, r), inverseR = 1/larger(r, all(1e-300)), inverseL2 = 1/(r2 + Z*Z);
+        Lanes factor, slope;
+        bendFactor(m, theta*theta, factor, slope);
+        const Lanes thetaD = theta*factor, side = select(r > 0, thetaD*inverseR, 1/Z), along = slope*Z*inverseL2;
+        const Lanes ex = X*inverseR, ey = Y*inverseR, x = thetaD*(ex + m.alpha*ey), y = thetaD*ey;
+        store(answers.where(theta < m.thetaMax, m.fx*x + m.cx), u, at);
+        store(m.fy*y + m.cy, v, at);
+        const Lanes xx = side + (along - side)*ex*ex, xy = (along - side)*ex*ey, yy = side + (along - side)*ey*ey;
+        const Lanes back = -slope*r*inverseL2, xz = back*ex, yz = back*ey;
+        storeAt(m.fx*(xx + m.alpha*xy), byDirection, 0, 0, at);
+        storeAt(m.fx*(xy + m.alpha*yy), byDirection, 0, 1, at);
+        storeAt(m.fx*(xz + m.alpha*yz), byDirection, 0, 2, at);
+        storeAt(m.fy*xy, byDirection, 1, 0, at);
+        storeAt(m.fy*yy, byDirection, 1, 1, at);
+        storeAt(m.fy*yz, byDirection, 1, 2, at);
+        if (!byParameters.data)
+            return;
+        storeAt(x, byParameters, 0, 0, at);
+        storeAt(all(0), byParameters, 1, 0, at);
+        storeAt(all(0), byParameters, 0, 1, at);
+        storeAt(y, byParameters, 1, 1, at);
+        for (int row = 0; row < 2; ++row)
+            for (int c = 0; c < 2; ++c)
+                storeAt(all(row == c), byParameters, row, 2 + c, at);
+        Lanes power = theta;
+        for (int c = 0; c < 4; ++c)
+        {
+            power *= theta*theta;
+            storeAt(m.fx*power*(ex + m.alpha*ey), byParameters, 0, 4 + c, at);
+            storeAt(m.fy*power*ey, byParameters, 1, 4 + c, at);
+        }
+    });
+    return answers.complete();
+}
+
+constexpr LensKernels<FisheyeModel> fisheyeTable = { projectFisheye, unprojectFisheye, projectJacobianFisheye };
+
 }}} // namespace
 
-#endif // OPENCV_REFRACT_KERNELS_FISHEYE_HPP
+#endif // OPENCV_REFRACT_FISHEYE_SIMD_HPP

@@ -2,14 +2,27 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_FISHEYE_BEND_HPP
-#define OPENCV_REFRACT_FISHEYE_BEND_HPP
+#ifndef OPENCV_REFRACT_FISHEYE_MODEL_HPP
+#define OPENCV_REFRACT_FISHEYE_MODEL_HPP
 
-#include "dispatch/kernels.hpp"
+#include "lens/lens_kernels.hpp"
 
 /* The formula of cv::fisheye's model (lens_fisheye.cpp states it), for one point (T = double) and for many (T = Lanes). */
 
-namespace cv { namespace refract { namespace {
+namespace cv { namespace refract {
+
+//! cv::fisheye's model.
+struct FisheyeModel
+{
+    double fx, fy, cx, cy, alpha;
+    double k[4];
+    double thetaMax;
+    double inverse[TERMS];      //!< of theta in theta_d, as above
+};
+
+const LensKernels<FisheyeModel>& fisheyeKernels();
+
+namespace {
 
 //! theta_d / theta and d theta_d / d theta, by theta^2.
 template<typename T>
@@ -22,4 +35,4 @@ inline void bendFactor(const FisheyeModel& m, T s, T& factor, T& slope)
 
 }}} // namespace
 
-#endif // OPENCV_REFRACT_FISHEYE_BEND_HPP
+#endif // OPENCV_REFRACT_FISHEYE_MODEL_HPP

@@ -1,0 +1,57 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_POINT_KERNELS_HPP
+#define OPENCV_REFRACT_POINT_KERNELS_HPP
+
+#include "window/layer_kernels.hpp"
+
+/* Transforms, planes, curves, maps and triangulation of many points at once. No OpenCV in here, see dispatch/kernels.hpp. */
+
+namespace cv { namespace refract {
+
+//! Nodes of a tile of a map, in each direction.
+enum { NODES = 8 };
+
+//! What the calls on points ask for, of blocks of them.
+struct PointKernels
+{
+    //! In place: X -> R X + t, R row-major.
+    void (*transform)(const double* R, const double* t, int n, double* x, double* y, double* z);
+    //! (x, y, z) = factor v
+    void (*multiples)(const double* v, int n, const double* factor, double* x, double* y, double* z);
+    //! X -> (x, y) = H X, dehomogenised; no answer unless axis.X > 0.
+    bool (*pinhole)(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
+                    double* u, double* v);
+    //! See meetPlane; plane (a, b, c) and d of each lane.
+    bool (*meetPlane)(const Stack& stack, const double* abc, const double* planeD, int n, const double* tau,
+                      const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu);
+
+    //! Of each of n pixels between others, n + 2 in all: the square root of its distance from its neighbours' chord.
+    void (*chordRoots)(int n, const double* u, const double* v, double* roots);
+    /** Whether the chord of each of n segments of a curve (n + 1 ends) is within the tolerance of it. Its distance across the
+    chord is about (1 - p^2) (middle + skew p), -1 <= p <= 1 by t: the middle and the next one tell (n + 1 middles); and at
+    most middle + skew^2/(4 middle) and middle + 0.385 skew.
+    @param slack what is left of the tolerance; no answer where the chord is not close, or the middle is NaN */
+    bool (*areClose)(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
+                     const double* uMiddle, const double* vMiddle, double* slack);
+    //! Two rows by the point -> the one column of each by the parameter of A, whose point moves by A X.
+    void (*chainLinear)(const double* A, int n, const double* x, const double* y, const double* z, const Columns& byPoint,
+                        const Columns& out);
+    //! out[i] = sum over r, c of row[r] values[NODES r + c] columns[n c + i]
+    void (*interpolate)(const double* values, const double* row, const double* columns, int n, double* out);
+    /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in two images.
+    @param R rotation of camera 2
+    @param observed, predicted 4x1: u1, v1, u2, v2
+    @param byPoint1, byPoint2 derivatives of the predicted pixels, each in the frame of its camera
+    @param moved square of the pixels that the step moves the predictions */
+    void (*gaussNewton)(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
+                        const Columns& byPoint2, double* x, double* y, double* z, double* moved);
+};
+
+const PointKernels& pointKernels();
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_POINT_KERNELS_HPP

@@ -1,0 +1,187 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_POINTS_SIMD_HPP
+#define OPENCV_REFRACT_POINTS_SIMD_HPP
+
+#include "points/point_kernels.hpp"
+#include "simd/vectors.hpp"
+
+/* The vector code of point_kernels.hpp. */
+
+namespace cv { namespace refract { namespace {
+
+void transform(const double* rotation, const double* translation, int n, double* x, double* y, double* z)
+{
+    const Constants<9> R(rotation);
+    const Constants<3> t(translation);
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
+        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, at);
+        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, at);
+        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, at);
+    });
+}
+
+void multiples(const double* vector, int n, const double* factor, double* x, double* y, double* z)
+{
+    const Constants<3> v(vector);
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes f = load(factor, at);
+        store(f*v[0], x, at);
+        store(f*v[1], y, at);
+        store(f*v[2], z, at);
+    });
+}
+
+bool pinhole(const double* matrix, const double* direction, int n, const double* x, const double* y, const double* z,
+             double* u, double* v)
+{
+    const Constants<9> H(matrix);
+    const Constants<3> axis(direction);
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
+        const Lanes inverse = 1/(H[6]*a + H[7]*b + H[8]*c);
+        const Mask good = axis[0]*a + axis[1]*b + axis[2]*c > 0;
+        store(answers.where(good, (H[0]*a + H[1]*b + H[2]*c)*inverse), u, at);
+        store((H[3]*a + H[4]*b + H[5]*c)*inverse, v, at);
+    });
+    return answers.complete();
+}
+
+void chordRoots(int n, const double* u, const double* v, double* roots)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 2, at), vB = load(v + 2, at);
+        const Lanes chordU = uB - uA, chordV = vB - vA, aU = load(u + 1, at) - uA, aV = load(v + 1, at) - vA;
+        const Lanes length2 = larger(chordU*chordU + chordV*chordV, all(1e-300));
+        const Lanes distance = absolute(aU*chordV - aV*chordU)*inverseSqrt(length2);
+        store(select(distance - distance == 0, sqrt(distance), all(0)), roots, at);
+    });
+}
+
+bool areClose(int n, double tolerance, const double* t, const double* u, const double* v, const double* tMiddle,
+              const double* uMiddle, const double* vMiddle, double* slack)
+{
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes uA = load(u, at), vA = load(v, at), uB = load(u + 1, at), vB = load(v + 1, at);
+        const Lanes chordU = uB - uA, chordV = vB - vA;
+        const auto height = [&](const double* pu, const double* pv)     // over the chord, times its length
+        { return chordU*(load(pv, at) - vA) - chordV*(load(pu, at) - uA); };
+        const Lanes place = 2*(load(tMiddle + 1, at) - load(tMiddle, at))/(load(t + 1, at) - load(t, at));
+        const Lanes middle = height(uMiddle, vMiddle), other = height(uMiddle + 1, vMiddle + 1);
+        const Lanes skew = (other/(1 - place*place) - middle)/place, most = absolute(middle);
+        const Lanes near = 0.25*skew*skew/most, far = 0.385*absolute(skew), more = select(near < far, near, far);
+        const Lanes reach = most + select(more == more, more, all(0));      // else the fourth point is out of sight
+        const Lanes enough = 0.95*tolerance + 1e-13*(absolute(uB) + absolute(vB));  // far out, pixels are rounding
+        const Lanes rest = enough*enough*(chordU*chordU + chordV*chordV) - reach*reach;
+        store(answers.where(rest >= 0, rest), slack, at);
+    });
+    return answers.complete();
+}
+
+void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
+{
+    double along[NODES];
+    for (int c = 0; c < NODES; c += LANES)
+    {
+        Lanes sum = all(0);
+        for (int r = 0; r < NODES; ++r)
+            sum += row[r]*load(values + NODES*r, Part{ c, NODES });
+        store(sum, along, Part{ c, NODES });
+    }
+    eachRegister(n, [&](auto at)
+    {
+        Lanes sum = all(0);
+        for (int c = 0; c < NODES; ++c)
+            sum += along[c]*load(columns + n*c, at);
+        store(sum, out, at);
+    });
+}
+
+bool meetPlane(const Stack& stack, const double* plane, const double* planeD, int n, const double* tau,
+               const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu)
+{
+    const Stack s = stack;
+    const Constants<3> normal(s.normal), abc(plane);
+    const double axis = abc[0]*normal[0] + abc[1]*normal[1] + abc[2]*normal[2];
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes a = load(dx, at), b = load(dy, at), c = load(dz, at), t = load(tau, at);
+        const Lanes along = abc[0]*a + abc[1]*b + abc[2]*c, ahead = load(planeD, at) - t*axis, m = along/ahead;
+        const Lanes shift = m*t, X = a + shift*normal[0], Y = b + shift*normal[1], Z = c + shift*normal[2];
+        Mask good = (along*ahead > 0) & (m - m == 0);
+        if (s.refracts)
+            good &= normal[0]*X + normal[1]*Y + normal[2]*Z > m*s.total;
+        store(answers.where(good, X), x, at);
+        store(Y, y, at);
+        store(Z, z, at);
+        if (mu)
+            store(m, mu, at);
+    });
+    return answers.complete();
+}
+
+void chainLinear(const double* A, int n, const double* px, const double* py, const double* pz, const Columns& byPoint,
+                 const Columns& out)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Vector X = { load(px, at), load(py, at), load(pz, at) };
+        const Vector moved = { dot(A, X), dot(A + 3, X), dot(A + 6, X) };
+        for (int row = 0; row < 2; ++row)
+            storeAt(dot(loadRow(byPoint, row, at), moved), out, row, 0, at);
+    });
+}
+
+void gaussNewton(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
+                 const Columns& byPoint2, double* px, double* py, double* pz, double* pMoved)
+{
+    eachRegister(n, [&](auto at)
+    {
+        Vector J[4], A[3] = {}, g = {};     // A: J^T J by rows
+        for (int k = 0; k < 4; ++k)
+        {
+            J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, at);
+            if (k >= 2)
+            {
+                const Vector D = J[k];
+                J[k] = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
+            }
+            const Lanes e = load(observed.at(k, 0), at) - load(predicted.at(k, 0), at);
+            const Vector& D = J[k];
+            g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
+            A[0] = { A[0].x + D.x*D.x, A[0].y + D.x*D.y, A[0].z + D.x*D.z };
+            A[1] = { A[0].y, A[1].y + D.y*D.y, A[1].z + D.y*D.z };
+            A[2] = { A[0].z, A[1].z, A[2].z + D.z*D.z };
+        }
+        // The rows of the inverse are cross products of the rows over the determinant.
+        const Vector a = cross(A[1], A[2]), b = cross(A[2], A[0]), c = cross(A[0], A[1]);
+        const Lanes inverse = 1/dot(A[0], a);
+        const Vector step = { dot(a, g)*inverse, dot(b, g)*inverse, dot(c, g)*inverse };
+        Lanes moved = all(0);
+        for (const Vector& D : J)
+            moved += square(dot(D, step));
+        store(load(px, at) + step.x, px, at);
+        store(load(py, at) + step.y, py, at);
+        store(load(pz, at) + step.z, pz, at);
+        store(moved, pMoved, at);
+    });
+}
+
+constexpr PointKernels pointTable = {
+    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, gaussNewton
+};
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_POINTS_SIMD_HPP

@@ -1,0 +1,38 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_VECTORS_HPP
+#define OPENCV_REFRACT_VECTORS_HPP
+
+#include "simd/columns.hpp"
+#include "simd/lanes.hpp"
+
+/* Vectors and matrices of all lanes at once. */
+
+namespace cv { namespace refract { namespace {
+
+template<typename At>
+inline void storeAt(Lanes a, const Columns& columns, int row, int column, At at)
+{
+    store(a, columns.at(row, column), at);
+}
+
+struct Vector { Lanes x, y, z; };
+
+template<typename At>
+inline Vector loadRow(const Columns& columns, int row, At at)
+{
+    return { load(columns.at(row, 0), at), load(columns.at(row, 1), at), load(columns.at(row, 2), at) };
+}
+inline Lanes dot(const Vector& a, const Vector& b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+inline Lanes dot(const double* a, const Vector& b) { return a[0]*b.x + a[1]*b.y + a[2]*b.z; }
+
+inline Vector cross(const Vector& a, const Vector& b)
+{
+    return { a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x };
+}
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_VECTORS_HPP

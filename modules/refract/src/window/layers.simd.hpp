@@ -1,0 +1,245 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_LAYERS_SIMD_HPP
+#define OPENCV_REFRACT_LAYERS_SIMD_HPP
+
+#include "simd/vectors.hpp"
+#include "window/layer_kernels.hpp"
+
+/* The physics of parallel layers, see layers.hpp. */
+
+namespace cv { namespace refract { namespace {
+
+bool traceOut(const Stack& stack, int n, const double* wx, const double* wy, const double* wz,
+              double* tau, double* dx, double* dy, double* dz)
+{
+    const Stack s = stack;      // a copy that no store can change stays in registers
+    const Constants<3> normal(s.normal);
+    const double scale = s.inner/s.outer, inner2 = s.inner*s.inner, outer2 = s.outer*s.outer;
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes x = load(wx, at), y = load(wy, at), z = load(wz, at);
+        const Lanes c = normal[0]*x + normal[1]*y + normal[2]*z, c2 = inner2*c*c;
+        // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
+        const Lanes qOut2 = (outer2 - inner2) + c2, qOut = s.inner == s.outer ? s.inner*c : sqrt(qOut2);
+        Mask good = (c > 0) & (qOut2 > 0);
+        Lanes sum = all(0);
+        for (int k = 0; k < s.count; ++k)
+        {
+            const Medium& medium = s.media[k];
+            if (medium.isScene)
+                continue;
+            const Lanes q2 = (medium.index2 - inner2) + c2;
+            good &= q2 > 0;
+            sum += medium.height/medium.scale*(1 - qOut*inverseSqrt(q2));
+        }
+        const Lanes along = qOut*(1/s.outer) - scale*c;
+        store(answers.where(good, sum), tau, at);
+        store(scale*x + along*normal[0], dx, at);
+        store(scale*y + along*normal[1], dy, at);
+        store(scale*z + along*normal[2], dz, at);
+    });
+    return answers.complete();
+}
+
+//! A search for the path from one point to the camera.
+struct Path
+{
+    Lanes weight, scene;                //!< w of the point; height of the scene's medium
+    Lanes radial[3], radius2;           //!< of the point about the window's axis
+    Lanes ratio;                        //!< t / V, what is looked for
+    Lanes step;                         //!< the last one, of ratio
+};
+
+inline Lanes heightOf(const Medium& medium, const Path& path)
+{
+    const Lanes height = path.weight*medium.height;
+    return medium.isScene ? height + path.scene*medium.scale : height;
+}
+
+/* Where the search for t / V begins: left of the root, the larger of two bounds. f lies below its tangent at 0; and
+every denser medium stays below its limit. The second wins far out only. */
+inline Lanes firstRatio(const Stack& s, const Path& path)
+{
+    const Lanes rare = heightOf(s.media[0], path);
+    Lanes slope = rare, limit = all(0);
+    for (int k = 1; k < s.count; ++k)
+    {
+        const Lanes h = heightOf(s.media[k], path);
+        slope += h*s.media[k].slope;
+        limit += h*s.media[k].limit;
+    }
+    Lanes ratio = roughInverse(slope);
+    const Mask far = path.radius2*square(slope - rare) > square(limit*slope);
+    if (any(far))
+    {
+        const Lanes radius = sqrt(path.radius2);
+        ratio = select(far & (rare > 0), larger(ratio, (radius - limit)/(rare*radius)), ratio);
+    }
+    return ratio;
+}
+
+/** Halley's step towards F(ratio) = sum h_i tan(theta_i) / V - 1 = 0 (layers.cpp has the equation). */
+inline Lanes pathStep(const Stack& s, const Path& path)
+{
+    const Lanes ratio = path.ratio, t2 = path.radius2*ratio*ratio;
+    Lanes value = heightOf(s.media[0], path), slope = value, bend = all(0);
+    for (int k = 1; k < s.count; ++k)
+    {
+        const Medium& medium = s.media[k];
+        const double excess = medium.index2 - s.media[0].index2;
+        const Lanes root2 = medium.index2 + excess*t2, inverse = inverseSqrt(root2), inverse2 = inverse*inverse;
+        const Lanes term = heightOf(medium, path)*inverse, termSlope = term*medium.index2*inverse2;
+        value += term;
+        slope += termSlope;
+        bend += termSlope*inverse2*excess;
+    }
+    const Lanes f = ratio*value - 1, half = 1.5*ratio*path.radius2*bend;    // half = -F''/2
+    return -f*slope*roughInverse(slope*slope + f*half);
+}
+
+inline Path beginPath(const Stack& s, Lanes x, Lanes y, Lanes z, Lanes weight)
+{
+    const Lanes U = s.normal[0]*x + s.normal[1]*y + s.normal[2]*z;
+    Path path;
+    path.weight = weight;
+    path.scene = U - weight*s.total;
+    path.radial[0] = x - U*s.normal[0];
+    path.radial[1] = y - U*s.normal[1];
+    path.radial[2] = z - U*s.normal[2];
+    path.radius2 = square(path.radial[0]) + square(path.radial[1]) + square(path.radial[2]);
+    path.ratio = firstRatio(s, path);
+    return path;
+}
+
+bool solveIn(const Stack& stack, int n, const double* px, const double* py, const double* pz, const double* pw,
+             double* dx, double* dy, double* dz, double* ratio)
+{
+    // The relative error after a Halley step is a few times the cube of the relative step.
+    const double ENOUGH = 1e-5;
+    const int STEPS = 8;
+    const Stack s = stack;
+    const double inner2 = s.inner*s.inner, excess = inner2 - s.media[0].index2;
+    Answers answers;
+    eachGroup<Path>(n, [&](Group<Path>& group)
+    {
+        group.each([&](Path& path, Part at)
+        {
+            path = beginPath(s, load(px, at), load(py, at), load(pz, at), pw ? load(pw, at) : all(1));
+        });
+        bool more = true;
+        for (int k = 0; k < STEPS && more; ++k)
+        {
+            group.each([&](Path& path, Part)
+            {
+                path.step = pathStep(s, path);
+                path.ratio += path.step;
+            });
+            more = group.some([&](const Path& path) { return absolute(path.step) > ENOUGH*path.ratio; });
+        }
+        group.each([&](Path& path, Part at)
+        {
+            const Mask good = (path.scene > 0) & (absolute(path.step) <= ENOUGH*path.ratio);
+            Lanes kappa = path.ratio;
+            if (excess > 0)
+                kappa *= s.rarest*inverseSqrt(inner2 + excess*path.radius2*path.ratio*path.ratio);
+            store(answers.where(good, s.normal[0] + kappa*path.radial[0]), dx, at);
+            store(s.normal[1] + kappa*path.radial[1], dy, at);
+            store(s.normal[2] + kappa*path.radial[2], dz, at);
+            if (ratio)
+                store(path.ratio, ratio, at);
+        });
+    });
+    return answers.complete();
+}
+
+/* The direction is n + kappa r, r = X - U n, kappa = T_in / V; sum h_i T_i(p) = V with T_i = p/q_i gives by implicit
+differentiation, with dT_i/dp = n_i^2/q_i^3, dT_i/dn_i = -p n_i/q_i^3, rho = p/V (regular on the axis) and
+A = dT_in/dp / sum h_i dT_i/dp:
+
+    d kappa/dU = -A rho/q_out          d kappa/dh_i = -A rho (1/q_i - 1/q_out)
+    V d kappa/dV = A - kappa           d kappa/dn_i = A rho h_i n_i/q_i^3, for the inner medium less rho n_in/q_in^3 */
+struct PathDerivative
+{
+    PathDerivative(const Stack& s, Lanes U, Lanes V2, Lanes ratio)
+        : t2(V2*ratio*ratio), c2(1/(1 + t2)), rho(s.rarest*ratio*sqrt(c2)), rarest2(s.rarest*s.rarest),
+          inverseIn(inverseQ(s.inner)), inverseOut(inverseQ(s.outer)), hOut(U - s.total)
+    {
+        Lanes sum = hOut*slope(s.outer, inverseOut);
+        for (int k = 0; k < s.layers; ++k)
+            sum += s.heights[k]*slope(s.indices[k], inverseQ(s.indices[k]));
+        const Lanes A = slope(s.inner, inverseIn)/sum;
+        kappa = rho*inverseIn;
+        Arho = A*rho;
+        byU = -Arho*inverseOut;
+        bend = select(V2 > 0, (A - kappa)/V2, all(0));
+    }
+    Lanes inverseQ(double index) const
+    {
+        const double n2 = index*index;
+        return inverseSqrt((n2 + (n2 - rarest2)*t2)*c2);
+    }
+    static Lanes slope(double index, Lanes inverse) { return (index*index)*inverse*inverse*inverse; }
+
+    Lanes t2, c2, rho;
+    double rarest2;
+    Lanes inverseIn, inverseOut, hOut, kappa, Arho, byU, bend;     //!< bend: d kappa/dV / V
+};
+
+//! d kappa by every height and index; columns as Layers::parameterCount() orders them.
+template<typename Put>
+inline void mediaDerivatives(const Stack& s, const PathDerivative& d, const Put& put)
+{
+    for (int k = 0; k < s.layers; ++k)
+    {
+        const double index = s.indices[k];
+        const Lanes inverse = d.inverseQ(index);
+        put(3 + k, d.Arho*(d.inverseOut - inverse));
+        if (k > 0)
+            put(2 + s.layers + k, d.Arho*s.heights[k]*index*inverse*inverse*inverse);
+    }
+    const Lanes byInner = s.inner*d.inverseIn*d.inverseIn*d.inverseIn;
+    put(2 + 2*s.layers, (d.Arho*s.heights[0] - d.rho)*byInner);
+    put(3 + 2*s.layers, d.Arho*d.hOut*(s.outer*d.inverseOut*d.inverseOut*d.inverseOut));
+}
+
+/* Rows D by the direction -> by the point and by the window. With f = D.r and g = d kappa/dU f - kappa D.n the point's row
+is kappa D + g n + bend f r, the unnormalised normal's (1 - kappa U) D + g X - U bend f r across n, any other f d kappa. */
+void chainWindow(const Stack& s, int rows, int n, const double* px, const double* py, const double* pz,
+                 const double* pRatio, const Columns& byDirection, const Columns& byPoint, const Columns& byWindow)
+{
+    const double* normal = s.normal;
+    eachRegister(n, [&](auto at)
+    {
+        const Vector X = { load(px, at), load(py, at), load(pz, at) };
+        const Lanes U = dot(normal, X);
+        const Vector r = { X.x - U*normal[0], X.y - U*normal[1], X.z - U*normal[2] };
+        const PathDerivative d(s, U, dot(r, r), load(pRatio, at));
+        for (int row = 0; row < rows; ++row)
+        {
+            const Vector D = loadRow(byDirection, row, at);
+            const Lanes f = dot(D, r), g = d.byU*f - d.kappa*dot(normal, D), h = d.bend*f;
+            storeAt(d.kappa*D.x + g*normal[0] + h*r.x, byPoint, row, 0, at);
+            storeAt(d.kappa*D.y + g*normal[1] + h*r.y, byPoint, row, 1, at);
+            storeAt(d.kappa*D.z + g*normal[2] + h*r.z, byPoint, row, 2, at);
+            if (!byWindow.data)
+                continue;
+            const Lanes side = 1 - d.kappa*U, back = U*h;
+            const Vector m = { side*D.x + g*X.x - back*r.x, side*D.y + g*X.y - back*r.y, side*D.z + g*X.z - back*r.z };
+            const Lanes along = dot(normal, m);
+            storeAt(m.x - along*normal[0], byWindow, row, 0, at);
+            storeAt(m.y - along*normal[1], byWindow, row, 1, at);
+            storeAt(m.z - along*normal[2], byWindow, row, 2, at);
+            mediaDerivatives(s, d, [&](int column, Lanes dKappa) { storeAt(f*dKappa, byWindow, row, column, at); });
+        }
+    });
+}
+
+constexpr LayerKernels layerTable = { traceOut, solveIn, chainWindow };
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_LAYERS_SIMD_HPP
