@@ -73,7 +73,7 @@ void tryCovariance(Bytes& bytes)
     if (!camera1 || !camera2)
         return;
     const auto parameters = [](const RefractiveCamera& camera) {
-        return (int)camera.lensParameters().total() + 6 + 2 * (int)camera.window().thickness.size(); };
+        return (int)camera.parameterNames().size(); };
     const int size = bytes.rarely() ? bytes.below(50) : parameters(*camera1) + parameters(*camera2) + 6;
     const Input calibration = bytes.maybe() && size < 200
         ? Input::matrix(bytes, size, size, [&](int r, int c) { return r == c ? bytes.about(0, 1e-3) : 0.; }) : Input();

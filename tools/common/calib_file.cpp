@@ -102,7 +102,7 @@ void requireCovarianceOf(const Calibration& calibration, const std::string& file
 {
     int count = calibration.stereo() ? 6 : 0;
     for (const CameraCalibration& c : calibration.cameras)
-        count += c.camera->lensParameters().rows + 6 + 2 * (int)c.camera->window().thickness.size();
+        count += (int)c.camera->parameterNames().size();
     const cv::Mat& C = calibration.covariance;
     if (!C.empty() && C.size() != cv::Size(count, count))
         throw Failure(format("'%s': the covariance is %dx%d, lens and window have %d parameters: was the file edited? Calibrate "
@@ -180,12 +180,6 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
     return {key, text.substr(equals + 1)};
 }
 
-//! Parameters of a camera in a covariance: lens, normal, distance, thicknesses, indices, inner and outer index.
-static int parameterCount(const RefractiveCamera& camera)
-{
-    return camera.lensParameters().rows + 6 + 2 * (int)camera.window().thickness.size();
-}
-
 KnownLens readLens(const std::string& filename, const std::string& name)
 {
     KnownLens lens{RefractiveCamera::read(filename, name), cv::Mat()};
@@ -200,10 +194,10 @@ KnownLens readLens(const std::string& filename, const std::string& name)
         node = node["camera1"];
     requireDistortion(node, filename);
     if (name == "camera2")
-        first = parameterCount(*RefractiveCamera::read(filename, "camera1"));
+        first = (int)RefractiveCamera::read(filename, "camera1")->parameterNames().size();
     const cv::Mat covariance = readMatrix(fs["covariance"]);
     const int count = lens.camera->lensParameters().rows;
-    if (covariance.rows == covariance.cols && covariance.rows >= first + parameterCount(*lens.camera))
+    if (covariance.rows == covariance.cols && covariance.rows >= first + (int)lens.camera->parameterNames().size())
         lens.covariance = covariance(cv::Rect(first, first, count, count)).clone();
     return lens;
 }

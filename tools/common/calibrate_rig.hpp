@@ -104,7 +104,9 @@ struct ParameterColumns
 {
     int lens, normal, distance, thickness, index, innerIndex, outerIndex, end;
     int lensCount, layers;
+    std::vector<cv::String> names;
 };
+ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int first = 0);
 ParameterColumns columnsOf(const Rig& rig, int camera);
 
 //! Two principal standard deviations of the normal of a camera, larger first.

@@ -17,24 +17,31 @@ static void append(std::vector<FreeParameter>& list, const Fit& fit, const std::
         list.push_back({name, column, value, std, isNormal});
 }
 
+ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
+{
+    ParameterColumns columns;
+    columns.names = camera.parameterNames();
+    columns.lensCount = camera.lensParameters().rows;
+    columns.layers = (int)camera.window().thickness.size();
+    const auto find = [&](const char* name)
+    { return first + int(std::find(columns.names.begin(), columns.names.end(), name) - columns.names.begin()); };
+    columns.lens = first;
+    columns.normal = find("normal[0]");
+    columns.distance = find("distance");
+    columns.thickness = find("thickness[0]");
+    columns.index = find("index[0]");
+    columns.innerIndex = find("innerIndex");
+    columns.outerIndex = find("outerIndex");
+    columns.end = first + (int)columns.names.size();
+    return columns;
+}
+
 ParameterColumns columnsOf(const Rig& rig, int camera)
 {
-    ParameterColumns columns = {};
-    for (int c = 0; c <= camera; c++)
-    {
-        const RefractiveCamera& cam = *rig.cameras[c];
-        columns.lensCount = cam.lensParameters().rows;
-        columns.layers = (int)cam.window().thickness.size();
-        columns.lens = columns.end;
-        columns.normal = columns.lens + columns.lensCount;
-        columns.distance = columns.normal + 3;
-        columns.thickness = columns.distance + 1;
-        columns.index = columns.thickness + columns.layers;
-        columns.innerIndex = columns.index + columns.layers;
-        columns.outerIndex = columns.innerIndex + 1;
-        columns.end = columns.outerIndex + 1;
-    }
-    return columns;
+    int first = 0;
+    for (int c = 0; c < camera; c++)
+        first = columnsOf(*rig.cameras[c], first).end;
+    return columnsOf(*rig.cameras[camera], first);
 }
 
 std::vector<double> normalStdDeg(const Mat& covariance, const Rig& rig, int camera)
@@ -100,7 +107,6 @@ std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags)
 
 std::vector<FreeParameter> freeRigParameters(const Fit& fit)
 {
-    static const char* const LENS[] = {"fx", "fy", "cx", "cy"};
     std::vector<FreeParameter> list;
     int end = 0;
     for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
@@ -109,8 +115,7 @@ std::vector<FreeParameter> freeRigParameters(const Fit& fit)
         const Mat lens = fit.rig.cameras[c]->lensParameters();
         const ParameterColumns at = columnsOf(fit.rig, c);
         for (int i = 0; i < at.lensCount; i++)
-            append(list, fit, prefix + (i < 4 ? std::string(LENS[i]) : format("lens coefficient %d", i - 3)), at.lens + i,
-                   lens.at<double>(i));
+            append(list, fit, prefix + at.names[i], at.lens + i, lens.at<double>(i));
         end = at.end;
     }
     if (fit.rig.cameras.size() == 2)

@@ -109,13 +109,13 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
         options.knownCovariance[c].copyTo(known.covariance);
     if (!windowKnown)
         return known;
-    const int all = lens + 6 + 2 * layers;          // normal, distance, thicknesses, indices, inner and outer index
-    Mat covariance = Mat::zeros(all, all, CV_64F);
+    const ParameterColumns at = columnsOf(camera);
+    Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
     known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
     for (int i = 0; i < layers; i++)
     {
-        covariance.at<double>(lens + 4 + i, lens + 4 + i) = options.thicknessStd * options.thicknessStd;
-        covariance.at<double>(lens + 4 + layers + i, lens + 4 + layers + i) = options.indexStd * options.indexStd;
+        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd * options.thicknessStd;
+        covariance.at<double>(at.index + i, at.index + i) = options.indexStd * options.indexStd;
     }
     known.covariance = covariance;
     return known;

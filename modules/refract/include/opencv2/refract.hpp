@@ -214,6 +214,9 @@ public:
     CV_WRAP virtual String lensModel() const = 0;        //!< `opencv`, `fisheye` or mrcal's name
     CV_WRAP virtual GlassWindow window() const = 0;
     CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;
+    //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
+    //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
+    CV_WRAP virtual std::vector<String> parameterNames() const = 0;
     //! Lens parameters fx, fy, cx, cy and coefficients in the order of the jacobian's columns, Nx1 CV_64F.
     CV_WRAP virtual Mat lensParameters() const = 0;
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;

@@ -31,6 +31,8 @@ struct FreeParameter
     double hopeless;        //!< a standard deviation beyond this is no answer
 
     double value() const { return block->values[coordinate]; }
+    bool isThickness() const
+    { return block->kind == RigBlock::MEDIA && block->windowParameter(coordinate) == WindowParameter::THICKNESS; }
     bool isNumber() const { return block->kind == RigBlock::LENS || block->kind == RigBlock::MEDIA; }
 };
 
@@ -57,13 +59,13 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
             if (!block.isFree[i] || (block.kind == RigBlock::NORMAL && i == 2))     // a normal has two
                 continue;
             FreeParameter p;
-            p.name = block.nameOf(i);
+            p.name = block.kind == RigBlock::NORMAL ? "normal" : block.names[i];
             if (rig.cameraCount() > (block.kind == RigBlock::EXTRINSICS ? 2 : 1))
                 p.name += format(" of camera %d", block.camera + 1);
             p.block = &block;
             p.coordinate = i;
             const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
-            const bool isLength = block.kind == RigBlock::MEDIA ? i == 0 : block.kind == RigBlock::EXTRINSICS && i >= 3;
+            const bool isLength = block.kind == RigBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE : block.kind == RigBlock::EXTRINSICS && i >= 3;
             p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
                 block.kind == RigBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);
@@ -92,12 +94,12 @@ void refuse(const std::vector<FreeParameter>& parameters, const VectorXd& part, 
             word += format(" +- %.2g", sigma[i]);
         if (std::find(words.begin(), words.end(), word) == words.end())     // two angles of one normal
             words.push_back(word);
-        const int last = (int)p.block->values.size() - 1, layers = last/2 - 1;
+        const WindowLayout& at = p.block->at;
         for (int j = i + 1; j < (int)parameters.size(); j++)
-            if (p.block->kind == RigBlock::MEDIA && p.coordinate > 0 && parameters[j].block == p.block &&
-                parameters[j].coordinate == p.coordinate + layers && takesPart(j))
+            if (p.isThickness() && parameters[j].block == p.block && takesPart(j) &&
+                parameters[j].coordinate - p.coordinate == at.index - at.thickness)
                 hint += format("; at small angles only thickness (1 - outerIndex/index) = %.4g shows",
-                               p.value()*(1 - p.block->values[last]/parameters[j].value()));
+                               p.value()*(1 - p.block->values[at.outerIndex - at.media]/parameters[j].value()));
     }
     String text;
     for (size_t i = 0; i < words.size(); i++)

@@ -78,7 +78,7 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
     if (!refracted_)
         return;
 
-    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount);     // normal, distance
+    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount + rig_.at().normal);     // and distance
     if (rig_.window)
     {
         if (wanted(extrinsics_))
@@ -93,8 +93,9 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
         return;
     const int mediaCount = parameter_block_sizes()[media_];
     RowsMap<Eigen::Dynamic> media = rowsOf<Eigen::Dynamic>(jacobians[media_], i, mediaCount);
-    media.col(0) = byWindow.col(3);
-    media.rightCols(mediaCount - 1) = point.byParameters.rightCols(mediaCount - 1);
+    const WindowLayout& at = rig_.at();
+    media = point.byParameters.middleCols(lensCount + at.media, mediaCount);
+    media.col(at.distance - at.media) = byWindow.col(3);
 }
 
 bool ImageResidual::linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const

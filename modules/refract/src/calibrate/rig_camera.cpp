@@ -54,7 +54,7 @@ void RigCamera::set(const Parameters& parameters)
     extrinsics = Extrinsics(parameters.extrinsics);
     window.reset();
     if (!parameters.ownsWindow)
-        window.reset(new WindowTransfer(Vec3d(parameters.normal), parameters.media[0],
+        window.reset(new WindowTransfer(Vec3d(parameters.normal), parameters.media[at().distance - at().media],
                                         Extrinsics(parameters.ownerExtrinsics), extrinsics));
     // A trial step may leave the domain of the focal lengths, or of the window.
     isLensPossible_ = parameters.lens[0] > 0 && parameters.lens[1] > 0;
@@ -65,18 +65,20 @@ void RigCamera::set(const Parameters& parameters)
 
 bool RigCamera::setWindow(const Parameters& parameters)
 {
-    const double* media = parameters.media;
+    std::vector<double> all(parameters.lens, parameters.lens + lensCount());
+    all.resize(lensCount() + at().count);
+    double* const p = all.data() + lensCount();
     const Vec3d normal = window ? window->normal : Vec3d(parameters.normal);
-    double distance = window ? window->distance : media[0];
+    std::copy(normal.val, normal.val + 3, p + at().normal);
+    std::copy(parameters.media, parameters.media + mediaCount(), p + at().media);
+    double& distance = p[at().distance];
+    if (window)
+        distance = window->distance;
     // With equal media the distance has no effect; another camera's need not be known well enough to be positive here.
-    if (window && media[mediaCount() - 2] == media[mediaCount() - 1])
+    if (window && p[at().innerIndex] == p[at().outerIndex])
         distance = std::max(distance, 0.);
     if (!(normal[2] > 0 && distance >= 0))
         return false;
-    std::vector<double> all(parameters.lens, parameters.lens + lensCount());
-    all.insert(all.end(), normal.val, normal.val + 3);
-    all.push_back(distance);
-    all.insert(all.end(), media + 1, media + mediaCount());
     behindWindow_.setParameters(all);
     return true;
 }

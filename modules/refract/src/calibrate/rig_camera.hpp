@@ -58,14 +58,16 @@ public:
         const double* extrinsics;
         const double* lens;
         const double* normal;               //!< in the owner's frame
-        const double* media;                //!< distance (the owner's), thickness[], index[], innerIndex, outerIndex
+        const double* media;                //!< the window's other parameters; the distance is the owner's
         const double* ownerExtrinsics;
         bool ownsWindow;
     };
     void set(const Parameters& parameters);
 
     int lensCount() const { return behindWindow_.lensCount(); }
-    int mediaCount() const { return behindWindow_.windowCount() - 3; }
+    //! Of the window's parameters.
+    const WindowLayout& at() const { return behindWindow_.layers().at(); }
+    int mediaCount() const { return at().count - at().media; }
 
     //! With its window, or the lens alone; null where the parameters are impossible.
     const Camera* camera(bool refracted) const;

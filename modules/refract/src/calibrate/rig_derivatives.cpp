@@ -24,28 +24,6 @@ Eigen::MatrixXd RigBlock::tangentBasis(bool withHeld) const
     return basis.leftCols(column);
 }
 
-String RigBlock::nameOf(int coordinate) const
-{
-    static const char* const LENS_NAMES[] = { "fx", "fy", "cx", "cy" };
-    const int layers = ((int)values.size() - 3)/2, layer = coordinate - 1;
-    switch (kind)
-    {
-    case LENS:
-        return coordinate < 4 ? String(LENS_NAMES[coordinate]) : format("distortion coefficient %d", coordinate - 4);
-    case NORMAL:
-        return "normal";
-    case EXTRINSICS:
-        return coordinate < 3 ? "R" : "T";
-    case MEDIA:
-        break;
-    }
-    if (layer < 0)
-        return "distance";
-    if (layer < 2*layers)
-        return layer < layers ? format("thickness[%d]", layer) : format("index[%d]", layer - layers);
-    return layer == 2*layers ? "innerIndex" : "outerIndex";
-}
-
 Eigen::VectorXd RigProblem::residuals(const RigImage& image) const
 {
     const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
@@ -136,7 +114,9 @@ int RigProblem::publicRow(RigBlock::Kind kind, int camera) const
     }
     for (int c = 0; c < camera; c++)
         row += rig_.cameras[c].parameterCount();
-    return row + (kind == RigBlock::LENS ? 0 : rig_.cameras[camera].lensCount() + (kind == RigBlock::NORMAL ? 0 : 3));
+    const Camera& at = rig_.cameras[camera];
+    return row + (kind == RigBlock::LENS ? 0 : at.lensCount() + (kind == RigBlock::NORMAL ? at.layers().at().normal
+                                                                                          : at.layers().at().media));
 }
 
 Eigen::MatrixXd RigProblem::publicBasis() const
@@ -167,8 +147,9 @@ void RigProblem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
     if (owner > 0)
         rows += window.byOwner*basis.middleRows<6>(publicRow(RigBlock::EXTRINSICS, owner));
     basis.middleRows<4>(row) = rows;
-    const int others = rig_.cameras[camera].windowCount() - 4;
-    basis.middleRows(row + 4, others) = basis.middleRows(ownerRow + 4, others).eval();
+    const WindowLayout& at = rig_.cameras[camera].layers().at();
+    const int rest = at.thickness - at.normal, others = at.count - at.thickness;
+    basis.middleRows(row + rest, others) = basis.middleRows(ownerRow + rest, others).eval();
 }
 
 }} // namespace

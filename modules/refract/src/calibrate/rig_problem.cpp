@@ -4,6 +4,7 @@
 
 #include "calibrate/rig_problem.hpp"
 #include <Eigen/Cholesky>
+#include <map>
 
 namespace cv { namespace refract {
 
@@ -26,42 +27,30 @@ Pose poseOf(const double* six)
     return pose;
 }
 
-//! GlassCalibrationFlags -> which of distance, thickness[], index[], innerIndex, outerIndex are free.
-std::vector<bool> freeMedia(int layers, int flags)
+//! Focal lengths stay above a small part of their start.
+double lowerBoundOfLens(int coordinate, double start)
 {
-    std::vector<bool> isFree(1, (flags & GLASS_FREE_DISTANCE) != 0);
-    isFree.insert(isFree.end(), layers, (flags & GLASS_FREE_THICKNESS) != 0);
-    isFree.insert(isFree.end(), layers, (flags & GLASS_FREE_INDEX) != 0);
-    isFree.push_back(false);
-    isFree.push_back((flags & GLASS_FREE_OUTER_INDEX) != 0);
-    return isFree;
-}
-
-//! Thicknesses and focal lengths stay above a small part of their start.
-double lowerBound(RigBlock::Kind kind, int coordinate, const std::vector<double>& values)
-{
-    const double SMALLEST_PART = 1e-6;
-    const int layers = ((int)values.size() - 3)/2;
-    if (kind == RigBlock::LENS && coordinate < 2)
-        return SMALLEST_PART*values[coordinate];
-    if (kind == RigBlock::MEDIA)
-        return coordinate == 0 ? 0. : coordinate <= layers ? SMALLEST_PART*values[coordinate] : 1.;
-    return -std::numeric_limits<double>::infinity();
+    return coordinate < 2 ? 1e-6*start : -std::numeric_limits<double>::infinity();
 }
 
 } // namespace
 
 std::vector<bool> freeLens(const Camera& camera, int flags)
 {
-    const int F = GLASS_FIX_FOCAL_LENGTH, C = GLASS_FIX_PRINCIPAL_POINT, P = GLASS_FIX_TANGENT_DIST,
-              S = GLASS_FIX_S1_S2_S3_S4, TAU = GLASS_FIX_TAUX_TAUY;
-    const int opencv[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, P, P, GLASS_FIX_K3, GLASS_FIX_K4, GLASS_FIX_K5,
-                           GLASS_FIX_K6, S, S, S, S, TAU, TAU };
-    const int fisheye[] = { F, F, C, C, GLASS_FIX_K1, GLASS_FIX_K2, GLASS_FIX_K3, GLASS_FIX_K4 };
-    const int* fixedBy = camera.lensModel() == "fisheye" ? fisheye : opencv;
+    static const std::map<String, int> FIXED_BY = {
+        { "fx", GLASS_FIX_FOCAL_LENGTH }, { "fy", GLASS_FIX_FOCAL_LENGTH }, { "cx", GLASS_FIX_PRINCIPAL_POINT },
+        { "cy", GLASS_FIX_PRINCIPAL_POINT }, { "k1", GLASS_FIX_K1 }, { "k2", GLASS_FIX_K2 }, { "k3", GLASS_FIX_K3 },
+        { "k4", GLASS_FIX_K4 }, { "k5", GLASS_FIX_K5 }, { "k6", GLASS_FIX_K6 }, { "p1", GLASS_FIX_TANGENT_DIST },
+        { "p2", GLASS_FIX_TANGENT_DIST }, { "s1", GLASS_FIX_S1_S2_S3_S4 }, { "s2", GLASS_FIX_S1_S2_S3_S4 },
+        { "s3", GLASS_FIX_S1_S2_S3_S4 }, { "s4", GLASS_FIX_S1_S2_S3_S4 }, { "tauX", GLASS_FIX_TAUX_TAUY },
+        { "tauY", GLASS_FIX_TAUX_TAUY } };
+    const std::vector<String> names = camera.parameterNames();
     std::vector<bool> isFree;
     for (int i = 0; i < camera.lensCount(); i++)
-        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(flags & fixedBy[i]));
+    {
+        const auto fixed = FIXED_BY.find(names[i]);
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(fixed != FIXED_BY.end() && (flags & fixed->second)));
+    }
     return isFree;
 }
 
@@ -76,24 +65,20 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
     for (int c = 0; c < rig_.count(); c++)
     {
         const Camera& camera = rig_.cameras[c];
-        const std::vector<double> all = camera.parameters();
-        const std::vector<double>::const_iterator lensEnd = all.begin() + camera.lensCount();
-        const std::vector<double> lens(all.begin(), lensEnd), media(lensEnd + 3, all.end());
+        const WindowLayout& at = camera.layers().at();
+        const int lens = camera.lensCount();
+        const std::vector<bool> isFree = freeWindowParameters(at.layers, flags);
         const CameraKnowledge ofCamera = knownCameras.empty() ? CameraKnowledge() : knownCameras[c];
-        addBlock(RigBlock::LENS, c, lens, freeLens(camera, flags));
+        addBlock(RigBlock::LENS, c, 0, freeLens(camera, flags));
         setKnown(ofCamera, 0, blocks_.back());
         if (!rig_.owns(c))
             continue;
-        addBlock(RigBlock::NORMAL, c, std::vector<double>(lensEnd, lensEnd + 3), std::vector<bool>(3, true));
-        addBlock(RigBlock::MEDIA, c, media, freeMedia(((int)media.size() - 3)/2, flags));
-        setKnown(ofCamera, (int)lens.size() + 3, blocks_.back());
+        addBlock(RigBlock::NORMAL, c, lens + at.normal, std::vector<bool>(3, true));
+        addBlock(RigBlock::MEDIA, c, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()));
+        setKnown(ofCamera, lens + at.media, blocks_.back());
     }
     for (int c = 1; c < rig_.count(); c++)
-    {
-        const std::array<double, 6> six = sixOf(rig_.extrinsics[c]);
-        addBlock(RigBlock::EXTRINSICS, c, std::vector<double>(six.begin(), six.end()),
-                 std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
-    }
+        addBlock(RigBlock::EXTRINSICS, c, 0, std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
     for (const Pose& pose : poses)
         poses_.push_back(sixOf(pose));
     knownPoses_ = poses_;
@@ -103,18 +88,27 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
     updateCameras();
 }
 
-void RigProblem::addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values,
-                          const std::vector<bool>& isFree)
+//! @param first of the camera's parameters that is in the block; its others follow
+void RigProblem::addBlock(RigBlock::Kind kind, int camera, int first, const std::vector<bool>& isFree)
 {
-    CV_Assert(values_.size() + values.size() <= values_.capacity());
+    const int size = (int)isFree.size();
+    const bool isPlace = kind == RigBlock::EXTRINSICS;
+    const std::array<double, 6> place = sixOf(rig_.extrinsics[camera]);
+    const std::vector<double> all = isPlace ? std::vector<double>(place.begin(), place.end()) : rig_.cameras[camera].parameters();
+    const std::vector<String> names = isPlace ? std::vector<String>{ "R", "R", "R", "T", "T", "T" }
+                                              : rig_.cameras[camera].parameterNames();
+    CV_Assert(values_.size() + size <= values_.capacity());
     double* const kept = values_.data() + values_.size();
-    values_.insert(values_.end(), values.begin(), values.end());
-    RigBlock block = { kind, camera, Eigen::Map<Eigen::VectorXd>(kept, values.size()), isFree, std::vector<double>(),
-                       std::vector<bool>(values.size(), false), Eigen::VectorXd(), Eigen::MatrixXd() };
-    for (int i = 0; i < (int)values.size(); i++)
-        block.lower.push_back(lowerBound(kind, i, values));
+    values_.insert(values_.end(), all.begin() + first, all.begin() + first + size);
+    RigBlock block = { kind, camera, rig_.cameras[camera].layers().at(), Eigen::Map<Eigen::VectorXd>(kept, size), isFree,
+                       std::vector<String>(names.begin() + first, names.begin() + first + size), std::vector<double>(),
+                       std::vector<bool>(size, false), Eigen::VectorXd(), Eigen::MatrixXd() };
+    for (int i = 0; i < size; i++)
+        block.lower.push_back(kind == RigBlock::MEDIA ? lowerBound(block.windowParameter(i), kept[i]) :
+                              kind == RigBlock::LENS ? lowerBoundOfLens(i, kept[i]) :
+                              -std::numeric_limits<double>::infinity());
     block.known = block.values;
-    block.priorRows.resize(0, block.values.size());
+    block.priorRows.resize(0, size);
     blocks_.push_back(block);
 }
 

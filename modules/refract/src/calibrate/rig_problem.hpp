@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_RIG_PROBLEM_HPP
 
 #include "calibrate/residual.hpp"
+#include "window/parameters.hpp"
 #include <ceres/evaluation_callback.h>
 #include <ceres/types.h>
 
@@ -58,8 +59,10 @@ struct RigBlock
     enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS };
     Kind kind;
     int camera;                     //!< of a window: its owner
+    WindowLayout at;                //!< of the camera's window
     Eigen::Map<Eigen::VectorXd> values;     //!< kept by the problem
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
+    std::vector<String> names;      //!< in messages
     std::vector<double> lower;      //!< bounds
     std::vector<bool> isHeld;       //!< on its bound while solving
     Eigen::VectorXd known;          //!< values known from an earlier step
@@ -67,8 +70,8 @@ struct RigBlock
 
     //! d values / d free coordinates; orthonormal. A normal moves on the sphere.
     Eigen::MatrixXd tangentBasis(bool withHeld = true) const;
-    //! What a coordinate is called in messages.
-    String nameOf(int coordinate) const;
+    //! What a coordinate of MEDIA is.
+    WindowParameter windowParameter(int coordinate) const { return kindOf(at, at.media + coordinate); }
 };
 
 //! GlassCalibrationFlags -> which lens parameters are free.
@@ -147,7 +150,7 @@ public:
     int publicCount() const;
 
 private:
-    void addBlock(RigBlock::Kind kind, int camera, const std::vector<double>& values, const std::vector<bool>& isFree);
+    void addBlock(RigBlock::Kind kind, int camera, int first, const std::vector<bool>& isFree);
     void setKnown(const CameraKnowledge& known, int first, RigBlock& block);
     void addImages(const RigViews& views);
     int blockOf(RigBlock::Kind kind, int camera) const;

@@ -4,6 +4,7 @@
 
 #include "camera/camera.hpp"
 #include "arrays/arrays.hpp"
+#include "window/parameters.hpp"
 
 namespace cv { namespace refract {
 
@@ -49,28 +50,24 @@ uchar Camera::projectJacobian(const Vec3d& X, Vec2d& pixel, double* dPoint, doub
 std::vector<double> Camera::parameters() const
 {
     std::vector<double> p = lens_->parameters();
-    p.insert(p.end(), window_.normal.val, window_.normal.val + 3);
-    p.push_back(window_.distance);
-    p.insert(p.end(), window_.thickness.begin(), window_.thickness.end());
-    p.insert(p.end(), window_.index.begin(), window_.index.end());
-    p.push_back(window_.innerIndex);
-    p.push_back(window_.outerIndex);
+    const std::vector<double> w = windowParameters(window_);
+    p.insert(p.end(), w.begin(), w.end());
     return p;
+}
+
+std::vector<String> Camera::parameterNames() const
+{
+    std::vector<String> names = lens_->parameterNames();
+    const std::vector<String> ofWindow = windowParameterNames(layers_.at().layers);
+    names.insert(names.end(), ofWindow.begin(), ofWindow.end());
+    return names;
 }
 
 void Camera::setParameters(const std::vector<double>& p)
 {
     CV_Assert((int)p.size() == parameterCount());
-    const size_t layers = window_.thickness.size();
     const double* w = p.data() + lensCount();
-    GlassWindow window;
-    window.normal = normalize(Vec3d(w[0], w[1], w[2]));
-    window.distance = w[3];
-    window.thickness.assign(w + 4, w + 4 + layers);
-    window.index.assign(w + 4 + layers, w + 4 + 2*layers);
-    window.innerIndex = w[4 + 2*layers];
-    window.outerIndex = w[5 + 2*layers];
-    setWindow(window);
+    setWindow(windowOf(w, layers_.at().layers));
     lens_ = lens_->withParameters(std::vector<double>(p.data(), w));
 }
 

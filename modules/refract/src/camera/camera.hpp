@@ -31,7 +31,7 @@ public:
 
     //! Number of lens parameters, of window parameters, and both: the columns of dPixel_dParameters.
     int lensCount() const { return lens_->parameterCount(); }
-    int windowCount() const { return layers_.parameterCount(); }
+    int windowCount() const { return layers_.at().count; }
     int parameterCount() const { return lensCount() + windowCount(); }
 
     /** Finite camera-frame points, at most a block. byPoint 2x3, byParameters 2 x parameterCount(), which may be null. Where
@@ -59,6 +59,7 @@ public:
     Mat distCoeffs() const CV_OVERRIDE { return lens_->distCoeffs(); }
     String lensModel() const CV_OVERRIDE { return lens_->model(); }
     GlassWindow window() const CV_OVERRIDE { return window_; }
+    std::vector<String> parameterNames() const CV_OVERRIDE;
     void setWindow(const GlassWindow& window) CV_OVERRIDE;
     Mat lensParameters() const CV_OVERRIDE;
     void setLensParameters(InputArray parameters) CV_OVERRIDE;

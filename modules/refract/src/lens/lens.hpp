@@ -51,6 +51,8 @@ public:
 
     //! fx, fy, cx, cy, coefficients as given.
     virtual std::vector<double> parameters() const = 0;
+    //! What they are called, as in OpenCV's documentation; GLASS_FIX_K1 and so on go by it.
+    virtual std::vector<String> parameterNames() const = 0;
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };

@@ -32,6 +32,7 @@ public:
     void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
                          const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
     int parameterCount() const CV_OVERRIDE { return 8; }
+    std::vector<String> parameterNames() const CV_OVERRIDE { return { "fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4" }; }
 
     String model() const CV_OVERRIDE { return "fisheye"; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(K_, true); }

@@ -35,6 +35,12 @@ public:
     void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
                          const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
     int parameterCount() const CV_OVERRIDE { return 4 + m_.given; }
+    std::vector<String> parameterNames() const CV_OVERRIDE
+    {
+        static const char* const NAMES[] = { "fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3",
+                                             "s4", "tauX", "tauY" };
+        return std::vector<String>(NAMES, NAMES + parameterCount());
+    }
 
     String model() const CV_OVERRIDE { return model_; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(Matx33d(m_.fx, 0, m_.cx, 0, m_.fy, m_.cy, 0, 0, 1), true); }

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_LAYER_KERNELS_HPP
 
 #include "simd/columns.hpp"
+#include "window/layout.hpp"
 
 /* Parallel layers as the vector code sees them. No OpenCV in here, see dispatch/kernels.hpp. */
 
@@ -34,6 +35,7 @@ struct Stack
     int count;
     const double *heights, *indices;    //!< the gap, then the layers, as given
     int layers;                 //!< how many heights
+    WindowLayout at;            //!< columns of derivatives
 };
 
 //! What Layers asks for, of blocks of points.

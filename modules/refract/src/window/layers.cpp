@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "window/layers.hpp"
+#include "window/parameters.hpp"
 #include <numeric>
 
 namespace cv { namespace refract {
@@ -41,7 +42,7 @@ Layers::Layers(const GlassWindow& window)
     media_ = mediaOf(height_, index_, outer, rarest);
     const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
     stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
-               NULL, (int)media_.size(), NULL, NULL, (int)height_.size() };
+               NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout((int)window.thickness.size()) };
     pointIntoVectors();
 }
 
@@ -196,7 +197,7 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
     {
         for (int c = 0; c < 3; ++c)
             std::copy(byDirection.at(r, c), byDirection.at(r, c) + n, byPoint.at(r, c));
-        for (int c = 0; c < (byWindow.data ? parameterCount() : 0); ++c)
+        for (int c = 0; c < (byWindow.data ? stack_.at.count : 0); ++c)
             std::fill(byWindow.at(r, c), byWindow.at(r, c) + n, 0.);
     }
 }

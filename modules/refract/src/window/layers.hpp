@@ -41,11 +41,11 @@ public:
     void solveIn(int n, const double* x, const double* y, const double* z, const double* w,
                  double* dx, double* dy, double* dz, uchar* status, double* ratio = NULL) const;
 
-    //! Number of window parameters: normal (3), distance, thickness[], index[], innerIndex, outerIndex.
-    int parameterCount() const { return 6 + 2 * ((int)height_.size() - 1); }
+    //! Where the columns of a derivative by the window stand.
+    const WindowLayout& at() const { return stack_.at; }
 
     /** Chain rule through solveIn for finite points: rows of derivatives by the direction -> by the point (3 columns) and by
-    the window (parameterCount() columns, by the *unnormalised* normal; may be null).
+    the window (at().count columns, by the *unnormalised* normal; may be null).
     @param ratio as solveIn gave it */
     void chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
                const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const;

@@ -189,7 +189,7 @@ struct PathDerivative
     Lanes inverseIn, inverseOut, hOut, kappa, Arho, byU, bend;     //!< bend: d kappa/dV / V
 };
 
-//! d kappa by every height and index; columns as Layers::parameterCount() orders them.
+//! d kappa by every height and index.
 template<typename Put>
 inline void mediaDerivatives(const Stack& s, const PathDerivative& d, const Put& put)
 {
@@ -197,13 +197,13 @@ inline void mediaDerivatives(const Stack& s, const PathDerivative& d, const Put&
     {
         const double index = s.indices[k];
         const Lanes inverse = d.inverseQ(index);
-        put(3 + k, d.Arho*(d.inverseOut - inverse));
+        put(k == 0 ? s.at.distance : s.at.thickness + k - 1, d.Arho*(d.inverseOut - inverse));
         if (k > 0)
-            put(2 + s.layers + k, d.Arho*s.heights[k]*index*inverse*inverse*inverse);
+            put(s.at.index + k - 1, d.Arho*s.heights[k]*index*inverse*inverse*inverse);
     }
     const Lanes byInner = s.inner*d.inverseIn*d.inverseIn*d.inverseIn;
-    put(2 + 2*s.layers, (d.Arho*s.heights[0] - d.rho)*byInner);
-    put(3 + 2*s.layers, d.Arho*d.hOut*(s.outer*d.inverseOut*d.inverseOut*d.inverseOut));
+    put(s.at.innerIndex, (d.Arho*s.heights[0] - d.rho)*byInner);
+    put(s.at.outerIndex, d.Arho*d.hOut*(s.outer*d.inverseOut*d.inverseOut*d.inverseOut));
 }
 
 /* Rows D by the direction -> by the point and by the window. With f = D.r and g = d kappa/dU f - kappa D.n the point's row
@@ -230,9 +230,9 @@ void chainWindow(const Stack& s, int rows, int n, const double* px, const double
             const Lanes side = 1 - d.kappa*U, back = U*h;
             const Vector m = { side*D.x + g*X.x - back*r.x, side*D.y + g*X.y - back*r.y, side*D.z + g*X.z - back*r.z };
             const Lanes along = dot(normal, m);
-            storeAt(m.x - along*normal[0], byWindow, row, 0, at);
-            storeAt(m.y - along*normal[1], byWindow, row, 1, at);
-            storeAt(m.z - along*normal[2], byWindow, row, 2, at);
+            storeAt(m.x - along*normal[0], byWindow, row, s.at.normal, at);
+            storeAt(m.y - along*normal[1], byWindow, row, s.at.normal + 1, at);
+            storeAt(m.z - along*normal[2], byWindow, row, s.at.normal + 2, at);
             mediaDerivatives(s, d, [&](int column, Lanes dKappa) { storeAt(f*dKappa, byWindow, row, column, at); });
         }
     });

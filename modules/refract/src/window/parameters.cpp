@@ -1,0 +1,106 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "window/parameters.hpp"
+
+namespace cv { namespace refract {
+
+static const double LEAST_THICKNESS = 1e-6;      // of its start
+
+WindowLayout windowLayout(int layers)
+{
+    WindowLayout at;
+    at.layers = layers;
+    at.normal = 0;
+    at.media = at.distance = 3;
+    at.thickness = at.distance + 1;
+    at.index = at.thickness + layers;
+    at.innerIndex = at.index + layers;
+    at.outerIndex = at.innerIndex + 1;
+    at.count = at.outerIndex + 1;
+    return at;
+}
+
+WindowParameter kindOf(const WindowLayout& at, int parameter)
+{
+    CV_DbgAssert(parameter >= 0 && parameter < at.count);
+    return parameter < at.distance ? WindowParameter::NORMAL :
+           parameter < at.thickness ? WindowParameter::DISTANCE :
+           parameter < at.index ? WindowParameter::THICKNESS :
+           parameter < at.innerIndex ? WindowParameter::INDEX :
+           parameter < at.outerIndex ? WindowParameter::INNER_INDEX : WindowParameter::OUTER_INDEX;
+}
+
+std::vector<String> windowParameterNames(int layers)
+{
+    const WindowLayout at = windowLayout(layers);
+    std::vector<String> names(at.count);
+    for (int i = 0; i < 3; i++)
+        names[at.normal + i] = format("normal[%d]", i);
+    names[at.distance] = "distance";
+    for (int i = 0; i < layers; i++)
+    {
+        names[at.thickness + i] = format("thickness[%d]", i);
+        names[at.index + i] = format("index[%d]", i);
+    }
+    names[at.innerIndex] = "innerIndex";
+    names[at.outerIndex] = "outerIndex";
+    return names;
+}
+
+std::vector<double> windowParameters(const GlassWindow& window)
+{
+    const WindowLayout at = windowLayout((int)window.thickness.size());
+    std::vector<double> p(at.count);
+    std::copy(window.normal.val, window.normal.val + 3, p.begin() + at.normal);
+    p[at.distance] = window.distance;
+    std::copy(window.thickness.begin(), window.thickness.end(), p.begin() + at.thickness);
+    std::copy(window.index.begin(), window.index.end(), p.begin() + at.index);
+    p[at.innerIndex] = window.innerIndex;
+    p[at.outerIndex] = window.outerIndex;
+    return p;
+}
+
+GlassWindow windowOf(const double* p, int layers)
+{
+    const WindowLayout at = windowLayout(layers);
+    GlassWindow window;
+    window.normal = normalize(Vec3d(p + at.normal));
+    window.distance = p[at.distance];
+    window.thickness.assign(p + at.thickness, p + at.thickness + layers);
+    window.index.assign(p + at.index, p + at.index + layers);
+    window.innerIndex = p[at.innerIndex];
+    window.outerIndex = p[at.outerIndex];
+    return window;
+}
+
+std::vector<bool> freeWindowParameters(int layers, int flags)
+{
+    const WindowLayout at = windowLayout(layers);
+    std::vector<bool> isFree(at.count, false);
+    for (int i = 0; i < at.count; i++)
+        switch (kindOf(at, i))
+        {
+        case WindowParameter::NORMAL: isFree[i] = true; break;
+        case WindowParameter::DISTANCE: isFree[i] = (flags & GLASS_FREE_DISTANCE) != 0; break;
+        case WindowParameter::THICKNESS: isFree[i] = (flags & GLASS_FREE_THICKNESS) != 0; break;
+        case WindowParameter::INDEX: isFree[i] = (flags & GLASS_FREE_INDEX) != 0; break;
+        case WindowParameter::INNER_INDEX: break;
+        case WindowParameter::OUTER_INDEX: isFree[i] = (flags & GLASS_FREE_OUTER_INDEX) != 0; break;
+        }
+    return isFree;
+}
+
+double lowerBound(WindowParameter kind, double start)
+{
+    switch (kind)
+    {
+    case WindowParameter::NORMAL: return -std::numeric_limits<double>::infinity();
+    case WindowParameter::DISTANCE: return 0.;
+    case WindowParameter::THICKNESS: return LEAST_THICKNESS*start;
+    default: return 1.;         // an index
+    }
+}
+
+}} // namespace

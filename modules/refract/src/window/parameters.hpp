@@ -1,0 +1,33 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_PARAMETERS_HPP
+#define OPENCV_REFRACT_PARAMETERS_HPP
+
+#include "precomp.hpp"
+#include "window/layout.hpp"
+
+/* A window as a vector of parameters. What they are called, their order, which are free: here and nowhere else. */
+
+namespace cv { namespace refract {
+
+enum class WindowParameter { NORMAL, DISTANCE, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX };
+
+WindowLayout windowLayout(int layers);
+WindowParameter kindOf(const WindowLayout& at, int parameter);
+
+//! normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex
+std::vector<String> windowParameterNames(int layers);
+std::vector<double> windowParameters(const GlassWindow& window);
+//! @param parameters of a normal of any length
+GlassWindow windowOf(const double* parameters, int layers);
+
+//! GlassCalibrationFlags -> which are free. The normal is always.
+std::vector<bool> freeWindowParameters(int layers, int flags);
+//! What no parameter falls below while it is estimated, by where it starts.
+double lowerBound(WindowParameter kind, double start);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_PARAMETERS_HPP
