@@ -1,4 +1,5 @@
 // The inner loops, compiled for every instruction set of this machine, through the inner header.
+#include "dispatch/kernels.hpp"
 #include "window/layers.hpp"
 #include "scenes.hpp"
 

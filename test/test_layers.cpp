@@ -26,7 +26,7 @@ uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction, 
     return status;
 }
 
-//! Derivatives of the direction, row-major: by the point (3x3), by the window (3 x parameterCount()).
+//! Derivatives of the direction, row-major: by the point (3x3), by the window (3 x at().count).
 uchar solveInJacobian(const Layers& layers, const Vec3d& X, Vec3d& direction, double* dX, double* dWindow)
 {
     uchar status = REFRACT_OK;
@@ -34,7 +34,7 @@ uchar solveInJacobian(const Layers& layers, const Vec3d& X, Vec3d& direction, do
     layers.solveIn(1, &X[0], &X[1], &X[2], nullptr, &direction[0], &direction[1], &direction[2], &status, &ratio);
     Matx33d identity = Matx33d::eye();
     layers.chain(3, 1, &X[0], &X[1], &X[2], &ratio, { identity.val, 3, 1 }, { dX, 3, 1 },
-                 { dWindow, layers.parameterCount(), 1 });
+                 { dWindow, layers.at().count, 1 });
     return status;
 }
 
@@ -366,7 +366,7 @@ TEST_CASE("Derivatives of solveIn against central differences of several steps",
             n *= 1.01;
         const std::vector<double> p = parametersOf(window);
         const Layers layers(window);
-        const int count = layers.parameterCount();
+        const int count = layers.at().count;
         REQUIRE(count == (int)p.size());
         // On the axis, next to it, and anywhere.
         const double side = i == 0 ? 0 : i == 1 ? 1e-6 : 500;
