@@ -1,11 +1,15 @@
 // RefractiveCamera: making, changing, reading and writing.
 #include "scenes.hpp"
+#include "temporary_folder.hpp"
 
 #include <opencv2/core/utils/filesystem.hpp>
 
 #include <cstdio>
+#include <fcntl.h>
 #include <fstream>
+#include <sys/stat.h>
 #include <type_traits>
+#include <unistd.h>
 
 using namespace cv;
 using namespace cv::refract;
@@ -262,6 +266,33 @@ TEST_CASE("A camera that cannot be saved leaves nothing", "[camera]")
     cv::utils::fs::glob(folder.substr(0, folder.rfind('/')), "*.part.folder", left);
     CHECK(left.empty());
     cv::utils::fs::remove_all(folder);
+}
+
+TEST_CASE("A camera is saved where a link leads, into a pipe, and not over a read-only file", "[camera]")
+{
+    const TemporaryFolder folder;
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d::eye(), noArray(), someWindow());
+    std::filesystem::create_symlink("real.yml", folder / "link.yml");
+    for (int i = 0; i < 2; ++i)         // it leads to nothing yet, then to a file
+    {
+        camera->save(folder / "link.yml");
+        CHECK(std::filesystem::is_symlink(folder / "link.yml"));
+        CHECK(std::filesystem::is_regular_file(folder / "real.yml"));
+    }
+    CHECK_NOTHROW(RefractiveCamera::read(folder / "link.yml"));
+
+    REQUIRE(mkfifo((folder / "pipe.yml").c_str(), 0600) == 0);
+    const int reader = open((folder / "pipe.yml").c_str(), O_RDONLY | O_NONBLOCK);
+    camera->save(folder / "pipe.yml");
+    CHECK(std::filesystem::is_fifo(folder / "pipe.yml"));
+    char text[6] = {};
+    CHECK(read(reader, text, 5) == 5);
+    CHECK(std::string(text) == "%YAML");
+    close(reader);
+
+    std::filesystem::permissions(folder / "real.yml", std::filesystem::perms(0444));
+    CHECK_THAT(thrown([&] { camera->save(folder / "link.yml"); }), Contains("link.yml"));
+    CHECK(folder.count() == 3);
 }
 
 TEST_CASE("Two cameras in one file are read by name, camera1 by default", "[camera]")

@@ -1,7 +1,11 @@
 // What the tools write never takes the place of what they read.
 #include "run_tool.hpp"
 #include <catch2/catch.hpp>
+#include <fcntl.h>
 #include <map>
+#include <regex>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace {
 
@@ -89,4 +93,71 @@ TEST_CASE("no tool overwrites what it reads, or writes one file twice", "[tools]
         CHECK(result.err.find(c.expected) != std::string::npos);
         CHECK(in.contents() == before);
     }
+}
+
+TEST_CASE("Links stay links, pipes stay pipes, and what is read-only stays", "[tools][outputs]")
+{
+    const Inputs in;
+    const TemporaryFolder& f = in.folder;
+    const std::string measure = "refract_measure " + in.calib + " " + in.left + " " + in.right + TARGET
+                                + " --pixel-sigma=0.014 --quiet --out=";
+    const std::string calib = "refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO
+        + "/direct1/*' --glass='" + STEREO + "/glass1/*' --no-cross-validation --quiet --out=";
+    REQUIRE(runTool(measure + (f / "points.csv")).code == 0);
+    const std::string points = readFile(f / "points.csv");
+    REQUIRE(points.size() > 1000);
+
+    std::ofstream(f / "sub/old.csv") << "old";
+    std::filesystem::permissions(f / "sub/old.csv", std::filesystem::perms(0600));
+    std::filesystem::create_symlink("sub/old.csv", f / "link.csv");
+    std::filesystem::create_symlink("sub/new.csv", f / "dangling.csv");
+    for (const std::string name : {"link.csv", "dangling.csv"})
+    {
+        const ToolResult result = runTool(measure + (f / name));
+        INFO(name << result.err);
+        CHECK(result.code == 0);
+        CHECK(std::filesystem::is_symlink(f / name));
+        CHECK(readFile(f / name) == points);
+    }
+    CHECK(readFile(f / "sub/old.csv") == points);
+    CHECK(readFile(f / "sub/new.csv") == points);
+    CHECK(std::filesystem::status(f / "sub/old.csv").permissions() == std::filesystem::perms(0600));
+    std::filesystem::create_symlink("round.csv", f / "round.csv");
+    CHECK(runTool(measure + (f / "round.csv")).code == 1);
+
+    REQUIRE(mkfifo((f / "pipe").c_str(), 0600) == 0);
+    const int reader = open((f / "pipe").c_str(), O_RDONLY | O_NONBLOCK);     // the pipe holds 64 kB, a table far less
+    REQUIRE(reader >= 0);
+    const auto readPipe = [reader] {
+        std::string bytes(1 << 16, 0);
+        bytes.resize(std::max<ssize_t>(0, read(reader, &bytes[0], bytes.size())));
+        return bytes;
+    };
+    const ToolResult piped = runTool(measure + (f / "pipe"));
+    INFO(piped.err);
+    CHECK(piped.code == 0);
+    CHECK(std::filesystem::is_fifo(f / "pipe"));
+    CHECK(readPipe() == points);
+    const ToolResult both = runTool(calib + (f / "pipe") + " --summary=" + (f / "pipe"));
+    INFO(both.err);
+    CHECK(both.code != 1);
+    CHECK(std::filesystem::is_fifo(f / "pipe"));
+    CHECK(readPipe().find("%YAML") != std::string::npos);
+    close(reader);
+
+    for (const char* quiet : {"", " --quiet"})
+    {
+        const ToolResult printed = runTool(std::regex_replace(measure, std::regex(" --quiet"), quiet) + "/dev/stdout");
+        INFO(printed.out << printed.err);
+        CHECK(printed.code == 0);
+        CHECK(printed.out.compare(0, points.size(), points) == 0);
+    }
+
+    std::ofstream(f / "kept.csv") << "kept";
+    std::filesystem::permissions(f / "kept.csv", std::filesystem::perms(0444));
+    const ToolResult refused = runTool(measure + (f / "kept.csv"));
+    INFO(refused.err);
+    CHECK(refused.code == 1);
+    CHECK(refused.err.find("may not be written") != std::string::npos);
+    CHECK(readFile(f / "kept.csv") == "kept");
 }

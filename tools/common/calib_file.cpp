@@ -251,7 +251,7 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
 
 void writeCalibration(const std::string& filename, const Calibration& calibration)
 {
-    OutputFile file(filename);
+    OutputFile file(filename, ".yml");
     FileStorage fs;
     if (!fs.open(file.temporary(), FileStorage::WRITE))
         throw Failure("cannot write '" + filename + "'");

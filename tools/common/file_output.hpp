@@ -8,11 +8,14 @@
 namespace tools {
 
 /* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the
-work fails. The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. */
+work fails. The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays
+one: what it leads to is replaced. What is no regular file (a device, a pipe) stays what it is: the bytes go into it at the
+end. */
 class OutputFile
 {
 public:
-    explicit OutputFile(const std::string& path);
+    //! @param extension of the temporary name where the path has none
+    explicit OutputFile(const std::string& path, const std::string& extension = "");
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -20,11 +23,17 @@ public:
     const std::string& temporary() const { return temporary_; }     //!< write here
     void commit();                                                  //!< throws Failure if it cannot
 private:
-    std::string path_, temporary_;
+    std::string path_, target_, temporary_;     //!< target: where links lead to; empty: no regular file
     bool committed_ = false;
 };
 
-//! Throws Failure if no file can be written there: a folder of that name, no folder for it, no right.
+//! Where a link, or several in turn, leads to; also if nothing is there. Throws Failure if they lead round.
+std::string targetOfLinks(const std::string& path);
+
+//! A device, a pipe, a socket: it takes bytes and must not be replaced.
+bool isSpecialFile(const std::string& path);
+
+//! Throws Failure if no file can be written there: a folder of that name, no folder for it, no right, a read-only file.
 void requireWritable(const std::string& path);
 
 void writeText(const std::string& path, const std::string& text);

@@ -19,8 +19,8 @@ namespace {
 std::string canonical(const std::string& path)
 {
     std::error_code error;
-    const fs::path name = fs::weakly_canonical(fs::absolute(path), error);
-    return (error ? fs::absolute(path) : name).lexically_normal().string();
+    const fs::path target = fs::absolute(targetOfLinks(path)), name = fs::weakly_canonical(target, error);
+    return (error ? target : name).lexically_normal().string();
 }
 
 std::string extensionOf(const std::string& path)
@@ -33,7 +33,8 @@ std::string extensionOf(const std::string& path)
 void checkKind(const Output& output)
 {
     static const std::set<std::string> CALIBRATIONS = {".yml", ".yaml", ".xml", ".json"};
-    if (output.kind == OUTPUT_CALIBRATION && !CALIBRATIONS.count(extensionOf(output.path)))
+    const bool asYaml = isSpecialFile(output.path) && extensionOf(output.path).empty();     // /dev/stdout
+    if (output.kind == OUTPUT_CALIBRATION && !asYaml && !CALIBRATIONS.count(extensionOf(output.path)))
         throw Failure(output.option + "=" + output.path + ": the extension of a calibration is .yml, .yaml, .xml or .json, which "
                       "says how it is written");
     if (output.kind == OUTPUT_PICTURE && (extensionOf(output.path).empty() || !cv::haveImageWriter(output.path)))
@@ -55,6 +56,11 @@ void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::str
         if (output.path.empty())
             continue;
         checkKind(output);
+        if (isSpecialFile(output.path))         // takes whatever comes, also twice, and is not replaced
+        {
+            requireWritable(output.path);
+            continue;
+        }
         const std::string name = canonical(output.path);
         const auto isHardLink = [&](const std::pair<const std::string, std::string>& input) {
             std::error_code ignored;

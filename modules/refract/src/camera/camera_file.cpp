@@ -11,6 +11,9 @@
 #ifdef _WIN32
 #define NOMINMAX
 #include <windows.h>
+#else
+#include <sys/stat.h>
+#include <unistd.h>
 #endif
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
@@ -119,18 +122,53 @@ static bool moveOver(const String& from, const String& to)
 #endif
 }
 
+//! Where links lead to: they stay, what they lead to is replaced.
+static String targetOfLinks(const String& filename)
+{
+    String target = filename;
+#ifndef _WIN32
+    char next[4096];
+    for (int i = 0; i < 40; ++i)
+    {
+        const ssize_t length = readlink(target.c_str(), next, sizeof(next));
+        if (length <= 0 || length == (ssize_t)sizeof(next))
+            break;
+        const size_t slash = next[0] == '/' ? String::npos : target.rfind('/');
+        target = (slash == String::npos ? String() : target.substr(0, slash + 1)) + String(next, length);
+    }
+#endif
+    return target;
+}
+
+//! A device or a pipe takes the bytes, and must not be replaced; a read-only file must stay, also if root asks.
+static void askWhatIsThere(const String& filename, bool& special, bool& readOnly)
+{
+    special = readOnly = false;
+#ifndef _WIN32
+    struct stat there;
+    if (stat(filename.c_str(), &there) != 0)
+        return;
+    special = !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
+    readOnly = S_ISREG(there.st_mode) && (!(there.st_mode & 0222) || access(filename.c_str(), W_OK) != 0);
+#endif
+}
+
 void RefractiveCamera::save(const String& filename) const
 {
     CV_INSTRUMENT_REGION();
 
-    const String part = partName(filename);
-    // FileStorage would log a line of its own.
-    if (!std::ofstream(part.c_str()))
+    bool special, readOnly;
+    askWhatIsThere(filename, special, readOnly);
+    const String target = targetOfLinks(filename), part = special ? filename : partName(target);
+    // FileStorage would log a line of its own. A pipe is opened once: closed, it would end for its reader.
+    if (readOnly || (!special && !std::ofstream(part.c_str())))
         CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
     FileStorage fs(part, FileStorage::WRITE);
+    if (!fs.isOpened())
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
     write(fs);
     fs.release();
-    if (!moveOver(part, filename))
+    if (!special && !moveOver(part, target))
     {
         std::remove(part.c_str());
         CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
