@@ -124,6 +124,17 @@ TEST_CASE("Images exchanged, moved or of other moments are found and named", "[m
         std::swap(m.direct[1], m.glass[1]);
     CHECK_THAT(explained(second), Catch::Contains("--direct2 and --glass2 exchanged"));
 
+    Given cameras = stereo;
+    for (Moment& m : cameras.data.moments)
+        std::swap(m.glass[0], m.glass[1]);
+    CHECK_THAT(explained(cameras), Catch::Contains("--glass and --glass2 exchanged") && !Catch::Contains("--unpaired"));
+    for (Moment& m : cameras.data.moments)
+    {
+        std::swap(m.glass[0], m.glass[1]);
+        std::swap(m.direct[0], m.direct[1]);
+    }
+    CHECK_THAT(explained(cameras), Catch::Contains("--direct and --direct2 exchanged"));
+
     Given moved = right;
     for (size_t i = 0; i < moved.data.moments.size(); i++)
         moved.data.moments[i].glass[0] = right.data.moments[(i + 1) % 6].glass[0];
@@ -142,7 +153,13 @@ TEST_CASE("Images exchanged, moved or of other moments are found and named", "[m
 TEST_CASE("What the library says is told in the tool's words", "[misfit]")
 {
     scenes::Random random(930);
-    const std::string text = explainError("the calibration did not converge in 1000 iterations; raise criteria.maxCount, or fix "
-                                          "what the views hardly determine", rightlyGiven(1, random));
-    CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("--free"));
+    Given given = rightlyGiven(1, random);
+    for (const int flags : {0, (int)GLASS_FREE_THICKNESS})
+    {
+        given.options.flags = flags;
+        const std::string text = explainError("the calibration did not converge in 1000 iterations; raise "
+                                              "criteria.maxCount, or fix what the views hardly determine", given);
+        CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("give what you know", Catch::CaseSensitive::No));
+        CHECK((text.find("--free") != std::string::npos) == (flags != 0));
+    }
 }

@@ -167,6 +167,20 @@ Explanation swapped(const Given& given, int only)
     return {format("--direct%s and --glass%s exchanged", suffix, suffix), misfitOf(data, given.options)};
 }
 
+/** The folders of the two cameras exchanged, in one state only. Without a known lens the cameras have no names of their own:
+the glass images exchanged back explain exchanged direct images as well. */
+Explanation camerasExchanged(const Given& given, bool glass)
+{
+    const bool lensKnown = given.options.known[0] || given.options.known[1];
+    if (!hasPairs(given.data) || given.data.cameraCount < 2 || (!glass && !lensKnown))
+        return {"", NO_FIT};
+    RigData data = given.data;
+    for (Moment& m : data.moments)
+        glass ? std::swap(m.glass[0], m.glass[1]) : std::swap(m.direct[0], m.direct[1]);
+    const std::string sentence = glass ? "--glass and --glass2 exchanged" : "--direct and --direct2 exchanged";
+    return {sentence + (lensKnown ? "" : " (or --direct and --direct2)"), misfitOf(data, given.options)};
+}
+
 Explanation otherMedium(const Given& given)
 {
     RigOptions options = given.options;
@@ -333,7 +347,8 @@ std::vector<std::string> explainMisfit(const Given& given)
         if (!sentence.empty())
             sentences.push_back(sentence);
     const std::vector<Explanation> tried = {wrongScale(given), wrongIndex(given), swapped(given, -1), swapped(given, 0),
-                                            swapped(given, 1), otherMedium(given), otherMoments(given), unpaired(given)};
+                                            swapped(given, 1), camerasExchanged(given, true), camerasExchanged(given, false),
+                                            otherMedium(given), otherMoments(given), unpaired(given)};
     double best = NO_FIT;
     for (const Explanation& e : tried)
         best = std::min(best, e.px);
@@ -370,9 +385,13 @@ std::string explainError(const std::string& error, const Given& given)
     const std::string theirs = "; raise criteria.maxCount, or fix what the views hardly determine";
     std::string text = error;
     const size_t at = text.find(theirs);
+    // The distance is set free without being asked for where it is needed.
+    const bool asked = given.options.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX
+                                              | GLASS_FREE_INTRINSICS);
     if (at != std::string::npos)
-        text.replace(at, theirs.size(), ": the images hardly determine what is free. Leave out --free=..., give what you know "
-                     "(--thickness, --index, --distance, --camera), or add images: pairs, more tilt, more depth");
+        text.replace(at, theirs.size(), std::string(": the images hardly determine what is free. ") + (asked ? "Leave out "
+                     "--free=..., g" : "G") + "ive what you know (--thickness, --index, --distance, --camera), or add "
+                     "images: pairs, more tilt, more depth");
     std::vector<std::string> reasons = explainMisfit(given);
     reasons.insert(reasons.begin(), given.notices.begin(), given.notices.end());
     return reasons.empty() ? text : text + ". However, " + joined(reasons);
