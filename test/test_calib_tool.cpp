@@ -440,6 +440,11 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, lens(f) + " --thickness=-20 --index=1.5"), "thickness"},
         {inputs(f, lens(f) + " --thickness=20 --index=0.5"), "index"},
         {inputs(f, lens(f) + " --thickness=x --index=1.5"), "--thickness"},
+        {inputs(f, lens(f) + " --thickness=0 --index=1.5"), "leave --thickness and --index out"},
+        {inputs(f, lens(f) + " --thickness=20 --index=1"), "that is air"},
+        {inputs(f, lens(f) + " --thickness=20 --index=15.4"), "no material has the index 15.4"},
+        {inputs(f, lens(f) + PANE + " --outer-index=13.3"), "--outer-index=13.3: no medium"},
+        {inputs(f, lens(f) + PANE + " --outer-index=0.9"), "--outer-index=0.9: no medium"},
         {inputs(f, lens(f) + PANE + " --free=colour"), "--free"},
         {inputs(f, lens(f) + " --outer-index=1.333 --free=thickness"), "--free=thickness"},
         {inputs(f, std::string(PANE), false), "--direct"},
@@ -455,7 +460,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {std::string("refract_calib --size=7x5 --square=39 --image-size=1280x1024 --glass=") + f / "glass1.vnl" + " --out="
             + f / "calib.yml" + PANE + lens(f), "glass1.vnl"},
         {std::string("refract_calib --size=6x5 --square=39 --image-size=640x480 --glass=") + f / "glass1.vnl" + " --out="
-            + f / "calib.yml" + PANE + lens(f), "640x480"},
+            + f / "calib.yml" + PANE + lens(f), "outside of an image of 640x480"},
     };
     for (const auto& c : cases)
     {

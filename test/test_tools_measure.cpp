@@ -262,6 +262,43 @@ TEST_CASE("refract_measure carries what a pose leaves unexplained into its uncer
     CHECK(row.sigma[2] > 50 * right);
 }
 
+TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    const std::string truth = readFile(STEREO + "/truth.yml");
+    const auto covarianceOf = [](int size, const std::string& first) {      // of two cameras with a pane each
+        std::string text = cv::format("covariance: !!opencv-matrix\n   rows: %d\n   cols: %d\n   dt: d\n   data: [ ",
+                                      size, size);
+        for (int i = 0; i < size * size; i++)
+            text += i == 0 ? first : i % (size + 1) ? ", 0." : ", 1e-6";
+        return text + " ]\n";
+    };
+    const int parameters = 2 * (4 + 5 + 8) + 6;
+    const struct { std::string text, says; } cases[] = {
+        {changedTruth("-2.3994111532053930e-01", "-2.6e-01"), "the normal for camera 1 has the length 1.00"},
+        {truth + covarianceOf(parameters, "-1e-6"), "below 0"},
+        {truth + covarianceOf(parameters, ".nan"), "finite numbers"},
+        {truth + "covariance: 3\n", "finite numbers"},
+        {truth + "residual_sigma: -0.1\n", "residual_sigma"},
+        {truth + "residual_sigma: .nan\n", "residual_sigma"},
+        {truth + "degrees_of_freedom: -5\n", "degrees_of_freedom"},
+        {"", "is empty"},
+        {"\xEF\xBB\xBF" + truth, "byte order mark"}};
+    for (const auto& c : cases)
+    {
+        std::ofstream(folder / "calib.yml", std::ios::binary) << c.text;
+        const ToolResult r = runTool("refract_measure " + (folder / "calib.yml") + " " + image("measure1/z600_1") + " "
+                                     + image("measure2/z600_1") + TARGET + " --pixel-sigma=0.014");
+        INFO(c.says << "\n" << r.out << r.err);
+        CHECK(r.code == 1);
+        CHECK(mentions(r.err, c.says));
+        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+    }
+    std::ofstream(folder / "calib.yml") << truth + covarianceOf(parameters, "1e-6");
+    CHECK(runTool("refract_measure " + (folder / "calib.yml") + " " + image("measure1/z600_1") + " " + image("measure2/z600_1")
+                  + TARGET + " --pixel-sigma=0.014").code == 0);
+}
+
 TEST_CASE("A calibration that lacks something is not taken silently", "[tools][measure]")
 {
     const TemporaryFolder folder;

@@ -30,6 +30,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "report.hpp"
 #include "summary.hpp"
 #include "summary_json.hpp"
+#include "table.hpp"
 #include "thumbnails.hpp"
 #include <iostream>
 #include <map>
@@ -140,6 +141,32 @@ Options parseOptions(Command& command)
     return o;
 }
 
+const double MOST_INDEX = 4.1;          // germanium in the infrared has 4.0
+
+//! Layers and media that there are.
+void requireMaterials(const Options& o, const GlassWindow& window)
+{
+    for (double thickness : window.thickness)
+        if (!(thickness > 0))
+            throw Failure("--thickness=" + o.thickness + ": a layer is thicker than 0; without glass (a bare water surface) "
+                          "leave --thickness and --index out");
+    // Among several layers, one of index 1 is the gap of double glazing.
+    double most = 0.;
+    for (double index : window.index)
+    {
+        most = std::max(most, index);
+        if (!(index >= 1) || index > MOST_INDEX)
+            throw Failure("--index=" + o.index + format(": no material has the index %g; glass has 1.4 to 2, the data sheet "
+                                                        "says which", index));
+    }
+    if (!window.index.empty() && most == 1)
+        throw Failure("--index=" + o.index + ": that is air; glass has an index of 1.4 to 2, the data sheet says which");
+    const std::pair<const char*, double> media[] = {{"--inner-index", o.innerIndex}, {"--outer-index", o.outerIndex}};
+    for (const auto& medium : media)
+        if (!(medium.second >= 1) || medium.second > MOST_INDEX)
+            throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
+}
+
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
 void readWindow(const Options& o, double square, RigOptions& rig)
 {
@@ -158,6 +185,7 @@ void readWindow(const Options& o, double square, RigOptions& rig)
     const bool equalMedia = o.innerIndex == o.outerIndex;
     if (window.thickness.size() != window.index.size())
         throw Failure("--thickness and --index must have one number for each layer: give both");
+    requireMaterials(o, window);
     if (window.thickness.empty() && equalMedia)
         throw Failure("there is no window to calibrate: give --thickness and --index, or an --outer-index that differs from "
                       "--inner-index (a bare water surface)");

@@ -19,6 +19,8 @@ using cv::refract::RefractiveCamera;
 
 namespace {
 
+const double UNIT = 1e-4;       // more than rounding leaves of a normal's length
+
 double readNumber(const FileNode& node, double otherwise)
 {
     return node.isReal() || node.isInt() ? (double)node : otherwise;
@@ -93,8 +95,37 @@ CameraCalibration readCamera(const FileNode& node, const std::string& filename, 
     calibration.camera = RefractiveCamera::read(filename, name);
     requireDistortion(node, filename);
     calibration.windowGiven = !node["glass_window"].empty();
+    const std::vector<double> normal = readList(node["glass_window"]["normal"]);
+    calibration.normalLength = normal.empty() ? 1. : cv::norm(normal);
     readEstimate(node, calibration);
     return calibration;
+}
+
+/** Empty where the file has none; else it throws Failure where none can be: cut short or edited, it must not be taken for a
+calibration that is exact. */
+cv::Mat readCovariance(const FileStorage& fs, const std::string& filename)
+{
+    const FileNode node = fs["covariance"];
+    const cv::Mat C = readMatrix(node);
+    double least = 0., most = 0.;
+    if (C.rows > 0 && C.rows == C.cols)
+        cv::minMaxIdx(C.diag(), &least, &most);
+    const double ROUNDING = 1e-12;
+    if (!node.empty() && (C.empty() || C.rows != C.cols || least < -ROUNDING * most))
+        throw Failure("'" + filename + "': the covariance is none: it must be a square matrix of finite numbers with none "
+                      "below 0 on its diagonal. Was the file edited? Calibrate again");
+    return C;
+}
+
+//! What the residuals told: not below 0, and finite.
+double readNotNegative(const FileStorage& fs, const char* key, double otherwise, const std::string& filename)
+{
+    const FileNode node = fs[key];
+    const double number = readNumber(node, NAN);
+    if (!node.empty() && !(number >= 0. && std::isfinite(number)))
+        throw Failure("'" + filename + "': " + key + " must be a number, and not below 0: was the file edited? Calibrate "
+                      "again");
+    return node.empty() ? otherwise : number;
 }
 
 //! In the order of calibrateGlass: lens, normal, distance, thickness, index, innerIndex, outerIndex; of two cameras, R and T.
@@ -195,7 +226,7 @@ KnownLens readLens(const std::string& filename, const std::string& name)
     requireDistortion(node, filename);
     if (name == "camera2")
         first = (int)RefractiveCamera::read(filename, "camera1")->parameterNames().size();
-    const cv::Mat covariance = readMatrix(fs["covariance"]);
+    const cv::Mat covariance = readCovariance(fs, filename);
     const int count = lens.camera->lensParameters().rows;
     if (covariance.rows == covariance.cols && covariance.rows >= first + (int)lens.camera->parameterNames().size())
         lens.covariance = covariance(cv::Rect(first, first, count, count)).clone();
@@ -223,10 +254,10 @@ Calibration readCalibration(const std::string& filename)
         readRigid(fs, filename, calibration);
     }
     calibration.rms = readNumber(fs["rms"], -1.);
-    calibration.covariance = readMatrix(fs["covariance"]);
+    calibration.covariance = readCovariance(fs, filename);
     requireCovarianceOf(calibration, filename);
-    calibration.sigma = readNumber(fs["residual_sigma"], -1.);
-    calibration.freedom = readNumber(fs["degrees_of_freedom"], 0.);
+    calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
+    calibration.freedom = readNotNegative(fs, "degrees_of_freedom", 0., filename);
     calibration.label = readLabel(fs);
     if (fs["calibration_time"].isString())
         fs["calibration_time"] >> calibration.time;
@@ -246,6 +277,9 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
                           + (option.empty() ? "" : ", or say " + option + " if there is none"));
         if (camera.windowGiven && noWindow)
             throw Failure("'" + filename + "' has a glass_window" + which + ": leave " + option + " out");
+        if (!(std::abs(camera.normalLength - 1.) < UNIT))
+            throw Failure("'" + filename + "': the normal" + which + format(" has the length %g in place of 1: was the file "
+                          "edited? Calibrate again, or divide its three numbers by that", camera.normalLength));
     }
 }
 

@@ -29,6 +29,7 @@ struct CameraCalibration
     WindowStd windowStd;
     double rms = -1.;                   //!< px; negative where unknown
     bool windowGiven = false;           //!< the file has a glass_window, be it one without layers
+    double normalLength = 1.;           //!< as the file has it; the camera's own is 1
 };
 
 //! What people call the thing that was calibrated.
@@ -55,11 +56,12 @@ struct Calibration
 };
 
 /** Throws cv::Exception or Failure that names the file; also if a lens comes without distortion_coefficients or the
-covariance is not of these cameras. */
+covariance is not of these cameras or none at all. */
 Calibration readCalibration(const std::string& filename);
 
 /** A file without glass_window is a mistake more often than not: refuses it, unless `noWindow` says that there is none (and
-refuses a window then).
+refuses a window then). Refuses a normal that is no unit vector, too: in a calibration someone edited it; only a scene that
+was written by hand may have any length.
 @param option that says so, for the text; empty if the tool has none */
 void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow,
                     const std::string& option = "--no-window");

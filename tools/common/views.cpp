@@ -130,6 +130,18 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
     return set;
 }
 
+//! A corner found at the border may lie a little beyond it; one of another image size lies far.
+void requireInside(const std::string& path, const std::pair<std::string, std::vector<cv::Point2d>>& image, cv::Size size)
+{
+    const double BEYOND = 1.;
+    const cv::Rect2d allowed(-BEYOND, -BEYOND, size.width + 2 * BEYOND, size.height + 2 * BEYOND);
+    for (const cv::Point2d& p : image.second)
+        if (seen(p) && !allowed.contains(p))
+            throw Failure("'" + path + "': a point of '" + image.first + "' is at " + cv::format("(%g, %g)", p.x, p.y)
+                          + ", outside of an image of " + sizeText(size) + ": check --image-size, or the size that the "
+                          "calibration says");
+}
+
 ViewSet viewsOfVnl(const std::string& path, const Target& target, cv::Size imageSize)
 {
     if (imageSize.empty())
@@ -138,7 +150,10 @@ ViewSet viewsOfVnl(const std::string& path, const Target& target, cv::Size image
     set.files = {path};
     set.imageSize = imageSize;
     for (const auto& image : readCornersVnl(path, target.count()))
+    {
+        requireInside(path, image, imageSize);
         addView(set, image.first, image.second);
+    }
     return set;
 }
 

@@ -22,12 +22,27 @@ static int nestingOf(std::istream& text)
     return deepest;
 }
 
+//! Faults that FileStorage tells by its own source lines.
+static void requireText(std::ifstream& file, const String& filename)
+{
+    char start[3] = {};
+    file.read(start, 3);
+    if (file.gcount() == 0)
+        CV_Error_(Error::StsParseError, ("%s is empty", filename.c_str()));
+    if (String(start, 3) == "\xEF\xBB\xBF")
+        CV_Error_(Error::StsParseError, ("%s begins with a byte order mark, which OpenCV does not read: save it as UTF-8 "
+                                         "without one", filename.c_str()));
+    file.clear();
+    file.seekg(0);
+}
+
 FileStorage openStorage(const String& filename)
 {
     // FileStorage would log a line of its own.
     std::ifstream file(filename.c_str(), std::ios::binary);
     if (!file)
         CV_Error_(Error::StsObjectNotFound, ("%s cannot be opened", filename.c_str()));
+    requireText(file, filename);
     const int DEEPEST = 256;
     if (nestingOf(file) > DEEPEST)
         CV_Error_(Error::StsParseError, ("%s is no file of FileStorage: its brackets or tags nest deeper than %d",
