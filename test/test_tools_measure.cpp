@@ -246,20 +246,35 @@ TEST_CASE("refract_measure gives no point for pixels that contradict each other"
     }
 }
 
-TEST_CASE("refract_measure carries what a pose leaves unexplained into its uncertainty", "[tools][measure]")
+TEST_CASE("refract_measure states no uncertainty of a pose that its points contradict, and ends with 2", "[tools][measure]")
 {
     const TemporaryFolder folder;
     std::ofstream(folder / "lens.yml") << changedTruth("-4.0820000000000001e-01", "1.2");     // k1 of camera 1
     const std::string call = " --pixel-sigma=0.014 " + image("measure1/z600_1") + TARGET + " --out=" + (folder / "points.csv");
     REQUIRE(runTool("refract_measure " + STEREO + "/truth.yml" + call).code == 0);
-    const double right = readPointsCsv(readFile(folder / "points.csv"))[0].sigma[2];
     const ToolResult wrong = runTool("refract_measure " + (folder / "lens.yml") + call);
     INFO(wrong.out << wrong.err);
-    REQUIRE(wrong.code == 0);
+    REQUIRE(wrong.code == 2);
     CHECK(mentions(wrong.err, "the pose leaves residuals"));
-    const CsvRow row = readPointsCsv(readFile(folder / "points.csv"))[0];
-    CHECK(row.status == 9);
-    CHECK(row.sigma[2] > 50 * right);
+    for (const CsvRow& row : readPointsCsv(readFile(folder / "points.csv")))
+    {
+        CHECK(row.status == 9);
+        CHECK(std::isfinite(row.point[2]));
+        CHECK(std::isnan(row.sigma[2]));
+    }
+}
+
+TEST_CASE("refract_measure ends with 2 if most points contradict themselves", "[tools][measure]")
+{
+    const TemporaryFolder folder;
+    // Off by more than the noise, and not so far that nothing is measured.
+    std::ofstream(folder / "moved.yml") << changedTruth("4.8749000000000001e+02", "4.8899e+02");      // cy of camera 2
+    const ToolResult r = runTool("refract_measure " + (folder / "moved.yml") + " " + image("measure1/z600_1") + " "
+        + image("measure2/z600_1") + TARGET + " --pixel-sigma=0.014 --out=" + (folder / "points.csv"));
+    INFO(r.out << r.err);
+    CHECK(r.code == 2);
+    CHECK(mentions(r.err, "30 of 30 points contradict"));
+    CHECK(readPointsCsv(readFile(folder / "points.csv")).size() == 30);
 }
 
 TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][measure]")

@@ -23,9 +23,13 @@ points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point of the t
 counts within the target; s* is one standard deviation, from the pixel noise that the calibration found and from the
 calibration's own covariance, which calib.yml holds; nan where there is no answer. status: 0 fine; 1 to 8 why there is no
 answer (RefractiveStatus); 9 the pixels contradict each other by more than 5 standard deviations of noise and calibration: the
-point has the s* of that misfit, and far beyond it is nan. Look for swapped images, images of two moments, a moved camera.
+point has the s* of that misfit, and far beyond it is nan; of a pose that its points contradict, all s* are nan. Look for
+swapped images, images of two moments, a moved camera.
 
-The table compares the distances between neighbouring points with --square.)";
+The table compares the distances between neighbouring points with --square, which must be in the unit of the calibration.
+
+Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9,
+or the distances between neighbouring points are on average more than 20 % off.)";
 
 namespace {
 
@@ -38,6 +42,8 @@ struct Options
     TargetOptions target;
     double pixelSigma = 0.;
     bool compare = false, noWindow = false;
+    //! From the pose of a target of known shape, the distances come out as they went in.
+    bool lengthsMeasured() const { return !image2.empty() || !plane.empty(); }
 };
 
 //! One view by one or two cameras.
@@ -172,11 +178,42 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
                                    : "the pose leaves residuals of up to %.3g px per coordinate";
     return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
         + format(left.c_str(), pairs ? std::sqrt(2.) * worst : worst) + " (" + listed(names) + "; status 9"
-        + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere) : ", large sx, sy, sz")
+        + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere)
+           : pairs ? ", large sx, sy, sz" : ", no sx, sy, sz")
         + "). "
         + (pairs ? "Check that left and right are not swapped, that the images of a pair are of one moment, and that no camera "
                    "and no window has moved since the calibration"
                  : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
+}
+
+bool mostContradict(const std::vector<Measurement>& results)
+{
+    int all = 0, wrong = 0;
+    for (const Measurement& m : results)
+    {
+        all += m.seenPoints();
+        wrong += m.inconsistent();
+    }
+    return 2 * wrong > all;
+}
+
+//! What lengths say that are far from the target's, or empty.
+std::string wrongLengths(const Target& target, const std::vector<Measurement>& results)
+{
+    const double FAR_OFF = 0.2;
+    double sum = 0;
+    int count = 0;
+    for (const Measurement& m : results)
+        for (const double ratio : lengthRatios(target, m.points))
+        {
+            sum += ratio;
+            ++count;
+        }
+    if (!count || std::abs(sum / count - 1) <= FAR_OFF)
+        return "";
+    return format("the distances between neighbouring points are on average %.3g times those of the target: is --square=%g "
+                  "right, in the unit of the calibration, and are images and calibration of the same cameras?", sum / count,
+                  target.square());
 }
 
 void sayNoisier(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights,
@@ -286,8 +323,7 @@ std::vector<Calibration> readOthers(const Options& options, const Calibration& c
 void printTable(const Options& options, const Calibration& calibration, const std::vector<Calibration>& others,
                 const Target& target, const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
-    // From the pose of a target of known shape, the distances come out as they went in.
-    const bool lengthsMeasured = !options.image2.empty() || !options.plane.empty();
+    const bool lengthsMeasured = options.lengthsMeasured();
     Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
                                                            "mean error", "largest"}
                                 : std::vector<std::string>{"", "points", "depth z", "mean sz"});
@@ -359,12 +395,15 @@ int main(int argc, char** argv)
                                                   "same cameras?" : contradiction);
         if (!contradiction.empty())
             command.warn(contradiction);
+        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target, results) : "";
+        if (!lengths.empty())
+            command.warn(lengths);
         sayNoisier(options, calibration, sights, results, command);
         sayUncovered(options, calibration, command);
         if (!options.out.empty())
             writeText(options.out, csvOf(sights, results));
         if (!command.quiet())
             printTable(options, calibration, others, target, sights, results);
-        return DONE;
+        return mostContradict(results) || !lengths.empty() ? LIMIT_NOT_MET : DONE;
     });
 }

@@ -27,7 +27,7 @@ namespace tools {
 enum ExitCode {
     DONE = 0,           //!< done and within limits
     CANNOT = 1,         //!< could not do it; one sentence on stderr says why and what to do
-    LIMIT_NOT_MET = 2   //!< done, but a limit that the caller set was not met
+    LIMIT_NOT_MET = 2   //!< done, but a limit that the caller set was not met, or the result is not to be trusted
 };
 
 //! Could not do it. what() is one sentence that says what is wrong and what to do.

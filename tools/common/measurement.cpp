@@ -161,6 +161,14 @@ int Measurement::inconsistent() const
     return (int)std::count(status.begin(), status.end(), INCONSISTENT);
 }
 
+int Measurement::seenPoints() const
+{
+    int count = 0;
+    for (size_t i = 0; i < pixels1.size(); ++i)
+        count += seen(pixels1[i]) && (pixels2.empty() || seen(pixels2[i]));
+    return count;
+}
+
 Measurement measureStereo(const Calibration& calibration, const std::vector<Point2d>& pixels1,
                           const std::vector<Point2d>& pixels2, double pixelSigma)
 {
@@ -221,6 +229,7 @@ void judgePose(double pixelSigma, Measurement& m)
     if (!(m.noise > (pixelSigma > 0 ? FEW * pixelSigma : GROSS_PIXELS)))
         return;
     std::fill(m.status.begin(), m.status.end(), INCONSISTENT);
+    std::fill(m.sigma.begin(), m.sigma.end(), Vec3d::all(NOT_KNOWN));     // residuals do not tell what a wrong model does
     m.worstMisfit = m.noise;
 }
 
@@ -312,17 +321,33 @@ double pixelSigmaOf(const Calibration& calibration)
     return rms >= 0 ? rms / std::sqrt(2.) : NOT_KNOWN;
 }
 
-std::vector<double> lengthErrors(const Target& target, const std::vector<Point3d>& points)
+//! Measured and true, of each pair of neighbours that was measured.
+static std::vector<std::pair<double, double>> lengthsOf(const Target& target, const std::vector<Point3d>& points)
 {
-    std::vector<double> errors;
+    std::vector<std::pair<double, double>> lengths;
     for (const auto& pair : target.neighbours())
     {
         const double measured = cv::norm(points[pair.second] - points[pair.first]);
         if (measured == measured)
-            errors.push_back(measured - cv::norm(target.objectPoints()[pair.second]
-                                                 - target.objectPoints()[pair.first]));
+            lengths.push_back({measured, cv::norm(target.objectPoints()[pair.second] - target.objectPoints()[pair.first])});
     }
+    return lengths;
+}
+
+std::vector<double> lengthErrors(const Target& target, const std::vector<Point3d>& points)
+{
+    std::vector<double> errors;
+    for (const auto& length : lengthsOf(target, points))
+        errors.push_back(length.first - length.second);
     return errors;
+}
+
+std::vector<double> lengthRatios(const Target& target, const std::vector<Point3d>& points)
+{
+    std::vector<double> ratios;
+    for (const auto& length : lengthsOf(target, points))
+        ratios.push_back(length.first / length.second);
+    return ratios;
 }
 
 } // namespace tools

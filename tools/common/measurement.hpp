@@ -22,6 +22,7 @@ struct Measurement
 
     int answers() const;                            //!< points that are not NaN
     int inconsistent() const;
+    int seenPoints() const;                         //!< that the image shows, or both
 };
 
 /* The uncertainty has two parts: pixelSigma, one standard deviation of each pixel coordinate, and the calibration's own
@@ -41,7 +42,7 @@ the calibration's covariance. Where it is not, sigma gets the misfit; beyond a f
 INCONSISTENT, and far beyond (20 of them, and 2 px at least) the point NaN. */
 void judgePartners(const Calibration& calibration, double pixelSigma, Measurement& measurement);
 
-//! The same of a target's pose: a pose that leaves large residuals makes all its points INCONSISTENT.
+//! The same of a target's pose: one that leaves large residuals makes all its points INCONSISTENT and their sigma NaN.
 void judgePose(double pixelSigma, Measurement& measurement);
 
 /** The points of a target of known shape, from its pose to camera 1. Residuals larger than pixelSigma take its place, and are
@@ -57,6 +58,9 @@ double pixelSigmaOf(const Calibration& calibration);
 
 //! Distances between neighbouring points, measured minus true.
 std::vector<double> lengthErrors(const Target& target, const std::vector<cv::Point3d>& points);
+
+//! Distances between neighbouring points, measured over true.
+std::vector<double> lengthRatios(const Target& target, const std::vector<cv::Point3d>& points);
 
 } // namespace tools
 
