@@ -164,6 +164,9 @@ TEST_CASE("refract_calib finds the normal from pairs and says how well", "[calib
     CHECK((int)file["image_width"] == IMAGE.width);
     CHECK((std::string)file["lens_model"] == "opencv");
     CHECK(file["covariance"].isMap());
+    CHECK((std::string)file["unit"] == "mm");
+    CHECK((double)file["target_square"] == SQUARE);
+    CHECK(mentions(r.out, "the square of 39 mm"));
     CHECK(mentions((std::string)file["command"], "--thickness=20"));
 
     CHECK(mentions(r.out, "+-"));

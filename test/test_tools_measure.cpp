@@ -277,6 +277,42 @@ TEST_CASE("refract_measure ends with 2 if most points contradict themselves", "[
     CHECK(readPointsCsv(readFile(folder / "points.csv")).size() == 30);
 }
 
+TEST_CASE("A board in another unit than the calibration's is refused", "[tools][measure][units]")
+{
+    const TemporaryFolder folder;
+    const std::string truth = readFile(STEREO + "/truth.yml"), document = "---\n";
+    std::string text = truth;
+    text.insert(text.find(document) + document.size(), "unit: mm\ntarget_square: 39.\n");
+    std::ofstream(folder / "calib.yml") << text;
+    const std::string images = " " + image("measure1/z600_1") + " " + image("measure2/z600_1")
+                               + " --size=6x5 --pixel-sigma=0.014";
+    const std::string measure = "refract_measure " + (folder / "calib.yml") + images;
+    const std::string check = "refract_check " + (folder / "calib.yml") + " --size=6x5 --pixel-sigma=0.014 --glass="
+                              + image("measure1/z600_1");
+    for (const std::string& tool : {measure, check})
+        for (const std::string square : {"0.039", "3.9", "1.535", "0.39"})
+        {
+            const ToolResult r = runTool(tool + " --square=" + square);
+            INFO(square << r.err);
+            CHECK(r.code == 1);
+            CHECK(mentions(r.err, "squares of 39 mm, this one " + square + ": another unit?"));
+            CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        }
+    const ToolResult same = runTool(measure + " --square=39"), inch = runTool(measure + " --square=1.535 --unit=inch");
+    CHECK(same.code == 0);
+    CHECK(inch.code == 1);
+    CHECK(mentions(inch.err, "in mm"));
+
+    // Ten times smaller indeed, says the caller; the lengths say that it is not.
+    const ToolResult said = runTool(measure + " --square=3.9 --unit=mm --out=" + (folder / "points.csv"));
+    INFO(said.out << said.err);
+    CHECK(said.code == 2);
+    CHECK(mentions(said.err, "on average 10 times those of the target"));
+    CHECK(readPointsCsv(readFile(folder / "points.csv")).size() == 30);
+    CHECK(runTool("refract_measure " + STEREO + "/truth.yml" + images + " --square=30").code == 2);      // 1.3 times
+    CHECK(runTool("refract_measure " + STEREO + "/truth.yml" + images + " --square=36").code == 0);      // 1.08 times
+}
+
 TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][measure]")
 {
     const TemporaryFolder folder;

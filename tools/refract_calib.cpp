@@ -32,6 +32,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "summary_json.hpp"
 #include "table.hpp"
 #include "thumbnails.hpp"
+#include "units.hpp"
 #include <iostream>
 #include <map>
 #include <regex>
@@ -125,7 +126,7 @@ Options parseOptions(Command& command)
         "do not calibrate again on parts of the views");
     app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "use all points as they are; by default wrong points and "
         "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
-    app.add_option("--unit", o.unit, "unit of --square and all lengths")->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+    app.add_option("--unit", o.unit, "unit of --square and all lengths")->check(CLI::IsMember(unitNames()))
         ->capture_default_str();
     app.add_option("--serial", o.label.serial, "serial number of the window, carried into all outputs");
     app.add_option("--note", notes, "repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
@@ -256,6 +257,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     c.limits = o.limits;
     c.label = o.label;
     c.unit = o.unit;
+    c.square = target.square();
     for (int k = 0; k < 2; k++)
         if (!o.camera[k].empty())
         {

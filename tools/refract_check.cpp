@@ -18,6 +18,7 @@ not show a tilt of --detect degrees with a probability of 95 %.)";
 #include "measurement.hpp"
 #include "outputs.hpp"
 #include "table.hpp"
+#include "units.hpp"
 #include "window_check.hpp"
 #include <nlohmann/json.hpp>
 #include <algorithm>
@@ -34,7 +35,7 @@ const double EXACT = 1e8;               // degrees of freedom of a noise level t
 
 struct Options
 {
-    std::string calibration, imageSize, summary;
+    std::string calibration, imageSize, summary, unit;
     RigSources images;
     TargetOptions target;
     double falseAlarm = 0.01, detect = 0.1, sigma = 0.;
@@ -44,6 +45,8 @@ void addOptions(CLI::App& app, Options& o)
 {
     app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
     o.target.addTo(app, true);
+    app.add_option("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")
+        ->check(CLI::IsMember(unitNames()));
     app.add_option("--glass", o.images.glass[0], "new images through the window: glob or corners.vnl")->required();
     app.add_option("--direct", o.images.direct[0], "new images without the window");
     CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "the same of camera 2");
@@ -216,6 +219,7 @@ int main(int argc, char** argv)
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, false, "");
+        requireSameUnit(calibration, target.square(), options.unit);
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}},
                      {options.calibration, options.images.glass[0], options.images.glass[1], options.images.direct[0],
                       options.images.direct[1]});

@@ -2,6 +2,7 @@
 #include "measurement.hpp"
 #include "outputs.hpp"
 #include "table.hpp"
+#include "units.hpp"
 #include "views.hpp"
 
 #include <cmath>
@@ -42,6 +43,8 @@ struct Options
     TargetOptions target;
     double pixelSigma = 0.;
     bool compare = false, noWindow = false;
+    std::string unit;
+
     //! From the pose of a target of known shape, the distances come out as they went in.
     bool lengthsMeasured() const { return !image2.empty() || !plane.empty(); }
 };
@@ -346,6 +349,8 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("IMAGE", options.image1, "of camera 1")->required();
     app.add_option("IMAGE2", options.image2, "of camera 2");
     options.target.addTo(app, true);
+    app.add_option("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
+        ->check(CLI::IsMember(unitNames()));
     app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
     app.add_option("--out", options.out, "points.csv to write");
     app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
@@ -378,6 +383,7 @@ int main(int argc, char** argv)
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
+        requireSameUnit(calibration, target.square(), options.unit);
         checkCombination(options, calibration);
         std::vector<std::string> inputs = {options.calibration, options.image1, options.image2};
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());

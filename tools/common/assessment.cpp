@@ -1,5 +1,5 @@
 #include "assessment.hpp"
-#include <map>
+#include "units.hpp"
 
 using namespace cv;
 
@@ -8,12 +8,6 @@ namespace tools {
 namespace {
 
 const int COLUMNS = 25;         // of the maps
-
-double millimetresIn(const std::string& unit)
-{
-    static const std::map<std::string, double> MILLIMETRES = {{"mm", 1.}, {"cm", 10.}, {"m", 1000.}, {"inch", 25.4}};
-    return MILLIMETRES.at(unit);
-}
 
 } // namespace
 

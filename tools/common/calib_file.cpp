@@ -258,6 +258,9 @@ Calibration readCalibration(const std::string& filename)
     requireCovarianceOf(calibration, filename);
     calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
     calibration.freedom = readNotNegative(fs, "degrees_of_freedom", 0., filename);
+    if (fs["unit"].isString())
+        fs["unit"] >> calibration.unit;
+    calibration.square = readNumber(fs["target_square"], 0.);
     calibration.label = readLabel(fs);
     if (fs["calibration_time"].isString())
         fs["calibration_time"] >> calibration.time;
@@ -292,6 +295,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
     fs << "command" << calibration.command << "refract_version" << REFRACT_VERSION << "opencv_version" << CV_VERSION
        << "calibration_time" << calibration.time;
     writeLabel(fs, calibration.label);
+    if (calibration.square > 0)
+        fs << "unit" << calibration.unit << "target_square" << calibration.square;
     if (calibration.stereo())
     {
         for (int i = 0; i < 2; ++i)

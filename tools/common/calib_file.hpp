@@ -10,8 +10,8 @@
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
 thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
-rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom,
-window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
+board), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 //! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
@@ -48,6 +48,8 @@ struct Calibration
     cv::Mat covariance;     //!< of calibrateGlass or stereoCalibrateGlass, in their order; empty where unknown
     double sigma = -1.;     //!< standard deviation of a pixel coordinate, from the residuals; negative where unknown
     double freedom = 0.;    //!< degrees of freedom of those residuals; 0 where unknown
+    std::string unit;       //!< of length; empty where unknown
+    double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()

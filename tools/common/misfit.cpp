@@ -1,4 +1,5 @@
 #include "misfit.hpp"
+#include "units.hpp"
 #include "table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -97,15 +98,6 @@ GlassWindow onePane(const GlassWindow& window)
     return pane;
 }
 
-std::string unitHint(double ratio)
-{
-    for (double unit : {10., 25.4, 1000., 2.54, 100.})
-        for (double r : {ratio, 1. / ratio})
-            if (std::abs(r / unit - 1.) < 0.05)
-                return " (a wrong unit?)";
-    return "";
-}
-
 //! Pairs show the thickness in squares: only the ratio of the two.
 Explanation wrongScale(const Given& given)
 {
@@ -129,7 +121,7 @@ Explanation wrongScale(const Given& given)
         ratio = rig.cameras[0]->window().thickness[0] / pane.thickness[0];
     }
     std::string sentence = format("--square=%.3g in place of %.4g%s", given.square / ratio, given.square,
-                                  unitHint(ratio).c_str());
+                                  isRatioOfUnits(ratio) ? " (a wrong unit?)" : "");
     if (given.options.window.thickness.size() == 1)
     {
         sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0] * ratio, pane.thickness[0]);

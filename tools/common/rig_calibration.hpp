@@ -51,6 +51,7 @@ struct RigCalibration
     Limits limits;
     Label label;
     std::string unit = "mm";                    //!< of length
+    double square = 0.;                         //!< side of a square of the board, as given
 };
 
 struct Rms

@@ -267,6 +267,8 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     file.sigma = c.fit.sigma;
     file.freedom = c.fit.freedom;
     file.covariance = c.fit.covariance;
+    file.unit = c.unit;
+    file.square = c.square;
     file.label = c.label;
     file.command = command;
     file.time = timeOfFiles(c.inputs);

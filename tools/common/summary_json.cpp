@@ -188,6 +188,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         {"window_serial", c.label.serial},
         {"notes", notes},
         {"unit", c.unit},
+        {"square", c.square},
         {"held_out", heldOutJson(c.heldOut)},
         {"near_far", nearFarJson(c.nearFar)},
         {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.freedom}}}};
