@@ -599,7 +599,7 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     CHECK(json["held_out"]["views_without_result"] == 0);
     CHECK(json["held_out"]["length_rms"].get<double>() < 0.1);
     CHECK(json["fit"]["sigma_px"].get<double>() == Approx(SIGMA).epsilon(0.1));
-    REQUIRE(json["tolerances"].size() == 7);
+    REQUIRE(json["tolerances"].size() == 9);
     for (const auto& t : json["tolerances"])
         CHECK(t["point_worst"].get<double>() >= t["point_rms"].get<double>());
     // What is predicted is better than what is, and a pair better than one image of it.

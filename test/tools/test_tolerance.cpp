@@ -42,8 +42,8 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
     const Rig rig = paperRig(1);
     const RigCalibration still = calibrated(rig, Vec3d());
     const std::vector<Tolerance> tolerances = analyseTolerances(still, 1., true);
-    REQUIRE(tolerances.size() == 4);
-    const Tolerance& nudge = tolerances.back();
+    REQUIRE(tolerances.size() == 6);
+    const Tolerance& nudge = tolerances[3];
     CHECK_THAT(nudge.what, Catch::Contains("moved by 0.1 mm"));
     REQUIRE(nudge.done);
 
@@ -68,5 +68,58 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
     RigCalibration glassOnly = still;
     for (Moment& m : glassOnly.data.moments)
         m.direct[0].clear();
-    CHECK(analyseTolerances(glassOnly, 1., true).size() == 3);
+    CHECK(analyseTolerances(glassOnly, 1., true).size() == 5);
+}
+
+TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
+{
+    const Rig rig = paperRig(2);
+    RigCalibration right;
+    right.data.cameraCount = 2;
+    right.data.objectPoints = board(6, 5);
+    right.data.imageSize[0] = right.data.imageSize[1] = Size(1280, 1024);
+    std::vector<Point3d> bent = right.data.objectPoints;        // as seen: 0.1 mm from corner to middle
+    for (Point3d& X : bent)
+        X.z = 0.1 * (1. - (X.x * X.x + X.y * X.y) / (97.5 * 97.5 + 78. * 78.));
+    RigData ofBent = right.data;
+    scenes::Random random(1020);
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        const Vec3d rvec = random.vector(0.4);
+        right.data.moments.push_back(observe(rig, right.data.objectPoints, rvec, tvec, true, 0., random));
+        ofBent.moments.push_back(observe(rig, bent, rvec, tvec, true, 0., random));
+    }
+    right.start = rig;
+    right.lensSources.resize(2);
+    right.fit = fitRig(right.data, rig, allMoments(right.data), 0);
+    right.residuals = residualsOf(right.data, right.fit);
+    const std::vector<Tolerance> tolerances = analyseTolerances(right, 1., true);
+    REQUIRE(tolerances.size() >= 2);
+    const Tolerance &square = tolerances[tolerances.size() - 2], &bow = tolerances.back();
+    CHECK(square.what == "square wrong by 0.1 %");
+    CHECK(bow.what == "board bent by 0.1 mm");
+    REQUIRE((square.done && bow.done));
+
+    // Two cameras measure all lengths by the square.
+    CHECK(square.lengths == Approx(1e-3).epsilon(0.1));
+    CHECK(square.rms == Approx(0.6).epsilon(0.2));
+
+    // A calibration of images of a bent board, taken for flat.
+    const Rig found = fitRig(ofBent, rig, allMoments(ofBent), 0).rig;
+    double worst = 0.;
+    for (const Point3d& X : {Point3d(0, 0, 600), Point3d(60, 40, 650), Point3d(-60, -40, 560), Point3d(50, -60, 610)})
+    {
+        std::vector<Point2d> seen[2];
+        Vec3d rvec;
+        Rodrigues(rig.R, rvec);
+        refractiveProjectPoints(std::vector<Point3d>{X}, Vec3d(), Vec3d(), rig.cameras[0], seen[0]);
+        refractiveProjectPoints(std::vector<Point3d>{X}, rvec, rig.T, rig.cameras[1], seen[1]);
+        std::vector<Point3d> point;
+        triangulateRefractive(found.cameras[0], found.cameras[1], found.R, found.T, seen[0], seen[1], point);
+        worst = std::max(worst, norm(point[0] - X));
+    }
+    CAPTURE(worst, bow.rms, bow.worst, bow.lengths);
+    CHECK(worst > 0.5 * bow.rms);
+    CHECK(worst < 1.2 * bow.worst);
 }

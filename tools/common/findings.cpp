@@ -226,6 +226,8 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
             f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
+    f.assumed.push_back(format("the square of %g %s: all lengths are in proportion to it, and no image shows it", c.square,
+                               c.unit.c_str()));
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.thicknessStd == 0.)
         f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "

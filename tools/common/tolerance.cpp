@@ -20,6 +20,8 @@ const double THICKNESS_MM = 0.1;
 const double INDEX = 0.001;
 const double ARC_MINUTE = CV_PI / 180. / 60.;
 const double NUDGE_MM = 0.1;
+const double SQUARE = 0.001;            // share of it
+const double BOW_MM = 0.1;
 const int GRID_COLUMNS = 9;
 
 //! One cause: the wrong values that are calibrated with, and how it bends the images (empty: not at all).
@@ -30,6 +32,7 @@ struct Cause
     std::function<void(GlassWindow&)> spoil;
     std::vector<Vec3d> tilts;           //!< of the outer surface, each tried on its own, in the frame of its camera
     bool nudge = false;                 //!< they are not tilts but shifts of the boards seen through the window, camera 1
+    std::function<void(std::vector<Point3d>&)> deform = nullptr;        //!< the board that is seen
 
     bool concerns(int k) const { return camera < 0 || camera == k; }
 };
@@ -138,11 +141,38 @@ RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
     return data;
 }
 
+//! The observations as they would be of another board than is taken for given.
+RigData deformedData(const RigCalibration& c, const Cause& cause)
+{
+    RigData data = c.data;
+    std::vector<Point3d> board = data.objectPoints;
+    cause.deform(board);
+    for (size_t k = 0; k < c.fit.moments.size(); k++)
+        for (int camera = 0; camera < data.cameraCount; camera++)
+            for (bool glass : {false, true})
+            {
+                Moment& m = data.moments[c.fit.moments[k]];
+                std::vector<Point2d>& pixels = (glass ? m.glass : m.direct)[camera];
+                const Ptr<RefractiveCamera> in = c.fit.rig.cameras[camera];
+                const Ptr<RefractiveCamera> by = glass ? in : withWindow(in, GlassWindow());
+                Vec3d rvec, tvec;
+                poseInCamera(c.fit, k, camera, rvec, tvec);
+                std::vector<Point2d> before, after;
+                refractiveProjectPoints(data.objectPoints, rvec, tvec, by, before);
+                refractiveProjectPoints(board, rvec, tvec, by, after);
+                for (size_t i = 0; i < pixels.size(); i++)
+                    pixels[i] += after[i] - before[i];
+            }
+    return data;
+}
+
 //! The observations as they would be through a wedge.
 RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
 {
     if (cause.nudge)
         return nudgedData(c, tilt);
+    if (cause.deform)
+        return deformedData(c, cause);
     RigData data = c.data;
     for (size_t k = 0; k < c.fit.moments.size(); k++)
     {
@@ -201,6 +231,31 @@ Tolerance summarise(const Cause& cause, const Volume& volume, const std::vector<
     return result;
 }
 
+//! The middle of a board rises, its farthest points stay.
+void bow(std::vector<Point3d>& board, double height)
+{
+    Point3d middle;
+    for (const Point3d& X : board)
+        middle += X * (1. / board.size());
+    double farthest = 0.;
+    for (const Point3d& X : board)
+        farthest = std::max(farthest, norm(X - middle));
+    for (Point3d& X : board)
+        X.z += height * (1. - std::pow(norm(X - middle) / farthest, 2));
+}
+
+//! What no image shows of the board itself, which is calibrated with as given.
+std::vector<Cause> causesOfBoard(double millimetre)
+{
+    const auto scale = [](std::vector<Point3d>& board) {
+        for (Point3d& X : board)
+            X *= 1. + SQUARE;
+    };
+    const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM * millimetre); };
+    return {{"square wrong by 0.1 %", -1, nullptr, {Vec3d()}, false, scale},
+            {"board bent by 0.1 mm", -1, nullptr, {Vec3d()}, false, bend}};
+}
+
 std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
 {
     std::vector<Cause> causes;
@@ -236,6 +291,8 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
     if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))
         causes.push_back({"index of the scene's medium wrong by 0.001", -1, [](GlassWindow& w) { w.outerIndex += INDEX; },
                           {Vec3d()}});
+    for (const Cause& cause : causesOfBoard(millimetre))
+        causes.push_back(cause);
     return causes;
 }
 
