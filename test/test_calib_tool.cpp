@@ -205,6 +205,35 @@ TEST_CASE("refract_calib ends with 2 if a limit is not met, and still writes the
     CHECK(runTool(inputs(f, PANE + lens(f) + " --max-rms=0.2 --max-normal-std=0.1")).code == 0);
 }
 
+TEST_CASE("refract_calib is not plainly good if no board could check the +-", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    const struct { int pairs; std::string options, why; } cases[] = {
+        {10, " --lens=opencv4", ""},
+        {10, lens(f), "below the noise of the pixels"},     // with a known lens ten pairs leave little to see
+        {10, lens(f) + " --no-cross-validation", "with --no-cross-validation all boards took part"}};
+    for (const auto& c : cases)
+    {
+        SceneOptions options;
+        options.moments = c.pairs;
+        writeScene(f, options, 117);
+        const ToolResult r = runTool(inputs(f, PANE + c.options + " --summary=" + f / "summary.json"));
+        INFO(r.out << r.err);
+        REQUIRE(r.code == 0);
+        const nlohmann::json json = nlohmann::json::parse(readFile(f / "summary.json"));
+        CHECK(json["not_checked"].is_null() == c.why.empty());
+        if (c.why.empty())
+        {
+            CHECK(json["held_out"]["error_over_stated"].is_number());
+            continue;
+        }
+        CHECK(mentions(json["not_checked"], c.why));
+        CHECK(mentions(json["verdict"], "Good, but not checked: "));
+        CHECK(mentions(json["verdict"], c.why));
+        CHECK(mentions(r.out, "whether the stated +- is true: "));
+    }
+}
+
 TEST_CASE("refract_calib says what glass-only views cannot tell", "[calib_tool]")
 {
     const TemporaryFolder f;

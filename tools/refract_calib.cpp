@@ -258,6 +258,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     c.label = o.label;
     c.unit = o.unit;
     c.square = target.square();
+    c.crossValidated = o.crossValidation;
     for (int k = 0; k < 2; k++)
         if (!o.camera[k].empty())
         {

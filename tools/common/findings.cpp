@@ -206,12 +206,31 @@ bool isLensFree(const RigCalibration& c, int camera)
     return c.fit.stdDeviations.at<double>(at.lens) > 0.;
 }
 
+std::string whyNotChecked(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    if (h.misfit.directions)
+        return "";
+    if (!c.crossValidated)
+        return "with --no-cross-validation all boards took part";
+    if (!h.folds)
+        return "there are too few images through the window to hold any out";
+    if (h.failed == h.views || !(h.misfit.expectedSquares > 0))
+        return "without the boards held out the others do not determine the calibration";
+    return "on the held-out boards the calibration's stated error is below the noise of the pixels, so they cannot show "
+           "whether it is true";
+}
+
 //! Boards that took no part against what was stated of them.
 void judgeHeldOut(const RigCalibration& c, Findings& f)
 {
     const Misfit& m = c.heldOut.misfit;
-    if (m.directions == 0)
+    f.notChecked = whyNotChecked(c);
+    if (!f.notChecked.empty())
+    {
+        f.cannotTell.push_back("whether the stated +- is true: " + f.notChecked);
         return;
+    }
     const double perDirection = m.chiSquare / m.directions;
     // The folds share most of their images: as if there were only one.
     const int pairsOfDirections = std::max(1, m.directions / c.heldOut.folds / 2);
@@ -282,7 +301,9 @@ std::string Findings::verdict() const
         return pass() ? "PASS" : "FAIL";
     if (!contradictions.empty())
         return "Not usable: the images contradict what was given";
-    return weak.empty() ? "Good" : "Look at the weak points";
+    if (!weak.empty())
+        return "Look at the weak points";
+    return notChecked.empty() ? "Good" : "Good, but not checked: " + notChecked;
 }
 
 Findings judge(const RigCalibration& calibration, const Assessment& assessment)

@@ -24,6 +24,7 @@ struct Findings
     std::vector<std::string> weak;          //!< to be mended, and how
     std::vector<std::string> cannotTell;    //!< what these data do not say
     std::vector<std::string> assumed;       //!< taken as given
+    std::string notChecked;                 //!< why no held-out board says whether the +- is true; empty: they do
 
     bool pass() const;              //!< all limits are met
     std::string verdict() const;    //!< PASS or FAIL where there are limits, otherwise in words

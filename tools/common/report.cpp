@@ -60,7 +60,8 @@ std::string headline(const RigCalibration& c)
 void setVerdict(data& page, const RigCalibration& c, const Findings& f)
 {
     page.set("verdict", f.verdict());
-    page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || f.weak.empty() ? "good" : "weak");
+    page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || (f.weak.empty() && f.notChecked.empty()) ? "good"
+                              : "weak");
     std::string windows;
     for (int k = 0; k < c.data.cameraCount; k++)
     {

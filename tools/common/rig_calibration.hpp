@@ -42,6 +42,7 @@ struct RigCalibration
     Baselines baselines;
     HeldOut heldOut;
     NearFar nearFar;
+    bool crossValidated = true;                 //!< false: heldOut and nearFar were not wanted
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
     std::vector<Photo> photos;

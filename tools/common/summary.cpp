@@ -159,8 +159,9 @@ std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
     }
     if (!std::isnan(h.transferPx))
         add("  board where its direct image is, px", px(h.transferPx), "-");
-    if (h.misfit.directions)
-        add("  error over stated (1: as stated)", format("%.2f", h.misfit.calibrationRatio()), "-");
+    if (h.folds)
+        add("  error over stated (1: as stated)",
+            h.misfit.directions ? format("%.2f", h.misfit.calibrationRatio()) : std::string("not known"), "-");
     if (!std::isnan(h.lengthRms))
         add("lengths between corners, RMS, " + c.unit, format("%.3g", h.lengthRms),
             std::isnan(h.pinholeLengthRms) ? "-" : format("%.3g", h.pinholeLengthRms));

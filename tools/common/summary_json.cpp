@@ -190,6 +190,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         {"unit", c.unit},
         {"square", c.square},
         {"held_out", heldOutJson(c.heldOut)},
+        {"not_checked", findings.notChecked.empty() ? Json() : Json(findings.notChecked)},
         {"near_far", nearFarJson(c.nearFar)},
         {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.freedom}}}};
     Json cameras = Json::array();
