@@ -117,7 +117,8 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
     return wrong;
 }
 
-WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start, std::vector<LensSource>& lensSources)
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+                                    std::vector<LensSource>& lensSources)
 {
     const int MOST_ROUNDS = 5;
     const RigData all = data;

@@ -32,7 +32,8 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags);
 /** The same where the start comes from the data too: wrong points are in its lens, and so in what seems wrong. They are looked
 for again in all the data, from the start that the others give, until the same ones are wrong.
 @param start, lensSources result: as of startRig from what is left */
-WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start, std::vector<LensSource>& lensSources);
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+                                    std::vector<LensSource>& lensSources);
 
 } // namespace tools
 

@@ -94,7 +94,8 @@ void RigProblem::addBlock(RigBlock::Kind kind, int camera, int first, const std:
     const int size = (int)isFree.size();
     const bool isPlace = kind == RigBlock::EXTRINSICS;
     const std::array<double, 6> place = sixOf(rig_.extrinsics[camera]);
-    const std::vector<double> all = isPlace ? std::vector<double>(place.begin(), place.end()) : rig_.cameras[camera].parameters();
+    const std::vector<double> all = isPlace ? std::vector<double>(place.begin(), place.end())
+                                            : rig_.cameras[camera].parameters();
     const std::vector<String> names = isPlace ? std::vector<String>{ "R", "R", "R", "T", "T", "T" }
                                               : rig_.cameras[camera].parameterNames();
     CV_Assert(values_.size() + size <= values_.capacity());
