@@ -444,6 +444,22 @@ TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
             print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
 }
 
+TEST_CASE("All views of a sealed camera decide which of its minima is the best, and tell of the other", "[honesty]")
+{
+    const Setup setup{Flow::SEALED, Medium::AIR, 1};
+    const Rig truth = trueRig(setup);
+    scenes::Random random(9037);        // ten of its views have their least error with the window tilted the other way
+    const Images images = takeImages(truth, setup, random);
+    const Fit fit = calibrate(images, setup, truth, random);
+    const Vec3d found = fit.rig.cameras[0]->window().normal, other(fit.otherMinima.ptr<double>());
+    const int at = columnsOf(fit.rig, 0).normal;
+    const double sigma = std::sqrt(trace(fit.covariance(Rect(at, at, 3, 3)))[0]);
+    CHECK(norm(found - truth.cameras[0]->window().normal) < 3. * sigma);
+    CHECK(norm(other - found) > 0.3);
+    CHECK(fit.otherMinima.at<double>(3) > 3.);      // excluded, by all views
+    CHECK(fit.otherMinima.at<double>(3) < 10.);
+}
+
 TEST_CASE("Boards that took no part are as far off as stated, and the check sees where they are not", "[honesty][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';

@@ -56,14 +56,19 @@ std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int 
     const double excess = row.at<double>(3);
     if (std::isnan(excess))
         return std::nullopt;
-    // The search that knows of it had the images of one camera, that with most points, and their poses and the normal to fit.
+    const Vec3d normal(row.ptr<double>());
+    const auto rmsWith = [&](double rms, double freedom) { return rms * std::sqrt(1. + excess * excess / freedom); };
+    // The search that knows of it had all images where none is direct;
+    const Fit& fit = calibration.fit;
+    if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
+        return OtherMinimum{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
+    // else those of one camera, that with most points, and their poses and the normal to fit.
     Rms seen = rmsOf(calibration, camera, true);
     if (calibration.options.flags & GLASS_SHARED_WINDOW)
         for (int other = 0; other < calibration.data.cameraCount; other++)
             if (rmsOf(calibration, other, true).points > seen.points)
                 seen = rmsOf(calibration, other, true);
-    const double freedom = 2. * seen.points - 6. * seen.views - 2.;
-    return OtherMinimum{Vec3d(row.ptr<double>()), excess, seen.px * std::sqrt(1. + excess * excess / freedom), seen.px};
+    return OtherMinimum{normal, excess, rmsWith(seen.px, 2. * seen.points - 6. * seen.views - 2.), seen.px};
 }
 
 double coverage(const RigCalibration& calibration, int camera)

@@ -586,7 +586,7 @@ none or it was left out.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
 where there is no image.
-@param otherMinima Cx4 CV_64F: where a window starts from images through it alone, the normal (3) of the second best
+@param otherMinima Cx4 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
 minimum and how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel.
 Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found. The row,
 and the frame of the normal, is the first camera's of the window.

@@ -116,26 +116,34 @@ void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigT
         }
 }
 
+Mat toMat(const std::vector<OtherMinimum>& minima)
+{
+    Mat_<double> rows((int)minima.size(), 4);
+    for (int c = 0; c < rows.rows; c++)
+    {
+        Mat(minima[c].normal.t()).copyTo(rows(Rect(0, c, 3, 1)));
+        rows(c, 3) = minima[c].excess;
+    }
+    return rows;
+}
+
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
 RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
 {
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
     RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
-    const std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
+    std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
     addPosesThroughWindow(start.rig, views, start.poses);
     keepGivenNormals(rig, views, start.poses, start.rig);
-    fit.otherMinima.create(rig.count(), 4, CV_64F);
-    for (int c = 0; c < rig.count(); c++)
-    {
-        Mat(minima[c].normal.t()).copyTo(fit.otherMinima(Rect(0, c, 3, 1)));
-        fit.otherMinima.at<double>(c, 3) = minima[c].excess;
-    }
     if (isRobust)
         dropUnusable(views, start.poses, task);
     else
         checkPoses(views, start.poses);
-    return isSealed(task) ? bestSealedStart(start, views, task) : start;
+    if (isSealed(task))
+        start = bestSealedStart(start, views, task, minima);
+    fit.otherMinima = toMat(minima);
+    return start;
 }
 
 } // namespace

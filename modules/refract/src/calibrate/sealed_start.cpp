@@ -9,11 +9,15 @@ namespace cv { namespace refract {
 namespace {
 
 const int FEW_VIEWS = 6, MORE_VIEWS = 10;
-const int FEW_ITERATIONS = 20, MORE_ITERATIONS = 100;
+const int BOTH = TermCriteria::COUNT + TermCriteria::EPS;
+const TermCriteria FIRST_LOOK(BOTH, 20, 1e-8), SECOND_LOOK(BOTH, 100, 1e-8), TO_THE_END(BOTH, 1000, 1e-12);
 const size_t FINALISTS = 6;
 const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
+// Windows that differ by less are one minimum: radians, part of the distance.
+const double SAME_ANGLE = 0.01, SAME_DISTANCE = 0.05;
+const double PLAUSIBLE = 10;    // standard deviations that some views leave a minimum behind the best
 
 //! So many of the views, evenly.
 std::vector<int> someOf(const RigStart& start, int atMost)
@@ -111,40 +115,108 @@ std::vector<Rig> tilted(const std::vector<Rig>& rigs, int owner)
     return all;
 }
 
-//! What a fit of so many iterations leaves of some views; infinite where a point has no image. rig is start and result.
-double fitSome(Rig& rig, const RigViews& views, int iterations, int flags)
+//! A fit to some views, and what it leaves.
+struct Trial
 {
+    Rig rig;
+    double cost;            //!< infinite where a point has no image
+    int freedom;
+    bool converged;
+    bool operator<(const Trial& other) const { return cost < other.cost; }
+};
+
+Trial fitSome(const Rig& rig, const RigViews& views, const TermCriteria& criteria, int flags)
+{
+    const Trial failure = { rig, std::numeric_limits<double>::infinity(), 0, false };
     try
     {
         std::vector<Pose> poses(views.count());
         addPosesThroughWindow(rig, views, poses);
         checkPoses(views, poses);
         RigProblem problem(rig, views, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
-        problem.solve(TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-8));
-        rig = problem.rig();
-        const double cost = problem.squaredError();
-        return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();     // it is sorted by
+        const bool converged = problem.solve(criteria);
+        const Trial trial = { problem.rig(), problem.squaredError(), problem.freedom(), converged };
+        return std::isfinite(trial.cost) ? trial : failure;     // it is sorted by
     }
     catch (const cv::Exception&)
     {
-        return std::numeric_limits<double>::infinity();
+        return failure;
     }
 }
 
-//! The starts, as they are, whose fits are the best after so many iterations; the best first.
-std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, int iterations, int flags)
+//! The best first; of two that end alike the first.
+std::vector<Trial> fitEach(const std::vector<Rig>& starts, const RigViews& views, const TermCriteria& criteria, int flags)
+{
+    std::vector<Trial> trials;
+    for (const Rig& start : starts)
+        trials.push_back(fitSome(start, views, criteria, flags));
+    std::stable_sort(trials.begin(), trials.end());
+    return trials;
+}
+
+//! The starts, as they are, whose fits are the best so far; the best first.
+std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     std::vector<std::pair<double, size_t> > costs;
     for (size_t i = 0; i < starts.size(); i++)
-    {
-        Rig rig = starts[i];
-        costs.push_back(std::make_pair(fitSome(rig, views, iterations, flags), i));
-    }
+        costs.push_back(std::make_pair(fitSome(starts[i], views, criteria, flags).cost, i));
     std::sort(costs.begin(), costs.end());
     std::vector<Rig> best;
     for (size_t i = 0; i < std::min(atMost, costs.size()); i++)
         best.push_back(starts[costs[i].second]);
     return best;
+}
+
+//! Standard deviations of a pixel by which the second is worse.
+double excessOf(const Trial& best, const Trial& other)
+{
+    return std::sqrt((other.cost - best.cost)*best.freedom/std::max(best.cost, DBL_MIN));
+}
+
+double angleOfNormals(const Rig& a, const Rig& b, int c)
+{
+    const Vec3d p = a.cameras[c].layers().normal(), q = b.cameras[c].layers().normal();
+    return std::atan2(norm(p.cross(q)), p.dot(q));
+}
+
+bool areSame(const Rig& a, const Rig& b)
+{
+    for (int c = 0; c < a.count(); c++)
+    {
+        const double distance = a.cameras[c].window().distance;
+        if (angleOfNormals(a, b, c) > SAME_ANGLE ||
+            std::abs(distance - b.cameras[c].window().distance) > SAME_DISTANCE*distance)
+            return false;
+    }
+    return true;
+}
+
+//! One of each minimum that could still be the best where all views count.
+std::vector<Rig> plausibleMinima(const std::vector<Trial>& sorted)
+{
+    std::vector<Rig> minima;
+    for (const Trial& trial : sorted)
+        if (std::isfinite(trial.cost) && excessOf(sorted[0], trial) < PLAUSIBLE &&
+            std::none_of(minima.begin(), minima.end(), [&](const Rig& m) { return areSame(m, trial.rig); }))
+            minima.push_back(trial.rig);
+    return minima;
+}
+
+//! The second best minimum, for the windows that it has elsewhere.
+void describeOther(const std::vector<Trial>& sorted, std::vector<OtherMinimum>& others)
+{
+    for (const Trial& trial : sorted)
+    {
+        if (!trial.converged || areSame(sorted[0].rig, trial.rig))
+            continue;
+        for (int c = 0; c < trial.rig.count(); c++)
+            if (trial.rig.owns(c) && angleOfNormals(sorted[0].rig, trial.rig, c) > SAME_ANGLE)
+            {
+                others[c].normal = trial.rig.cameras[c].layers().normal();
+                others[c].excess = excessOf(sorted[0], trial);
+            }
+        return;
+    }
 }
 
 } // namespace
@@ -159,16 +231,22 @@ bool isSealed(const RigTask& task)
     return !tellsMore && (task.flags & GLASS_FREE_INTRINSICS);
 }
 
-RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task)
+RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task,
+                         std::vector<OtherMinimum>& others)
 {
     const RigViews few = pick(views, someOf(given, FEW_VIEWS)), more = pick(views, someOf(given, MORE_VIEWS));
+    const RigViews all = pick(views, someOf(given, views.count()));
     std::vector<Rig> starts = untilted(given, task.flags);
     for (int owner = 0; owner < given.rig.count(); owner++)
         if (given.rig.owns(owner))
-            starts = bestStarts(tilted(starts, owner), FINALISTS, few, FEW_ITERATIONS, task.flags);
-    Rig best = bestStarts(starts, 1, more, MORE_ITERATIONS, task.flags)[0];
-    fitSome(best, more, MORE_ITERATIONS, task.flags);
-    RigStart start = { best, std::vector<Pose>(views.count()) };
+            starts = bestStarts(tilted(starts, owner), FINALISTS, few, FIRST_LOOK, task.flags);
+    starts = plausibleMinima(fitEach(starts, more, SECOND_LOOK, task.flags));
+    // Some views may have their least cost in another minimum than all have.
+    const std::vector<Trial> minima = fitEach(starts, all, TO_THE_END, task.flags);
+    if (minima.empty() || !std::isfinite(minima[0].cost))
+        return given;
+    describeOther(minima, others);
+    RigStart start = { minima[0].rig, std::vector<Pose>(views.count()) };
     addPosesThroughWindow(start.rig, views, start.poses);
     for (int view = 0; view < views.count(); view++)
         if (!start.poses[view].found && given.poses[view].found)

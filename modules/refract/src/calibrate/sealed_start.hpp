@@ -15,8 +15,10 @@ bool isSealed(const RigTask& task);
 
 /** A sealed rig's cost has more than one minimum: distance against focal length, tilt against principal point and tangential
 distortion. Some views are fitted a little from several lenses and distances, and from tilts of one window after the other;
-the start is what the best of these lead to. */
-RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task);
+the start is the best of the minima that these lead to when all views count.
+@param others one per camera; the second best of these minima */
+RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task,
+                         std::vector<OtherMinimum>& others);
 
 }} // namespace
 
