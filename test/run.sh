@@ -19,7 +19,7 @@ build() {   # build DIRECTORY OPTIONS...
   cmake --build "$directory"
 }
 
-passed=0; failed=0; skipped=0
+passed=0; failed=0; skipped=0; failures=""
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
   name=$1; shift
   code=0
@@ -27,7 +27,7 @@ run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
   case $code in
     0) passed=$((passed + 1)); echo "passed: $name" ;;
     77) skipped=$((skipped + 1)); echo "skipped: $name" ;;
-    *) failed=$((failed + 1)); echo "FAILED: $name" ;;
+    *) failed=$((failed + 1)); failures="$failures; $name"; echo "FAILED: $name" ;;
   esac
 }
 suites=""
@@ -45,8 +45,9 @@ count_suites() {    # waits for all suites, shows what they printed, counts thei
     p=$(sed -n 's/^All tests passed .* in \([0-9]*\) test case.*/\1/p; s/^test cases:.*| *\([0-9]*\) passed.*/\1/p' "$log")
     f=$(sed -n 's/^test cases:.*| *\([0-9]*\) failed.*/\1/p' "$log")
     passed=$((passed + ${p:-0})); failed=$((failed + ${f:-0}))
+    [ -z "$f" ] || failures="$failures; $f of $log"
     if [ -z "$p$f" ]; then      # a crash prints no counts
-      failed=$((failed + 1)); echo "FAILED: $log ends before its last test"
+      failed=$((failed + 1)); failures="$failures; $log ends before its last test"
     fi
   done
   suites=""
@@ -96,5 +97,6 @@ if [ $fast = no ]; then
   run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
 
+[ -z "$failures" ] || echo "FAILED: ${failures#; }"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]
