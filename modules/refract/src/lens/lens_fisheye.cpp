@@ -3,9 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "lens/fisheye_model.hpp"
-#include "lens/lens.hpp"
+#include "lens/kernel_lens.hpp"
 #include "math/monotone.hpp"
-#include "math/once.hpp"
 
 /* cv::fisheye's model (Kannala and Brandt), theta = angle to the z axis:
 
@@ -19,18 +18,11 @@ namespace cv { namespace refract {
 
 namespace {
 
-class FisheyeLens : public Lens
+class FisheyeLens : public KernelLens<FisheyeModel>
 {
 public:
     FisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs);
 
-    void project(int n, const double* x, const double* y, const double* z,
-                 double* u, double* v, uchar* status) const CV_OVERRIDE;
-    void unproject(int n, const double* u, const double* v,
-                   double* x, double* y, double* z, uchar* status) const CV_OVERRIDE;
-    using Lens::projectJacobian;
-    void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
-                         const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
     int parameterCount() const CV_OVERRIDE { return 8; }
     std::vector<String> parameterNames() const CV_OVERRIDE { return { "fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4" }; }
 
@@ -42,16 +34,16 @@ public:
 
 private:
     double bend(double theta, double& slope) const;     //!< theta -> theta_d
-    void fitStart() const;
-    //! One lane that the kernel left without an answer: the answer, or why there is none.
-    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
+    void fitStart() const CV_OVERRIDE;
+    //! The kernel knows all pixels that there are.
+    uchar projectOne(double, double, double, double&, double&) const CV_OVERRIDE { return REFRACT_OUTSIDE_LENS_MODEL; }
+    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const CV_OVERRIDE;
 
     Matx33d K_;
-    mutable FisheyeModel m_;            //!< without m_.inverse until something is unprojected
-    mutable Once fitStartOnce_;
 };
 
-FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs) : K_(K)
+FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs)
+    : KernelLens<FisheyeModel>(fisheyeKernels), K_(K)
 {
     if (!distCoeffs.empty() && distCoeffs.size() != 4)
         CV_Error_(Error::StsBadArg, ("distCoeffs has %d values; the fisheye model has 4", (int)distCoeffs.size()));
@@ -80,27 +72,6 @@ double FisheyeLens::bend(double theta, double& slope) const
     return theta*factor;
 }
 
-void FisheyeLens::project(int n, const double* x, const double* y, const double* z,
-                          double* u, double* v, uchar* status) const
-{
-    if (fisheyeKernels().project(m_, n, x, y, z, u, v))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(u[i]))
-            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
-}
-
-void FisheyeLens::unproject(int n, const double* u, const double* v,
-                            double* x, double* y, double* z, uchar* status) const
-{
-    fitStartOnce_([this] { fitStart(); });
-    if (fisheyeKernels().unproject(m_, n, u, v, x, y, z))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(x[i]))
-            status[i] = unprojectOne(u[i], v[i], x[i], y[i], z[i]);
-}
-
 uchar FisheyeLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
 {
     const double yd = (v - m_.cy)/m_.fy, xd = (u - m_.cx)/m_.fx - m_.alpha*yd, target = std::sqrt(xd*xd + yd*yd);
@@ -110,16 +81,6 @@ uchar FisheyeLens::unprojectOne(double u, double v, double& x, double& y, double
     y = yd*scale;
     z = std::cos(theta);
     return std::isfinite(theta) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
-}
-
-void FisheyeLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
-                                  const Columns& byDirection, const Columns& byParameters, uchar* status) const
-{
-    if (fisheyeKernels().projectJacobian(m_, n, x, y, z, u, v, byDirection, byParameters))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(u[i]))
-            status[i] = REFRACT_OUTSIDE_LENS_MODEL;
 }
 
 std::vector<double> FisheyeLens::parameters() const

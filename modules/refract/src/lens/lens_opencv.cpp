@@ -3,9 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "lens/opencv_model.hpp"
-#include "lens/lens.hpp"
+#include "lens/kernel_lens.hpp"
 #include "math/monotone.hpp"
-#include "math/once.hpp"
 
 /* OpenCV's lens model (calib3d's documentation), x = X/Z, y = Y/Z, s = r^2 = x^2 + y^2:
 
@@ -22,18 +21,11 @@ namespace cv { namespace refract {
 
 namespace {
 
-class OpenCVLens : public Lens
+class OpenCVLens : public KernelLens<OpenCVModel>
 {
 public:
     OpenCVLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs, const String& model);
 
-    void project(int n, const double* x, const double* y, const double* z,
-                 double* u, double* v, uchar* status) const CV_OVERRIDE;
-    void unproject(int n, const double* u, const double* v,
-                   double* x, double* y, double* z, uchar* status) const CV_OVERRIDE;
-    using Lens::projectJacobian;
-    void projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
-                         const Columns& byDirection, const Columns& byParameters, uchar* status) const CV_OVERRIDE;
     int parameterCount() const CV_OVERRIDE { return 4 + m_.given; }
     std::vector<String> parameterNames() const CV_OVERRIDE
     {
@@ -49,19 +41,16 @@ public:
     Ptr<Lens> withParameters(const std::vector<double>& parameters) const CV_OVERRIDE;
 
 private:
-    //! One lane that the kernel left without an answer: the answer, or why there is none.
-    uchar projectOne(double x, double y, double z, double& u, double& v) const;
-    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const;
+    uchar projectOne(double x, double y, double z, double& u, double& v) const CV_OVERRIDE;
+    uchar unprojectOne(double u, double v, double& x, double& y, double& z) const CV_OVERRIDE;
     double radial(double r, double& slope) const;
-    void fitStart() const;
+    void fitStart() const CV_OVERRIDE;
     //! Of an undistorting Newton step, up to this distance from the axis: the error that it leaves over its square.
     double curvature(double r) const;
     double startError(double r) const;      //!< of the kernel's search, at this distance from the axis
     bool inside(double x, double y, const Distorted<double>& d) const { return x*x + y*y < m_.sMax && d.determinant() > 0; }
     uchar undistort(double xd, double yd, double& x, double& y) const;
 
-    mutable OpenCVModel m_;             //!< inverse ... near2, which take their time, when something is unprojected
-    mutable Once fitStartOnce_;
     bool radialOnly_;
     String model_;
 };
@@ -99,7 +88,7 @@ double monotoneRange(const double* k)
 }
 
 OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, const String& model)
-    : model_(model)
+    : KernelLens<OpenCVModel>(openCVKernels), model_(model)
 {
     if (K(0, 1) != 0)
         CV_Error_(Error::StsBadArg, ("cameraMatrix(0, 1) is %g; this lens model has no skew", K(0, 1)));
@@ -181,16 +170,6 @@ double OpenCVLens::radial(double r, double& slope) const
     return r*f.F;
 }
 
-void OpenCVLens::project(int n, const double* x, const double* y, const double* z,
-                         double* u, double* v, uchar* status) const
-{
-    if (openCVKernels().project(m_, n, x, y, z, u, v))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(u[i]))
-            status[i] = projectOne(x[i], y[i], z[i], u[i], v[i]);
-}
-
 uchar OpenCVLens::projectOne(double X, double Y, double Z, double& u, double& v) const
 {
     const double x = X/Z, y = Y/Z;
@@ -239,17 +218,6 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
     return REFRACT_OUTSIDE_LENS_MODEL;      // Newton is stuck at the edge of the domain: no direction leads here
 }
 
-void OpenCVLens::unproject(int n, const double* u, const double* v,
-                           double* x, double* y, double* z, uchar* status) const
-{
-    fitStartOnce_([this] { fitStart(); });
-    if (openCVKernels().unproject(m_, n, u, v, x, y, z))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(x[i]))
-            status[i] = unprojectOne(u[i], v[i], x[i], y[i], z[i]);
-}
-
 uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double& z) const
 {
     double xd = u - m_.cx, yd = v - m_.cy;
@@ -260,16 +228,6 @@ uchar OpenCVLens::unprojectOne(double u, double v, double& x, double& y, double&
     x *= z;
     y *= z;
     return status;
-}
-
-void OpenCVLens::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
-                                 const Columns& byDirection, const Columns& byParameters, uchar* status) const
-{
-    if (openCVKernels().projectJacobian(m_, n, x, y, z, u, v, byDirection, byParameters))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(u[i]))
-            status[i] = projectOne(x[i], y[i], z[i], u[i], v[i]);
 }
 
 std::vector<double> OpenCVLens::parameters() const

@@ -4,6 +4,7 @@
 
 #include "points/plane.hpp"
 #include "arrays/arrays.hpp"
+#include "math/missing.hpp"
 #include "points/point_kernels.hpp"
 
 namespace cv { namespace refract {
@@ -23,34 +24,33 @@ void checkPlane(const Vec4d& p, const char* name)
                                      name, p[0], p[1], p[2], p[3]));
 }
 
+//! One lane of meetPlane: the answer, or why there is none. m is 1/s of the ray's point.
+static uchar meetPlaneOne(const Layers& layers, const Vec3d& abc, double planeD, double tau, const Vec3d& d, Vec3d& X, double& m)
+{
+    const double along = abc.dot(d);
+    m = along/(planeD - tau*abc.dot(layers.normal()));
+    X = d + m*tau*layers.normal();
+    return std::isnan(planeD) ? REFRACT_NOT_FINITE : along == 0 ? REFRACT_PARALLEL_RAYS :
+           !(m >= 0) || std::signbit(m) || std::isinf(m) ? REFRACT_NO_INTERSECTION :
+           !layers.isBeyond(X[0], X[1], X[2], m) ? REFRACT_BEHIND_WINDOW : REFRACT_OK;
+}
+
 void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const double* tau,
                const double* dx, const double* dy, const double* dz,
                double* x, double* y, double* z, double* mu, uchar* status)
 {
     if (pointKernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
         return;
-    const Vec3d& normal = layers.normal();
-    const double axis = abc.dot(normal);
-    for (int i = 0; i < n; ++i)
+    answerMissing(n, x, status, [&](int i)
     {
-        if (status[i] != REFRACT_OK || !std::isnan(x[i]))
-            continue;
-        const Vec3d d(dx[i], dy[i], dz[i]);
-        const double along = abc.dot(d), ahead = planeD[i] - tau[i]*axis;
-        const double m = along/ahead;
-        const Vec3d X = d + m*tau[i]*normal;
+        Vec3d X;
+        double m;
+        const uchar found = meetPlaneOne(layers, abc, planeD[i], tau[i], Vec3d(dx[i], dy[i], dz[i]), X, m);
         x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
         if (mu)
             mu[i] = m;
-        if (std::isnan(planeD[i]))
-            status[i] = REFRACT_NOT_FINITE;
-        else if (along == 0)
-            status[i] = REFRACT_PARALLEL_RAYS;
-        else if (!(m >= 0) || std::signbit(m) || std::isinf(m))
-            status[i] = REFRACT_NO_INTERSECTION;
-        else if (!layers.isBeyond(x[i], y[i], z[i], m))
-            status[i] = REFRACT_BEHIND_WINDOW;
-    }
+        return found;
+    });
 }
 
 void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,

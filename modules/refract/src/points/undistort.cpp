@@ -4,6 +4,7 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
+#include "math/missing.hpp"
 #include "points/point_kernels.hpp"
 #include "points/plane.hpp"
 
@@ -15,11 +16,9 @@ namespace cv { namespace refract {
 static void pinhole(const Matx33d& H, const Vec3d& axis, int n, const double* x, const double* y, const double* z,
                     double* u, double* v, uchar* status)
 {
-    if (pointKernels().pinhole(H.val, axis.val, n, x, y, z, u, v))
-        return;
-    for (int i = 0; i < n; ++i)
-        if (status[i] == REFRACT_OK && std::isnan(u[i]) && !(axis.dot(Vec3d(x[i], y[i], z[i])) > 0))
-            status[i] = REFRACT_BEHIND_CAMERA;
+    if (!pointKernels().pinhole(H.val, axis.val, n, x, y, z, u, v))
+        answerMissing(n, u, status, [&](int i)
+                      { return axis.dot(Vec3d(x[i], y[i], z[i])) > 0 ? REFRACT_OK : REFRACT_BEHIND_CAMERA; });
 }
 
 void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,

@@ -34,6 +34,7 @@ inline Lanes sqrt(Lanes a) { return (Lanes)_mm_sqrt_pd((__m128d)a); }
 typedef double Lanes __attribute__((vector_size(16)));
 inline Lanes sqrt(Lanes a) { return (Lanes)vsqrtq_f64((float64x2_t)a); }
 #else
+#define REFRACT_LANE_IS_DOUBLE
 typedef double Lanes;
 using std::sqrt;
 #endif
@@ -84,6 +85,16 @@ inline Lanes roughInverse(Lanes a) { return 1/a; }
 inline Lanes absolute(Lanes a) { return select(a < 0, -a, a); }
 inline Lanes larger(Lanes a, Lanes b) { return select(a > b, a, b); }
 inline Lanes square(Lanes a) { return a*a; }
+
+#ifndef REFRACT_LANE_IS_DOUBLE
+// The same of one number: a formula is written once, for one point and for many.
+inline bool any(bool m) { return m; }
+inline double select(bool m, double a, double b) { return m ? a : b; }
+inline double inverseSqrt(double a) { return 1/std::sqrt(a); }
+inline double roughInverse(double a) { return 1/a; }
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double square(double a) { return a*a; }
+#endif
 
 //! The last n < LANES points of an array, the very last repeated, so that every lane holds a point; and back.
 #if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)

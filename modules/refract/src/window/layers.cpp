@@ -3,7 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "window/layers.hpp"
+#include "math/missing.hpp"
 #include "window/parameters.hpp"
+#include "window/path.hpp"
 #include <numeric>
 
 namespace cv { namespace refract {
@@ -73,80 +75,9 @@ void Layers::traceOut(int n, const double* wx, const double* wy, const double* w
         std::copy(wx, wx + n, dx); std::copy(wy, wy + n, dy); std::copy(wz, wz + n, dz);
         return;
     }
-    if (layerKernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
-        return;
-    for (int i = 0; i < n; ++i)
-    {
-        if (status[i] != REFRACT_OK || !std::isnan(tau[i]))
-            continue;
-        Vec3d d;
-        status[i] = traceOne(Vec3d(wx[i], wy[i], wz[i]), tau[i], d);
-        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
-    }
-}
-
-uchar Layers::traceOne(const Vec3d& w, double& tau, Vec3d& d) const
-{
-    const double c = normal_.dot(w), inner = index_[0], outer = stack_.outer, inner2 = inner*inner, outer2 = outer*outer;
-    // q^2 = n^2 - p^2 by the cosine: no cancellation near grazing where the medium is the camera's
-    const double qOut2 = (outer2 - inner2) + inner2*c*c, qOut = std::sqrt(qOut2);
-    bool reflected = !(qOut2 > 0);
-    tau = 0;
-    for (size_t k = 0; k < height_.size(); ++k)
-    {
-        const double n2 = index_[k]*index_[k], q2 = (n2 - inner2) + inner2*c*c, q = std::sqrt(q2);
-        reflected = reflected || !(q2 > 0);
-        tau += height_[k]*(n2 - outer2)/(q*(q + qOut));
-    }
-    d = inner/outer*w + (qOut - inner*c)/outer*normal_;
-    return !(c > 0) ? REFRACT_BEHIND_WINDOW : reflected ? REFRACT_TOTAL_REFLECTION : REFRACT_OK;
-}
-
-/* In t = tan(theta) of the rarest medium, n_r sin(theta) = p:
-
-    tan(theta_i) = n_r t / sqrt(n_i^2 + (n_i^2 - n_r^2) t^2)
-
-so f(t) = sum h_i tan(theta_i(t)) - V is increasing and concave, and Newton's method from a point left of the root
-rises monotonically to it. Two such points: t = V/U (no medium bends more than the rarest), and what remains when every
-denser layer has reached its limit h_i n_r / sqrt(n_i^2 - n_r^2). The unknown is the ratio t/V, regular on the axis. */
-uchar Layers::solveTangent(double U, double V, double w, double& ratio) const
-{
-    const double rarest = stack_.rarest, outer = stack_.outer, r2 = rarest*rarest, hOut = U - w*stack_.total;
-    double rareHeight = 0, limit = 0;
-    for (size_t k = 0; k <= height_.size(); ++k)
-    {
-        const bool last = k == height_.size();
-        const double h = last ? hOut : w*height_[k], n = last ? outer : index_[k];
-        if (n > rarest)
-            limit += h*rarest/std::sqrt(n*n - r2);
-        else
-            rareHeight += h;
-    }
-    if (!(rareHeight > 0) && V >= limit)
-        return REFRACT_TOTAL_REFLECTION;    // beyond the cone that total reflection leaves
-    ratio = 1/U;
-    if (V > limit)
-        ratio = std::max(ratio, (V - limit)/(rareHeight*V));
-
-    for (int iteration = 0; iteration < 100; ++iteration)
-    {
-        const double t2 = V*ratio*V*ratio;
-        double f = -1, slope = 0;
-        for (size_t k = 0; k <= height_.size(); ++k)
-        {
-            const bool last = k == height_.size();
-            const double h = last ? hOut : w*height_[k], n = last ? outer : index_[k], n2 = n*n;
-            const double root2 = n2 + (n2 - r2)*t2, term = h*rarest/std::sqrt(root2);
-            f += term*ratio;
-            slope += term*n2/root2;
-        }
-        const double step = -f/slope;
-        ratio += step;
-        // The sequence rises until rounding takes over: a step that is not positive is below it.
-        if (!(step > 4*DBL_EPSILON*ratio))
-            return std::isfinite(ratio) ? REFRACT_OK : REFRACT_NOT_CONVERGED;
-    }
-    return REFRACT_NOT_CONVERGED;
+    if (!layerKernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
+        answerMissing(n, tau, status, [=](int i)
+                      { return normal_.dot(Vec3d(wx[i], wy[i], wz[i])) > 0 ? REFRACT_TOTAL_REFLECTION : REFRACT_BEHIND_WINDOW; });
 }
 
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
@@ -159,29 +90,43 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
     }
     if (layerKernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
         return;
-    for (int i = 0; i < n; ++i)
+    answerMissing(n, dx, status, [=](int i)
     {
-        if (status[i] != REFRACT_OK || !std::isnan(dx[i]))
-            continue;
-        Vec3d d;
-        double found = 0;
-        status[i] = solveOne(Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d, found);
+        double d[3] = {}, found = 0;
+        const uchar solved = solveOne(Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d, found);
         dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
         if (ratio)
             ratio[i] = found;
-    }
+        return solved;
+    });
 }
 
-uchar Layers::solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const
+//! Newton's method from a ratio left of the root.
+static uchar climb(const Stack& stack, const Path<double>& path, double& ratio)
 {
-    const double U = normal_.dot(X), rarest = stack_.rarest, r2 = rarest*rarest, inner2 = index_[0]*index_[0];
-    if (!(U > w*stack_.total))
+    for (int iteration = 0; iteration < 100; ++iteration)
+    {
+        const PathFunction<double> F(stack, path, ratio);
+        const double step = -F.value/F.slope;
+        ratio += step;
+        // The sequence rises until rounding takes over: a step that is not positive is below it.
+        if (!(step > 4*DBL_EPSILON*ratio))
+            return std::isfinite(ratio) ? REFRACT_OK : REFRACT_NOT_CONVERGED;
+    }
+    return REFRACT_NOT_CONVERGED;
+}
+
+uchar Layers::solveOne(const Vec3d& X, double w, double* d, double& ratio) const
+{
+    const Path<double> path = pathTo(stack_, X[0], X[1], X[2], w);
+    if (!(path.scene > 0))
         return REFRACT_BEHIND_WINDOW;
-    const Vec3d radial = X - U*normal_;
-    const double V = cv::norm(radial);
-    const uchar status = solveTangent(U, V, w, ratio);
-    const double t = V*ratio, kappa = rarest*ratio/std::sqrt(inner2 + (inner2 - r2)*t*t);
-    d = normal_ + kappa*radial;
+    const PathBounds<double> bounds(stack_, path);
+    if (!(bounds.rare > 0) && path.radius2 >= square(bounds.limit))
+        return REFRACT_TOTAL_REFLECTION;    // beyond the cone that total reflection leaves
+    ratio = firstRatio(stack_, path);
+    const uchar status = climb(stack_, path, ratio);
+    direction(stack_, path, ratio, d);
     return status;
 }
 

@@ -13,10 +13,10 @@ namespace cv { namespace refract {
 /* The physics of parallel layers. With n the unit normal, c = n.w the cosine of the inner direction w, and
 p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_i = sqrt(n_i^2 - p^2):
 
-    tau(p) = sum_i h_i (1 - q_out / q_i) = sum_i h_i (n_i^2 - n_out^2) / (q_i (q_i + q_out))
+    tau(p) = sum_i h_i (1 - q_out / q_i)
 
-is where the outgoing line meets the axis O + tau n; the second form does not cancel, and vanishes exactly for a gap
-whose medium is the scene's. (The kernels leave such a gap out and take the first form: what cancels is the rounding of h_i.)
+is where the outgoing line meets the axis O + tau n. (A gap whose medium is the scene's is left out, as it has no part in it; of
+the others, what cancels is the rounding of h_i.) The way back is in path.hpp.
 For one pane in air: equations (12) and (16) of Plate2024.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
@@ -66,11 +66,8 @@ public:
 
 private:
     void pointIntoVectors();    //!< where stack_ has pointers
-    //! One lane of traceOut and solveIn that the kernel left without an answer: the answer, or why there is none.
-    uchar traceOne(const Vec3d& w, double& tau, Vec3d& d) const;
-    uchar solveOne(const Vec3d& X, double w, Vec3d& d, double& ratio) const;
-    //! t = V * ratio solves sum_i h_i tan(theta_i(t)) = V, where t is the tangent in the rarest medium reached.
-    uchar solveTangent(double U, double V, double w, double& ratio) const;
+    //! One lane that the kernel left without an answer: the answer, or why there is none.
+    uchar solveOne(const Vec3d& X, double w, double* d, double& ratio) const;
 
     Vec3d normal_;
     std::vector<double> height_;    //!< inner gap, then the layers

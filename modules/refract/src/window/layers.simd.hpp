@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_LAYERS_SIMD_HPP
 
 #include "simd/vectors.hpp"
-#include "window/layer_kernels.hpp"
+#include "window/path.hpp"
 
 /* The physics of parallel layers, see layers.hpp. */
 
@@ -45,74 +45,15 @@ bool traceOut(const Stack& stack, int n, const double* wx, const double* wy, con
     return answers.complete();
 }
 
-//! A search for the path from one point to the camera.
-struct Path
+struct Search
 {
-    Lanes weight, scene;                //!< w of the point; height of the scene's medium
-    Lanes radial[3], radius2;           //!< of the point about the window's axis
-    Lanes ratio;                        //!< t / V, what is looked for
-    Lanes step;                         //!< the last one, of ratio
+    Path<Lanes> path;
+    Lanes ratio, step;      //!< t / V, and the last step of it
 };
 
-inline Lanes heightOf(const Medium& medium, const Path& path)
+inline Lanes halleyStep(const PathFunction<Lanes>& F)
 {
-    const Lanes height = path.weight*medium.height;
-    return medium.isScene ? height + path.scene*medium.scale : height;
-}
-
-/* Where the search for t / V begins: left of the root, the larger of two bounds. f lies below its tangent at 0; and
-every denser medium stays below its limit. The second wins far out only. */
-inline Lanes firstRatio(const Stack& s, const Path& path)
-{
-    const Lanes rare = heightOf(s.media[0], path);
-    Lanes slope = rare, limit = all(0);
-    for (int k = 1; k < s.count; ++k)
-    {
-        const Lanes h = heightOf(s.media[k], path);
-        slope += h*s.media[k].slope;
-        limit += h*s.media[k].limit;
-    }
-    Lanes ratio = roughInverse(slope);
-    const Mask far = path.radius2*square(slope - rare) > square(limit*slope);
-    if (any(far))
-    {
-        const Lanes radius = sqrt(path.radius2);
-        ratio = select(far & (rare > 0), larger(ratio, (radius - limit)/(rare*radius)), ratio);
-    }
-    return ratio;
-}
-
-/** Halley's step towards F(ratio) = sum h_i tan(theta_i) / V - 1 = 0 (layers.cpp has the equation). */
-inline Lanes pathStep(const Stack& s, const Path& path)
-{
-    const Lanes ratio = path.ratio, t2 = path.radius2*ratio*ratio;
-    Lanes value = heightOf(s.media[0], path), slope = value, bend = all(0);
-    for (int k = 1; k < s.count; ++k)
-    {
-        const Medium& medium = s.media[k];
-        const double excess = medium.index2 - s.media[0].index2;
-        const Lanes root2 = medium.index2 + excess*t2, inverse = inverseSqrt(root2), inverse2 = inverse*inverse;
-        const Lanes term = heightOf(medium, path)*inverse, termSlope = term*medium.index2*inverse2;
-        value += term;
-        slope += termSlope;
-        bend += termSlope*inverse2*excess;
-    }
-    const Lanes f = ratio*value - 1, half = 1.5*ratio*path.radius2*bend;    // half = -F''/2
-    return -f*slope*roughInverse(slope*slope + f*half);
-}
-
-inline Path beginPath(const Stack& s, Lanes x, Lanes y, Lanes z, Lanes weight)
-{
-    const Lanes U = s.normal[0]*x + s.normal[1]*y + s.normal[2]*z;
-    Path path;
-    path.weight = weight;
-    path.scene = U - weight*s.total;
-    path.radial[0] = x - U*s.normal[0];
-    path.radial[1] = y - U*s.normal[1];
-    path.radial[2] = z - U*s.normal[2];
-    path.radius2 = square(path.radial[0]) + square(path.radial[1]) + square(path.radial[2]);
-    path.ratio = firstRatio(s, path);
-    return path;
+    return -F.value*F.slope*roughInverse(F.slope*F.slope + F.value*F.bend);
 }
 
 bool solveIn(const Stack& stack, int n, const double* px, const double* py, const double* pz, const double* pw,
@@ -122,35 +63,35 @@ bool solveIn(const Stack& stack, int n, const double* px, const double* py, cons
     const double ENOUGH = 1e-5;
     const int STEPS = 8;
     const Stack s = stack;
-    const double inner2 = s.inner*s.inner, excess = inner2 - s.media[0].index2;
     Answers answers;
-    eachGroup<Path>(n, [&](Group<Path>& group)
+    eachGroup<Search>(n, [&](Group<Search>& group)
     {
-        group.each([&](Path& path, Part at)
+        group.each([&](Search& search, Part at)
         {
-            path = beginPath(s, load(px, at), load(py, at), load(pz, at), pw ? load(pw, at) : all(1));
+            search.path = pathTo(s, load(px, at), load(py, at), load(pz, at), pw ? load(pw, at) : all(1));
+            search.ratio = firstRatio(s, search.path);
         });
         bool more = true;
         for (int k = 0; k < STEPS && more; ++k)
         {
-            group.each([&](Path& path, Part)
+            group.each([&](Search& search, Part)
             {
-                path.step = pathStep(s, path);
-                path.ratio += path.step;
+                search.step = halleyStep(PathFunction<Lanes>(s, search.path, search.ratio));
+                search.ratio += search.step;
             });
-            more = group.some([&](const Path& path) { return absolute(path.step) > ENOUGH*path.ratio; });
+            more = group.some([&](const Search& search) { return absolute(search.step) > ENOUGH*search.ratio; });
         }
-        group.each([&](Path& path, Part at)
+        group.each([&](Search& search, Part at)
         {
-            const Mask good = (path.scene > 0) & (absolute(path.step) <= ENOUGH*path.ratio);
-            Lanes kappa = path.ratio;
-            if (excess > 0)
-                kappa *= s.rarest*inverseSqrt(inner2 + excess*path.radius2*path.ratio*path.ratio);
-            store(answers.where(good, s.normal[0] + kappa*path.radial[0]), dx, at);
-            store(s.normal[1] + kappa*path.radial[1], dy, at);
-            store(s.normal[2] + kappa*path.radial[2], dz, at);
+            const Path<Lanes>& path = search.path;
+            const Mask good = (path.scene > 0) & (absolute(search.step) <= ENOUGH*search.ratio);
+            Lanes d[3];
+            direction(s, path, search.ratio, d);
+            store(answers.where(good, d[0]), dx, at);
+            store(d[1], dy, at);
+            store(d[2], dz, at);
             if (ratio)
-                store(path.ratio, ratio, at);
+                store(search.ratio, ratio, at);
         });
     });
     return answers.complete();
