@@ -16,7 +16,7 @@ const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
 // Windows that differ by less are one minimum: radians, part of the distance.
-const double SAME_ANGLE = 0.01, SAME_DISTANCE = 0.05;
+const double SAME_ANGLE = 0.01, ROUGHLY_SAME_ANGLE = 0.05, SAME_DISTANCE = 0.05;
 const double PLAUSIBLE = 10;    // standard deviations that some views leave a minimum behind the best
 
 //! So many of the views, evenly.
@@ -154,19 +154,6 @@ std::vector<Trial> fitEach(const std::vector<Rig>& starts, const RigViews& views
     return trials;
 }
 
-//! The starts, as they are, whose fits are the best so far; the best first.
-std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, const TermCriteria& criteria, int flags)
-{
-    std::vector<std::pair<double, size_t> > costs;
-    for (size_t i = 0; i < starts.size(); i++)
-        costs.push_back(std::make_pair(fitSome(starts[i], views, criteria, flags).cost, i));
-    std::sort(costs.begin(), costs.end());
-    std::vector<Rig> best;
-    for (size_t i = 0; i < std::min(atMost, costs.size()); i++)
-        best.push_back(starts[costs[i].second]);
-    return best;
-}
-
 //! Standard deviations of a pixel by which the second is worse.
 double excessOf(const Trial& best, const Trial& other)
 {
@@ -179,16 +166,40 @@ double angleOfNormals(const Rig& a, const Rig& b, int c)
     return std::atan2(norm(p.cross(q)), p.dot(q));
 }
 
-bool areSame(const Rig& a, const Rig& b)
+bool areSame(const Rig& a, const Rig& b, double angle = SAME_ANGLE)
 {
     for (int c = 0; c < a.count(); c++)
     {
         const double distance = a.cameras[c].window().distance;
-        if (angleOfNormals(a, b, c) > SAME_ANGLE ||
+        if (angleOfNormals(a, b, c) > angle ||
             std::abs(distance - b.cameras[c].window().distance) > SAME_DISTANCE*distance)
             return false;
     }
     return true;
+}
+
+/** The starts, as they are, whose fits are the best so far, the best first; of those that lead to one place the best, as all that
+lead to the best of some views would leave no room for the best of all. */
+std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, const TermCriteria& criteria,
+                            int flags)
+{
+    std::vector<Trial> trials;
+    std::vector<size_t> order;
+    for (size_t i = 0; i < starts.size(); i++)
+    {
+        trials.push_back(fitSome(starts[i], views, criteria, flags));
+        order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return trials[a] < trials[b]; });
+    std::vector<Rig> best, led;
+    for (size_t i : order)
+        if (best.size() < atMost &&
+            std::none_of(led.begin(), led.end(), [&](const Rig& m) { return areSame(m, trials[i].rig, ROUGHLY_SAME_ANGLE); }))
+        {
+            best.push_back(starts[i]);
+            led.push_back(trials[i].rig);
+        }
+    return best;
 }
 
 //! One of each minimum that could still be the best where all views count.
@@ -200,6 +211,30 @@ std::vector<Rig> plausibleMinima(const std::vector<Trial>& sorted)
             std::none_of(minima.begin(), minima.end(), [&](const Rig& m) { return areSame(m, trial.rig); }))
             minima.push_back(trial.rig);
     return minima;
+}
+
+/** The minima that a window of the best leads to when it is tilted the other way, as long as that finds a better one: with
+several windows the search above, one window after the other, does not meet all combinations.
+@param sorted gets them too */
+void tiltTheOtherWay(std::vector<Trial>& sorted, const RigViews& views, const TermCriteria& criteria, int flags)
+{
+    const double BETTER = 1e-6;
+    double before = std::numeric_limits<double>::infinity();
+    while (sorted[0].cost < (1 - BETTER)*before)
+    {
+        before = sorted[0].cost;
+        const Rig best = sorted[0].rig;
+        for (int owner = 0; owner < best.count(); owner++)
+        {
+            const Vec3d normal = best.cameras[owner].layers().normal();
+            if (!best.owns(owner) || std::hypot(normal[0], normal[1]) < ROUGHLY_SAME_ANGLE)
+                continue;
+            Rig turned = best;
+            setNormal(turned, owner, Vec3d(-normal[0], -normal[1], normal[2]));
+            sorted.push_back(fitSome(turned, views, criteria, flags));
+        }
+        std::stable_sort(sorted.begin(), sorted.end());
+    }
 }
 
 //! The second best minimum, for the windows that it has elsewhere.
@@ -242,9 +277,10 @@ RigStart bestSealedStart(const RigStart& given, const RigViews& views, const Rig
             starts = bestStarts(tilted(starts, owner), FINALISTS, few, FIRST_LOOK, task.flags);
     starts = plausibleMinima(fitEach(starts, more, SECOND_LOOK, task.flags));
     // Some views may have their least cost in another minimum than all have.
-    const std::vector<Trial> minima = fitEach(starts, all, TO_THE_END, task.flags);
+    std::vector<Trial> minima = fitEach(starts, all, TO_THE_END, task.flags);
     if (minima.empty() || !std::isfinite(minima[0].cost))
         return given;
+    tiltTheOtherWay(minima, all, TO_THE_END, task.flags);
     describeOther(minima, others);
     RigStart start = { minima[0].rig, std::vector<Pose>(views.count()) };
     addPosesThroughWindow(start.rig, views, start.poses);
