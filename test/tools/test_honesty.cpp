@@ -444,20 +444,30 @@ TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
             print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
 }
 
-TEST_CASE("All views of a sealed camera decide which of its minima is the best, and tell of the other", "[honesty]")
+TEST_CASE("A sealed rig's windows are not tilted the other way, and the second best minimum is told", "[honesty]")
 {
-    const Setup setup{Flow::SEALED, Medium::AIR, 1};
-    const Rig truth = trueRig(setup);
-    scenes::Random random(9037);        // ten of its views have their least error with the window tilted the other way
-    const Images images = takeImages(truth, setup, random);
-    const Fit fit = calibrate(images, setup, truth, random);
-    const Vec3d found = fit.rig.cameras[0]->window().normal, other(fit.otherMinima.ptr<double>());
-    const int at = columnsOf(fit.rig, 0).normal;
-    const double sigma = std::sqrt(trace(fit.covariance(Rect(at, at, 3, 3)))[0]);
-    CHECK(norm(found - truth.cameras[0]->window().normal) < 3. * sigma);
-    CHECK(norm(other - found) > 0.3);
-    CHECK(fit.otherMinima.at<double>(3) > 3.);      // excluded, by all views
-    CHECK(fit.otherMinima.at<double>(3) < 10.);
+    const struct { int cameras; unsigned seed; } rigs[] = {
+        {1, 9037},      // ten of its views have their least error with the window tilted the other way
+        {2, 9060}};     // one window after the other does not lead to the best of four combinations
+    for (const auto& r : rigs)
+    {
+        CAPTURE(r.cameras);
+        const Setup setup{Flow::SEALED, Medium::AIR, r.cameras};
+        const Rig truth = trueRig(setup);
+        scenes::Random random(r.seed);
+        const Images images = takeImages(truth, setup, random);
+        const Fit fit = calibrate(images, setup, truth, random);
+        for (int c = 0; c < r.cameras; c++)
+        {
+            const int at = columnsOf(fit.rig, c).normal;
+            const double sigma = std::sqrt(trace(fit.covariance(Rect(at, at, 3, 3)))[0]);
+            CHECK(norm(fit.rig.cameras[c]->window().normal - truth.cameras[c]->window().normal) < 4. * sigma);
+        }
+        const Vec3d other(fit.otherMinima.ptr<double>());
+        CHECK(norm(other - fit.rig.cameras[0]->window().normal) > 0.2);
+        CHECK(fit.otherMinima.at<double>(3) > 3.);      // excluded, by all views
+        CHECK(fit.otherMinima.at<double>(3) < 20.);
+    }
 }
 
 TEST_CASE("Boards that took no part are as far off as stated, and the check sees where they are not", "[honesty][slow]")
