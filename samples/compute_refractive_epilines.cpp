@@ -28,10 +28,8 @@ int main(int argc, char** argv)
     const String filename = args.get<String>("calib");
     const Ptr<refract::RefractiveCamera> camera1 = refract::RefractiveCamera::read(filename, "camera1");
     const Ptr<refract::RefractiveCamera> camera2 = refract::RefractiveCamera::read(filename, "camera2");
-    Mat R, T;
     const FileStorage file(filename, FileStorage::READ);
-    file["R"] >> R;
-    file["T"] >> T;
+    const Mat R = file["R"].mat(), T = file["T"].mat();
 
     // A point at z = 600 and its true image in both cameras.
     const std::vector<Point3d> point(1, Point3d(30, -40, 600));

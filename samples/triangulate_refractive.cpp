@@ -44,10 +44,8 @@ int main(int argc, char** argv)
     const String filename = args.get<String>("calib");
     const Ptr<refract::RefractiveCamera> camera1 = refract::RefractiveCamera::read(filename, "camera1");
     const Ptr<refract::RefractiveCamera> camera2 = refract::RefractiveCamera::read(filename, "camera2");
-    Mat R, T;
     const FileStorage file(filename, FileStorage::READ);
-    file["R"] >> R;
-    file["T"] >> T;
+    const Mat R = file["R"].mat(), T = file["T"].mat();
 
     const Size size(args.get<int>("cols"), args.get<int>("rows"));
     const std::vector<Point2f> left = findCorners(args.get<String>("left"), size);

@@ -132,6 +132,19 @@ inline cv::Vec3d randomDirection(const LensKind& lens, Random& random) { return 
 
 // ---- checks
 
+//! Of a camera without distortion, and the pane of Plate2024.
+const cv::Matx33d PLAIN_K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+inline cv::refract::GlassWindow paperPane() { return cv::refract::GlassWindow(cv::Vec3d(-0.2483, 0.0961, 1), 20, 1.5437, 50); }
+
+//! The same lists of points of another type.
+template<typename To, typename From> std::vector<std::vector<To> > as(const std::vector<std::vector<From> >& lists)
+{
+    std::vector<std::vector<To> > out;
+    for (const std::vector<From>& list : lists)
+        out.emplace_back(list.begin(), list.end());
+    return out;
+}
+
 //! The text of the cv::Exception that f throws, or "" if it throws none.
 template<typename F>
 std::string thrown(const F& f)

@@ -67,14 +67,6 @@ Segments makeSegments(const RigTruth& truth, double near, double far, int boards
     return segments;
 }
 
-template<typename To, typename From> std::vector<std::vector<To> > as(const std::vector<std::vector<From> >& lists)
-{
-    std::vector<std::vector<To> > out;
-    for (const std::vector<From>& list : lists)
-        out.emplace_back(list.begin(), list.end());
-    return out;
-}
-
 //! What a user would do instead: cv::calibrateCamera and cv::stereoCalibrate through the glass.
 Measurer pinholeRig(const RigScene& scene)
 {

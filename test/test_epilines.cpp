@@ -63,7 +63,6 @@ std::vector<Vec2d> pixelsOf(const LensKind& lens, const Ptr<RefractiveCamera>& c
     return pixels;
 }
 
-const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
 
 } // namespace
 
@@ -246,8 +245,8 @@ TEST_CASE("Few vertices: near the least that the tolerance takes", "[epilines]")
 TEST_CASE("Parts without an image are left out", "[epilines]")
 {
     // Camera 2 sees only a cone; the ray of camera 1 enters it and may leave it.
-    const Ptr<RefractiveCamera> camera1 = RefractiveCamera::create(K, noArray());
-    const Ptr<RefractiveCamera> camera2 = RefractiveCamera::create(K, std::vector<double>{ -0.5, 0, 0, 0 });
+    const Ptr<RefractiveCamera> camera1 = RefractiveCamera::create(PLAIN_K, noArray());
+    const Ptr<RefractiveCamera> camera2 = RefractiveCamera::create(PLAIN_K, std::vector<double>{ -0.5, 0, 0, 0 });
     const Vec2d pixel(700, 330);
     std::vector<Vec3d> ray, origin;
     refractiveUnprojectPoints(std::vector<Vec2d>{ pixel }, origin, ray, camera1);
@@ -285,7 +284,7 @@ TEST_CASE("Parts without an image are left out", "[epilines]")
 
 TEST_CASE("A point without partners gives an empty line and a status", "[epilines]")
 {
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>{ -0.3, 0, 0, 0 },
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, std::vector<double>{ -0.3, 0, 0, 0 },
                                                                   GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 50));
     const std::vector<Vec2d> pixels = { { 640, 480 }, { NaN, 480 }, { 1e6, 480 } };
     std::vector<Mat> lines;
@@ -311,8 +310,8 @@ TEST_CASE("A point without partners gives an empty line and a status", "[epiline
     CHECK(status[0] == REFRACT_OK);
     CHECK(lines[0].rows >= 2);
     // The epipole: the ray passes through the other camera's centre; its image is one point.
-    computeRefractiveEpilines(std::vector<Vec2d>{ { 640, 480 } }, 1, RefractiveCamera::create(K, noArray()),
-                              RefractiveCamera::create(K, noArray()), Matx33d::eye(), Vec3d(0, 0, -100), Vec2d(200, 900), lines,
+    computeRefractiveEpilines(std::vector<Vec2d>{ { 640, 480 } }, 1, RefractiveCamera::create(PLAIN_K, noArray()),
+                              RefractiveCamera::create(PLAIN_K, noArray()), Matx33d::eye(), Vec3d(0, 0, -100), Vec2d(200, 900), lines,
                               0.01, status);
     CHECK(status[0] == REFRACT_OK);
     for (int i = 0; i < lines[0].rows; ++i)
@@ -327,8 +326,8 @@ TEST_CASE("Both overloads of computeRefractiveEpilines agree, float32 as well", 
     const Vec3d rvec(0, -0.2, 0), T(-100, 0, 0);
     std::vector<Mat> a, b;
     std::vector<std::vector<Point2f>> c;
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, D, window);
-    computeRefractiveEpilines(pixels, 2, K, D, window, K, D, window, rvec, T, Vec2d(300, INF), a);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, D, window);
+    computeRefractiveEpilines(pixels, 2, PLAIN_K, D, window, PLAIN_K, D, window, rvec, T, Vec2d(300, INF), a);
     computeRefractiveEpilines(pixels, 2, camera, camera, rvec, T, Vec2d(300, INF), b);
     computeRefractiveEpilines(pixels, 2, camera, camera, rvec, T, Vec2d(300, INF), c);
     REQUIRE(a.size() == 2);
@@ -344,8 +343,8 @@ TEST_CASE("Both overloads of computeRefractiveEpilines agree, float32 as well", 
 TEST_CASE("A short visible part of a long curve is found", "[epilines]")
 {
     // A lens that sees two degrees, turned to any part of a ray that fills a quarter of a turn.
-    const Ptr<RefractiveCamera> from = RefractiveCamera::create(K, noArray());
-    const Ptr<RefractiveCamera> to = RefractiveCamera::create(K, std::vector<double>({ -1000, 0, 0, 0 }));
+    const Ptr<RefractiveCamera> from = RefractiveCamera::create(PLAIN_K, noArray());
+    const Ptr<RefractiveCamera> to = RefractiveCamera::create(PLAIN_K, std::vector<double>({ -1000, 0, 0, 0 }));
     for (double turn = 5; turn < 85; turn += 0.37)
     {
         const double c = std::cos(turn*CV_PI/180), s = std::sin(turn*CV_PI/180);
@@ -362,7 +361,7 @@ TEST_CASE("A short visible part of a long curve is found", "[epilines]")
 
 TEST_CASE("Bad arguments of computeRefractiveEpilines are named", "[epilines]")
 {
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray());
     const auto compute = [&](int which, const Vec2d& range, double tolerance, InputArray R, InputArray T)
     {
         std::vector<Mat> lines;

@@ -6,13 +6,6 @@ using namespace cv::refract;
 using namespace scenes;
 using Catch::Matchers::Contains;
 
-namespace {
-
-const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
-GlassWindow pane() { return GlassWindow(Vec3d(-0.2483, 0.0961, 1), 20, 1.5437, 50); }
-
-} // namespace
-
 TEST_CASE("Points of a plane are found again", "[plane]")
 {
     const WindowKind kind = GENERATE(from_range(allWindows()));
@@ -56,9 +49,9 @@ TEST_CASE("Only the plane counts, not how it is written; both overloads agree", 
 {
     const std::vector<Vec2d> pixels = { { 100, 100 }, { 640, 480 }, { 1200, 900 } };
     std::vector<Vec3d> a, b, c;
-    refractivePointsOnPlane(pixels, a, K, noArray(), pane(), Vec4d(0.1, 0.2, 1, 700));
-    refractivePointsOnPlane(pixels, b, K, noArray(), pane(), Vec4d(-0.1, -0.2, -1, -700)*1e-3);
-    refractivePointsOnPlane(pixels, c, RefractiveCamera::create(K, noArray(), pane()), Vec4d(0.1, 0.2, 1, 700));
+    refractivePointsOnPlane(pixels, a, PLAIN_K, noArray(), paperPane(), Vec4d(0.1, 0.2, 1, 700));
+    refractivePointsOnPlane(pixels, b, PLAIN_K, noArray(), paperPane(), Vec4d(-0.1, -0.2, -1, -700)*1e-3);
+    refractivePointsOnPlane(pixels, c, RefractiveCamera::create(PLAIN_K, noArray(), paperPane()), Vec4d(0.1, 0.2, 1, 700));
     CHECK(largestDifference(a, b) < 1e-10);
     CHECK(largestDifference(a, c) == 0);
 }
@@ -70,7 +63,7 @@ TEST_CASE("Pixels that do not meet the plane say why", "[plane]")
     std::vector<uchar> status;
     const auto meet = [&](const GlassWindow& window, const Vec4d& plane)
     {
-        refractivePointsOnPlane(pixels, out, K, noArray(), window, plane, status);
+        refractivePointsOnPlane(pixels, out, PLAIN_K, noArray(), window, plane, status);
         CHECK(status[1] == REFRACT_NOT_FINITE);
         CHECK(std::isfinite(out[0][0]) == (status[0] == REFRACT_OK));
         CHECK(std::isfinite(out[0][2]) == (status[0] == REFRACT_OK));
@@ -89,7 +82,7 @@ TEST_CASE("Pixels that do not meet the plane say why", "[plane]")
     CHECK(meet(GlassWindow(), Vec4d(0, 0, 1, 30)) == REFRACT_OK);
     CHECK(meet(GlassWindow(), Vec4d(0, 0, 1, 0)) == REFRACT_NO_INTERSECTION);
     // A plane beside the axis that the tilted window's ray still meets, far away.
-    CHECK(meet(pane(), Vec4d(1, 0, 1e-9, 500)) == REFRACT_OK);
+    CHECK(meet(paperPane(), Vec4d(1, 0, 1e-9, 500)) == REFRACT_OK);
 }
 
 TEST_CASE("A plane that is none is refused with its numbers", "[plane]")
@@ -97,7 +90,7 @@ TEST_CASE("A plane that is none is refused with its numbers", "[plane]")
     std::vector<Vec3d> out;
     const auto meet = [&](const Vec4d& plane)
     {
-        return thrown([&] { refractivePointsOnPlane(std::vector<Vec2d>(1), out, K, noArray(), pane(), plane); });
+        return thrown([&] { refractivePointsOnPlane(std::vector<Vec2d>(1), out, PLAIN_K, noArray(), paperPane(), plane); });
     };
     CHECK_THAT(meet(Vec4d(0, 0, 0, 5)), Contains("plane") && Contains("(0, 0, 0, 5)"));
     CHECK_THAT(meet(Vec4d(0, NaN, 1, 5)), Contains("plane") && Contains("nan"));

@@ -17,7 +17,6 @@ Vec3d transformed(const Vec3d& rvec, const Vec3d& tvec, const Vec3d& X)
     return R*X + tvec;
 }
 
-GlassWindow pane() { return GlassWindow(Vec3d(-0.2483, 0.0961, 1), 20, 1.5437, 50); }
 const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
 
 } // namespace
@@ -65,7 +64,7 @@ TEST_CASE("The fisheye's skew is cv::fisheye's alpha", "[project]")
 TEST_CASE("A pane in air moves the image away from the foot of its normal", "[project]")
 {
     // The point seems closer by tau: the pixel is that of the point shifted towards the camera along the normal.
-    const GlassWindow window = pane();
+    const GlassWindow window = paperPane();
     const Vec3d X(30, -40, 600);
     std::vector<Vec2d> with, without, shifted;
     refractiveProjectPoints(std::vector<Vec3d>{ X }, Vec3d(), Vec3d(), K, noArray(), window, with);
@@ -83,11 +82,11 @@ TEST_CASE("Both overloads project the same", "[project]")
     const std::vector<double> d = { -0.28, 0.09, 7e-4, -4e-4 };
     const std::vector<Vec3d> points = { { 1, 2, 300 }, { -30, 10, 400 }, { 0, 0, 5000 } };
     const Vec3d rvec(0.1, 0.2, -0.1), tvec(5, 6, 70);
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, d, pane());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, d, paperPane());
     std::vector<Vec2d> a, b, c;
     std::vector<uchar> sa, sb, sc;
     Mat jacobian;
-    refractiveProjectPoints(points, rvec, tvec, K, d, pane(), a, sa);
+    refractiveProjectPoints(points, rvec, tvec, K, d, paperPane(), a, sa);
     refractiveProjectPoints(points, rvec, tvec, camera, b, sb);
     refractiveProjectPoints(points, rvec, tvec, camera, c, sc, jacobian);
     CHECK(largestDifference(a, b) == 0);
@@ -96,7 +95,7 @@ TEST_CASE("Both overloads project the same", "[project]")
     CHECK(sb == sa);
     CHECK(sc == sa);
     std::vector<Vec3d> o1, d1, o2, d2;
-    refractiveUnprojectPoints(a, o1, d1, K, d, pane(), sa);
+    refractiveUnprojectPoints(a, o1, d1, K, d, paperPane(), sa);
     refractiveUnprojectPoints(a, o2, d2, camera, sb);
     CHECK(largestDifference(o1, o2) == 0);
     CHECK(largestDifference(d1, d2) == 0);
@@ -218,8 +217,8 @@ TEST_CASE("float32 in, float32 out, computed in double", "[project]")
     for (const Point3f& p : points)
         same.push_back(Vec3d(p.x, p.y, p.z));
     Mat out32, out64;
-    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), pane(), out32);
-    refractiveProjectPoints(same, Vec3d(), Vec3d(), K, noArray(), pane(), out64);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), paperPane(), out32);
+    refractiveProjectPoints(same, Vec3d(), Vec3d(), K, noArray(), paperPane(), out64);
     REQUIRE(out32.type() == CV_32FC2);
     REQUIRE(out64.type() == CV_64FC2);
     Mat rounded;
@@ -233,7 +232,7 @@ TEST_CASE("Bad pose arguments are named with their value", "[project]")
     const auto project = [&](InputArray rvec, InputArray tvec)
     {
         std::vector<Vec2d> out;
-        return thrown([&] { refractiveProjectPoints(points, rvec, tvec, K, noArray(), pane(), out); });
+        return thrown([&] { refractiveProjectPoints(points, rvec, tvec, K, noArray(), paperPane(), out); });
     };
     CHECK(project(Vec3d(), Vec3d()) == "");
     CHECK_THAT(project(Vec3d(0, NaN, 0), Vec3d()), Contains("rvec[1]") && Contains("nan"));
@@ -330,8 +329,8 @@ TEST_CASE("A transformed object is the object in camera coordinates", "[project]
         Rodrigues(rvec, R);
         const Vec3d X = R.t()*(inCamera - tvec);
         std::vector<Vec2d> a, b;
-        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, K, noArray(), pane(), a);
-        refractiveProjectPoints(std::vector<Vec3d>{ transformed(rvec, tvec, X) }, Vec3d(), Vec3d(), K, noArray(), pane(), b);
+        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, K, noArray(), paperPane(), a);
+        refractiveProjectPoints(std::vector<Vec3d>{ transformed(rvec, tvec, X) }, Vec3d(), Vec3d(), K, noArray(), paperPane(), b);
         CAPTURE(rvec);
         REQUIRE(norm(a[0] - b[0]) < 1e-9);
     }

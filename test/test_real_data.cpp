@@ -50,14 +50,6 @@ Object objectOf(const json& list)
     return points;
 }
 
-template<typename To, typename From> std::vector<std::vector<To>> as(const std::vector<std::vector<From>>& lists)
-{
-    std::vector<std::vector<To>> out;
-    for (const std::vector<From>& list : lists)
-        out.emplace_back(list.begin(), list.end());
-    return out;
-}
-
 // ---- ouc_laser3d: a chessboard in air and in water
 
 struct Boards
@@ -114,7 +106,7 @@ double heldOutRms(const Boards& boards, const Ptr<RefractiveCamera>& camera)
 Ptr<RefractiveCamera> pinhole(const Boards& boards, Size size, double& rms)
 {
     Mat K, D, rvecs, tvecs;
-    rms = calibrateCamera(as<Point3f>(boards.object), as<Point2f>(boards.pixels), size, K, D, rvecs, tvecs);
+    rms = calibrateCamera(scenes::as<Point3f>(boards.object), scenes::as<Point2f>(boards.pixels), size, K, D, rvecs, tvecs);
     return RefractiveCamera::create(K, D);
 }
 

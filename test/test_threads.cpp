@@ -35,17 +35,24 @@ Answers ask(const Ptr<RefractiveCamera>& camera, const std::vector<Vec2d>& pixel
     return a;
 }
 
+const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
+
+std::vector<Vec2d> somePixels(const LensKind& kind)
+{
+    Random random;
+    std::vector<Vec2d> pixels;
+    for (int i = 0; i < 100; ++i)
+        pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
+    return pixels;
+}
+
 } // namespace
 
 TEST_CASE("Many threads ask one camera while others change clones of it", "[camera][threads]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
-    const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
     CAPTURE(kind.name, seed());
-    Random random;
-    std::vector<Vec2d> pixels;
-    for (int i = 0; i < 100; ++i)
-        pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
+    const std::vector<Vec2d> pixels = somePixels(kind);
     const Answers expected = ask(makeCamera(kind, window), pixels);
     const Mat parameters = makeCamera(kind, window)->lensParameters();
 
@@ -79,12 +86,8 @@ TEST_CASE("Many threads ask one camera while others change clones of it", "[came
 TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera][threads]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
-    const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 31.7, 1.333);
     CAPTURE(kind.name, seed());
-    Random random;
-    std::vector<Vec2d> pixels;
-    for (int i = 0; i < 100; ++i)
-        pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
+    const std::vector<Vec2d> pixels = somePixels(kind);
     const Answers expected = ask(makeCamera(kind, window), pixels);
     REQUIRE(std::count(expected.rayStatus.begin(), expected.rayStatus.end(), (uchar)REFRACT_OK) == 100);
     REQUIRE(std::count(expected.pixelStatus.begin(), expected.pixelStatus.end(), (uchar)REFRACT_OK) == 100);

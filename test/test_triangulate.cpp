@@ -10,9 +10,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
-GlassWindow pane() { return GlassWindow(Vec3d(-0.25, 0.1, 1), 20, 1.5437, 50); }
-
 //! A stereo pair, points that both cameras see, and their pixels.
 struct Scene
 {
@@ -156,7 +153,7 @@ TEST_CASE("With noise the optimal point has the least reprojection error", "[tri
 
 TEST_CASE("Rays that do not meet say why", "[triangulate]")
 {
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>{ -0.3, 0, 0, 0 });
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, std::vector<double>{ -0.3, 0, 0, 0 });
     struct Case { Vec2d pixel1, pixel2; uchar status; };
     const Case cases[] = { { { 640, 480 }, { 540, 480 }, REFRACT_OK },
                            { { 640, 480 }, { 640, 480 }, REFRACT_PARALLEL_RAYS },
@@ -186,7 +183,7 @@ TEST_CASE("Rays that do not meet say why", "[triangulate]")
         }
     }
     // Rays that meet before the scene begins.
-    const Ptr<RefractiveCamera> behindGlass = RefractiveCamera::create(K, noArray(), GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 500));
+    const Ptr<RefractiveCamera> behindGlass = RefractiveCamera::create(PLAIN_K, noArray(), GlassWindow(Vec3d(0, 0, 1), 20, 1.5, 500));
     std::vector<Vec3d> out;
     std::vector<uchar> status;
     triangulateRefractive(behindGlass, behindGlass, Matx33d::eye(), Vec3d(-100, 0, 0), std::vector<Vec2d>{ { 640, 480 }, { 640, 480 } },
@@ -203,12 +200,12 @@ TEST_CASE("Both overloads of triangulateRefractive agree; the depth is the deepe
     const std::vector<Point2f> pixels1 = { { 640, 480 }, { 700, 400 } };
     const std::vector<Point2d> pixels2 = { { 560, 480 }, { 610, 400 } };
     Mat a, b, c;
-    triangulateRefractive(K, D, pane(), K, D, GlassWindow(), rvec, T, pixels1, pixels2, a);
-    triangulateRefractive(RefractiveCamera::create(K, D, pane()), RefractiveCamera::create(K, D), rvec, T, pixels1, pixels2, b);
+    triangulateRefractive(PLAIN_K, D, paperPane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels2, a);
+    triangulateRefractive(RefractiveCamera::create(PLAIN_K, D, paperPane()), RefractiveCamera::create(PLAIN_K, D), rvec, T, pixels1, pixels2, b);
     CHECK(a.type() == CV_64FC3);
     CHECK(a.size() == Size(1, 2));
     CHECK(largestDifference(a, b) == 0);
-    triangulateRefractive(K, D, pane(), K, D, GlassWindow(), rvec, T, pixels1, pixels1, c);
+    triangulateRefractive(PLAIN_K, D, paperPane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels1, c);
     CHECK(c.type() == CV_32FC3);
 }
 
@@ -329,7 +326,7 @@ TEST_CASE("The calibration's covariance is carried to the point", "[triangulate]
 
 TEST_CASE("A point without answer has no covariance", "[triangulate]")
 {
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray());
     Mat points, status, C;
     triangulateRefractive(camera, camera, Matx33d::eye(), Vec3d(-100, 0, 0), std::vector<Vec2d>{ { 640, 480 }, { 640, 480 } },
                           std::vector<Vec2d>{ { 640, 480 }, { 600, 480 } }, points, status, 0, 0.1, noArray(), C);
@@ -342,7 +339,7 @@ TEST_CASE("A point without answer has no covariance", "[triangulate]")
 
 TEST_CASE("Bad arguments of triangulateRefractive are named", "[triangulate]")
 {
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray());
     const std::vector<Vec2d> two(2), three(3);
     Mat out;
     const Matx33d R = Matx33d::eye();

@@ -50,6 +50,7 @@ TEST_CASE("Undistorted points are the pinhole images of the scene points", "[und
     CAPTURE(name(kind), seed());
     Random random(kind);
     double worst = 0;
+    const Matx33d P(800, 0, 500, 0, 810, 400, 0, 0, 1);
     for (const LensKind& lens : allLenses())
     {
         CAPTURE(lens.name);
@@ -57,7 +58,6 @@ TEST_CASE("Undistorted points are the pinhole images of the scene points", "[und
         // Not up to the critical angle of an air gap in water, where the origin of a ray runs away to infinity.
         const Seen seen = somePoints(camera, lens, kind == DOUBLE_GLAZING_IN_WATER ? 30 : 60, random);
         const Vec3d rvec = random.vector(0.1);
-        const Matx33d P(800, 0, 500, 0, 810, 400, 0, 0, 1);
         Matx33d R;
         Rodrigues(rvec, R);
 

@@ -130,16 +130,10 @@ Output::Output(Bytes& bytes, int channels, const Mat& in)
     case 2: mat_ = Mat(9, 9, CV_64FC(channels), cv::Scalar(7))(cv::Rect(1, 1, 1, 1 + bytes.below(7))); break;
     case 3: array_ = cv::_InputOutputArray(umat_); break;
     case 4:
-        if (channels == 3)
-            array_ = cv::_InputOutputArray(points3f_);
-        else
-            array_ = cv::_InputOutputArray(points2f_);
+        array_ = channels == 3 ? cv::_InputOutputArray(points3f_) : cv::_InputOutputArray(points2f_);
         break;
     case 5:
-        if (channels == 3)
-            array_ = cv::_InputOutputArray(points3d_);
-        else
-            array_ = cv::_InputOutputArray(points2d_);
+        array_ = channels == 3 ? cv::_InputOutputArray(points3d_) : cv::_InputOutputArray(points2d_);
         break;
     case 6: array_ = cv::_InputOutputArray(bytes_); break;
     case 7: array_ = cv::_InputOutputArray(fixed_); break;

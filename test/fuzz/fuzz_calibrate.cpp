@@ -140,11 +140,5 @@ void tryRig(Bytes& bytes)
 
 void fuzz::tryInput(Bytes& bytes)
 {
-    switch (bytes.below(4))
-    {
-    case 0: return tryNormal(bytes);
-    case 1: return tryGlass(bytes);
-    case 2: return tryStereo(bytes);
-    case 3: return tryRig(bytes);
-    }
+    tryOneOf(bytes, {tryNormal, tryGlass, tryStereo, tryRig});
 }

@@ -91,10 +91,5 @@ void tryCovariance(Bytes& bytes)
 
 void fuzz::tryInput(Bytes& bytes)
 {
-    switch (bytes.below(3))
-    {
-    case 0: return tryEpilines(bytes);
-    case 1: return tryTriangulate(bytes);
-    case 2: return tryCovariance(bytes);
-    }
+    tryOneOf(bytes, {tryEpilines, tryTriangulate, tryCovariance});
 }

@@ -106,12 +106,5 @@ void tryPlane(Bytes& bytes)
 
 void fuzz::tryInput(Bytes& bytes)
 {
-    switch (bytes.below(5))
-    {
-    case 0: return tryProject(bytes);
-    case 1: return tryJacobian(bytes);
-    case 2: return tryUnproject(bytes);
-    case 3: return tryUndistort(bytes);
-    case 4: return tryPlane(bytes);
-    }
+    tryOneOf(bytes, {tryProject, tryJacobian, tryUnproject, tryUndistort, tryPlane});
 }

@@ -13,6 +13,12 @@ namespace fuzz {
 
 void tryInput(Bytes& bytes);
 
+//! The input's first byte says which.
+inline void tryOneOf(Bytes& bytes, std::initializer_list<void (*)(Bytes&)> calls)
+{
+    calls.begin()[bytes.below((int)calls.size())](bytes);
+}
+
 [[noreturn]] inline void broken(const char* promise)
 {
     std::fprintf(stderr, "FINDING: %s\n", promise);
