@@ -213,26 +213,44 @@ std::vector<Rig> plausibleMinima(const std::vector<Trial>& sorted)
     return minima;
 }
 
-/** The minima that a window of the best leads to when it is tilted the other way, as long as that finds a better one: with
-several windows the search above, one window after the other, does not meet all combinations.
+/** The same rig on the other side of what a tilt is exchanged for: a window tilted the other way, or, with the window as it is,
+a lens with its principal point there and no distortion. One after the other; nothing where that is the same.
+@param middle where principal points are looked for around */
+std::vector<Rig> otherSides(const Rig& rig, const Rig& middle, int flags)
+{
+    std::vector<Rig> others;
+    for (int c = 0; c < rig.count(); c++)
+    {
+        const Vec3d normal = rig.cameras[c].layers().normal();
+        if (rig.owns(c) && std::hypot(normal[0], normal[1]) > ROUGHLY_SAME_ANGLE)
+        {
+            others.push_back(rig);
+            setNormal(others.back(), c, Vec3d(-normal[0], -normal[1], normal[2]));
+        }
+        const std::vector<bool> isFree = freeLens(rig.cameras[c], flags);
+        std::vector<double> lens = rig.cameras[c].lens().parameters();
+        const std::vector<double> around = middle.cameras[c].lens().parameters();
+        for (int i = 2; i < (int)lens.size(); i++)
+            if (isFree[i])
+                lens[i] = i < 4 ? 2*around[i] - lens[i] : 0;
+        others.push_back(rig);
+        others.back().cameras[c].setLensParameters(Mat(lens));
+    }
+    return others;
+}
+
+/** From the best to the other sides of it, as long as that finds a better one: the search above meets neither all combinations
+of several windows, nor minima that some views do not have.
 @param sorted gets them too */
-void tiltTheOtherWay(std::vector<Trial>& sorted, const RigViews& views, const TermCriteria& criteria, int flags)
+void turnOver(const Rig& middle, std::vector<Trial>& sorted, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     const double BETTER = 1e-6;
     double before = std::numeric_limits<double>::infinity();
     while (sorted[0].cost < (1 - BETTER)*before)
     {
         before = sorted[0].cost;
-        const Rig best = sorted[0].rig;
-        for (int owner = 0; owner < best.count(); owner++)
-        {
-            const Vec3d normal = best.cameras[owner].layers().normal();
-            if (!best.owns(owner) || std::hypot(normal[0], normal[1]) < ROUGHLY_SAME_ANGLE)
-                continue;
-            Rig turned = best;
-            setNormal(turned, owner, Vec3d(-normal[0], -normal[1], normal[2]));
-            sorted.push_back(fitSome(turned, views, criteria, flags));
-        }
+        for (const Rig& other : otherSides(sorted[0].rig, middle, flags))
+            sorted.push_back(fitSome(other, views, criteria, flags));
         std::stable_sort(sorted.begin(), sorted.end());
     }
 }
@@ -280,7 +298,7 @@ RigStart bestSealedStart(const RigStart& given, const RigViews& views, const Rig
     std::vector<Trial> minima = fitEach(starts, all, TO_THE_END, task.flags);
     if (minima.empty() || !std::isfinite(minima[0].cost))
         return given;
-    tiltTheOtherWay(minima, all, TO_THE_END, task.flags);
+    turnOver(given.rig, minima, all, TO_THE_END, task.flags);
     describeOther(minima, others);
     RigStart start = { minima[0].rig, std::vector<Pose>(views.count()) };
     addPosesThroughWindow(start.rig, views, start.poses);
