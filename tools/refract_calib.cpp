@@ -19,20 +19,20 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 --max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
 carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
-#include "cli.hpp"
-#include "data_checks.hpp"
-#include "file_output.hpp"
-#include "misfit.hpp"
-#include "outputs.hpp"
-#include "pinhole_rig.hpp"
-#include "plot.hpp"
-#include "progress.hpp"
-#include "report.hpp"
-#include "summary.hpp"
-#include "summary_json.hpp"
-#include "table.hpp"
-#include "thumbnails.hpp"
-#include "units.hpp"
+#include "assess/misfit.hpp"
+#include "calibrate/data_checks.hpp"
+#include "calibrate/pinhole_rig.hpp"
+#include "calibrate/units.hpp"
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/progress.hpp"
+#include "console/table.hpp"
+#include "report/plot.hpp"
+#include "report/report.hpp"
+#include "report/summary.hpp"
+#include "report/summary_json.hpp"
+#include "report/thumbnails.hpp"
 #include <iostream>
 #include <map>
 #include <regex>

@@ -14,12 +14,12 @@ If nothing moved, it says "moved" with the probability --false-alarm.
 Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
 not show a tilt of --detect degrees with a probability of 95 %.)";
 
-#include "file_output.hpp"
-#include "measurement.hpp"
-#include "outputs.hpp"
-#include "table.hpp"
-#include "units.hpp"
-#include "window_check.hpp"
+#include "assess/measurement.hpp"
+#include "assess/window_check.hpp"
+#include "calibrate/units.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/table.hpp"
 #include <nlohmann/json.hpp>
 #include <algorithm>
 #include <iostream>

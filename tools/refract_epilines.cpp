@@ -1,11 +1,11 @@
-#include "drawing.hpp"
-#include "file_output.hpp"
-#include "images.hpp"
-#include "measurement.hpp"
-#include "outputs.hpp"
-#include "point_file.hpp"
-#include "table.hpp"
-#include "views.hpp"
+#include "assess/measurement.hpp"
+#include "console/file_output.hpp"
+#include "console/images.hpp"
+#include "console/outputs.hpp"
+#include "console/point_file.hpp"
+#include "console/table.hpp"
+#include "report/drawing.hpp"
+#include "target/views.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>

@@ -1,9 +1,9 @@
-#include "file_output.hpp"
-#include "measurement.hpp"
-#include "outputs.hpp"
-#include "table.hpp"
-#include "units.hpp"
-#include "views.hpp"
+#include "assess/measurement.hpp"
+#include "calibrate/units.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/table.hpp"
+#include "target/views.hpp"
 
 #include <cmath>
 #include <iostream>

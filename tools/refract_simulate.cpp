@@ -1,8 +1,8 @@
-#include "calibrate_rig.hpp"
-#include "file_output.hpp"
-#include "outputs.hpp"
-#include "progress.hpp"
-#include "scene_file.hpp"
+#include "calibrate/calibrate_rig.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/progress.hpp"
+#include "simulate/scene_file.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>

@@ -1,9 +1,9 @@
-#include "calib_file.hpp"
-#include "cli.hpp"
-#include "file_output.hpp"
-#include "images.hpp"
-#include "outputs.hpp"
-#include "progress.hpp"
+#include "calibrate/calib_file.hpp"
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/images.hpp"
+#include "console/outputs.hpp"
+#include "console/progress.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <filesystem>

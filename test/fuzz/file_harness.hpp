@@ -1,9 +1,9 @@
 #ifndef REFRACT_FUZZ_FILE_HARNESS_HPP
 #define REFRACT_FUZZ_FILE_HARNESS_HPP
 
+#include "console/cli.hpp"
 #include "harness.hpp"
 #include "scratch.hpp"
-#include "cli.hpp"
 
 /* The harness of a parser: the input is the whole file. It defines EXTENSION and tryFile(). */
 namespace fuzz {

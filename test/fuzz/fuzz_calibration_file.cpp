@@ -1,5 +1,5 @@
+#include "calibrate/calib_file.hpp"
 #include "file_harness.hpp"
-#include "calib_file.hpp"
 
 // calib.yml as the tools read it; what was read is written and read again.
 

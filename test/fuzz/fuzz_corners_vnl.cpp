@@ -1,5 +1,5 @@
 #include "file_harness.hpp"
-#include "corners_vnl.hpp"
+#include "target/corners_vnl.hpp"
 
 // mrcal's corners.vnl, of a target of six points.
 

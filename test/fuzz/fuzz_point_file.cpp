@@ -1,5 +1,5 @@
+#include "console/point_file.hpp"
 #include "file_harness.hpp"
-#include "point_file.hpp"
 
 // Points for refract_epilines --points.
 

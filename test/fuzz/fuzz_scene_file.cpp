@@ -1,5 +1,5 @@
 #include "file_harness.hpp"
-#include "scene_file.hpp"
+#include "simulate/scene_file.hpp"
 
 // RIG.yml of refract_simulate.
 

@@ -2,9 +2,9 @@
 #ifndef REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 #define REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 
-#include "rig_data.hpp"
+#include "assess/view_derivatives.hpp"
+#include "calibrate/rig_data.hpp"
 #include "scenes.hpp"
-#include "view_derivatives.hpp"
 #include <opencv2/calib3d.hpp>
 
 inline tools::Rig paperRig(int cameras)

@@ -1,5 +1,5 @@
 // What is wrong with images before a fit: names that pair nothing, one image under two names, parallel boards.
-#include "data_checks.hpp"
+#include "calibrate/data_checks.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

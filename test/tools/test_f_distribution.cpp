@@ -1,4 +1,4 @@
-#include "f_distribution.hpp"
+#include "assess/f_distribution.hpp"
 #include "scenes.hpp"
 
 using namespace tools;

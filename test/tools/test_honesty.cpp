@@ -1,10 +1,10 @@
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
-#include "measurement.hpp"
+#include "assess/measurement.hpp"
+#include "assess/sight.hpp"
+#include "calibrate/wrong_points.hpp"
 #include "paper_rig.hpp"
-#include "render.hpp"
-#include "sight.hpp"
-#include "wrong_points.hpp"
+#include "simulate/render.hpp"
 #include <Eigen/LU>
 #include <map>
 

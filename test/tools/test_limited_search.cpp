@@ -1,6 +1,6 @@
 // A search that would never end, and the progress that is told meanwhile.
-#include "limited_search.hpp"
-#include "progress.hpp"
+#include "console/progress.hpp"
+#include "target/limited_search.hpp"
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>

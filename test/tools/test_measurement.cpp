@@ -1,7 +1,7 @@
 // The stated uncertainty of points measured by one camera, against draws of calibration and pixels.
-#include "measurement.hpp"
+#include "assess/measurement.hpp"
+#include "assess/point_error.hpp"
 #include "paper_rig.hpp"
-#include "point_error.hpp"
 
 using namespace cv;
 using namespace cv::refract;

@@ -1,5 +1,5 @@
 // Mistakes in what is given, told from images that do not fit.
-#include "misfit.hpp"
+#include "assess/misfit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

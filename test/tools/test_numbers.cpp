@@ -1,8 +1,8 @@
 // Numbers in options and point files mean the same where people write a decimal comma.
+#include "console/cli.hpp"
+#include "console/point_file.hpp"
 #include "german.hpp"
-#include "cli.hpp"
-#include "corners_vnl.hpp"
-#include "point_file.hpp"
+#include "target/corners_vnl.hpp"
 #include <cmath>
 #include <fstream>
 

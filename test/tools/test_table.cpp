@@ -1,5 +1,5 @@
 // Table: what is too wide for a terminal is broken between words.
-#include "table.hpp"
+#include "console/table.hpp"
 #include <catch2/catch.hpp>
 #include <sstream>
 

@@ -1,6 +1,6 @@
 // What a wrong value does to measured points, against calibrations from observations that are wrong in that way.
+#include "assess/tolerance.hpp"
 #include "paper_rig.hpp"
-#include "tolerance.hpp"
 
 using namespace cv;
 using namespace cv::refract;

@@ -1,5 +1,5 @@
+#include "assess/wedge.hpp"
 #include "paper_rig.hpp"
-#include "wedge.hpp"
 
 using namespace cv;
 using namespace cv::refract;

@@ -1,6 +1,6 @@
+#include "assess/window_check.hpp"
+#include "console/table.hpp"
 #include "paper_rig.hpp"
-#include "table.hpp"
-#include "window_check.hpp"
 #include <Eigen/Eigenvalues>
 
 using namespace cv;

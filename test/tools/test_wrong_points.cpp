@@ -1,6 +1,6 @@
 // dropWrongPoints: what the robust fit takes out of the data, and what it says if it cannot.
+#include "calibrate/wrong_points.hpp"
 #include "paper_rig.hpp"
-#include "wrong_points.hpp"
 
 using namespace cv;
 using namespace tools;

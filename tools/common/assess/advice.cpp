@@ -1,0 +1,180 @@
+#include "assess/advice.hpp"
+#include "assess/point_error.hpp"
+#include "assess/view_derivatives.hpp"
+#include "console/table.hpp"
+#include <opencv2/calib3d.hpp>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+using Eigen::MatrixXd;
+
+namespace tools {
+
+namespace {
+
+const int GRID_COLUMNS = 5;
+const int NEXT = 3;                     // images to advise
+const double TILT_DEG = 30.;
+const double MUST_BE_SEEN = 0.75;       // of the board's points, in each image
+
+struct Placement
+{
+    std::string words;
+    Vec3d rvec, tvec;                   //!< board -> camera 1
+};
+
+enum Kind { PAIR, GLASS_ONLY, DIRECT_ONLY };
+
+class Adviser
+{
+public:
+    explicit Adviser(const RigCalibration& c) : c_(c), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
+
+    const MatrixXd& now() const { return now_; }
+
+    Worth worthOf(const MatrixXd& covariance) const
+    {
+        Worth worth;
+        for (int k = 0; k < c_.data.cameraCount; k++)
+            worth.normalStdDeg.push_back(normalStdDeg(toMat(covariance), c_.fit.rig, k)[0]);
+        Calibration calibration = calibrationOf(c_.fit.rig);
+        calibration.covariance = toMat(covariance);
+        const Vec3d depth = workingDepth(c_, 0);
+        double squares = 0.;
+        int count = 0;
+        for (double z : {depth[0], depth[2]})
+        {
+            const ErrorMap map = mapErrors(calibration, z, sigma_, GRID_COLUMNS);
+            if (map.seen())
+                worth.worstPoint = std::fmax(worth.worstPoint, map.worst());
+            for (size_t i = 0; i < map.total.size(); i++)
+                if (map.total[i] == map.total[i])
+                {
+                    squares += map.total[i] * map.total[i] - map.ofPixels[i] * map.ofPixels[i];
+                    count++;
+                }
+        }
+        worth.calibrationPart = count ? std::sqrt(std::max(0., squares) / count) : NONE;
+        return worth;
+    }
+
+    /** The square root of what a view tells about the parameters; empty if too little of the board is seen. */
+    MatrixXd informationOf(const Placement& placement, Kind kind) const
+    {
+        std::vector<ImageOfView> images;
+        for (int camera = 0; camera < c_.data.cameraCount; camera++)
+            for (bool glass : {true, false})
+            {
+                if ((glass && kind == DIRECT_ONLY) || (!glass && kind == GLASS_ONLY))
+                    continue;
+                images.push_back(pointsInImage(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, camera, glass));
+                if (images.back().points.size() < MUST_BE_SEEN * c_.data.objectPoints.size())
+                    return MatrixXd();
+            }
+        const ViewDerivatives d = differentiateView(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, images);
+        const MatrixXd J = basisWithoutPose(d.byPose).transpose() * d.byParameters;
+        const Eigen::Index n = std::min(J.rows(), J.cols());
+        return Eigen::HouseholderQR<MatrixXd>(J).matrixQR().topRows(n).triangularView<Eigen::Upper>();
+    }
+
+    MatrixXd covarianceAfter(const MatrixXd& before, const MatrixXd& information) const
+    {
+        return covarianceWith(before, information, sigma_);
+    }
+
+    //! Near, middle and far; middle and four sides of the image; straight and tilted to four sides.
+    std::vector<Placement> placements() const
+    {
+        const Vec3d depth = workingDepth(c_, 0);
+        const struct { double z; const char* words; } ranges[] = {{depth[0], "near"}, {depth[1], "in the middle of the range"},
+                                                                   {depth[2], "far"}};
+        const struct { Point2d at; const char* words; } places[] = {{{0.5, 0.5}, "in the middle of the image"},
+            {{0.3, 0.5}, "in the left half"}, {{0.7, 0.5}, "in the right half"}, {{0.5, 0.32}, "in the upper half"},
+            {{0.5, 0.68}, "in the lower half"}};
+        const struct { Vec3d axis; const char* words; } tilts[] = {{{0, 0, 0}, "square to the camera"},
+            {{0, 1, 0}, "left edge farther by 30 degrees"}, {{0, -1, 0}, "right edge farther by 30 degrees"},
+            {{1, 0, 0}, "lower edge farther by 30 degrees"}, {{-1, 0, 0}, "upper edge farther by 30 degrees"}};
+        std::vector<Placement> result;
+        for (const auto& range : ranges)
+            for (const auto& place : places)
+                for (const auto& tilt : tilts)
+                    result.push_back({format("%s (z = %.4g %s), %s, %s", range.words, range.z, c_.unit.c_str(), place.words,
+                                             tilt.words),
+                                      tilt.axis * (TILT_DEG * CV_PI / 180.), boardAt(place.at, range.z, tilt.axis)});
+        return result;
+    }
+
+private:
+    //! tvec that brings the board's middle to a share of the image, at the depth z.
+    Vec3d boardAt(const Point2d& share, double z, const Vec3d& axis) const
+    {
+        const Size size = c_.data.imageSize[0];
+        std::vector<Point3d> middle;
+        refractivePointsOnPlane(std::vector<Point2d>{{share.x * size.width, share.y * size.height}}, middle,
+                                c_.fit.rig.cameras[0], Vec4d(0, 0, 1, z));
+        Point3d centre;
+        for (const Point3d& X : c_.data.objectPoints)
+            centre += X * (1. / c_.data.objectPoints.size());
+        Matx33d R;
+        Rodrigues(axis * (TILT_DEG * CV_PI / 180.), R);
+        return Vec3d(middle[0]) - R * Vec3d(centre);
+    }
+
+    const RigCalibration& c_;
+    MatrixXd now_;
+    double sigma_;
+};
+
+} // namespace
+
+Advice adviseImages(const RigCalibration& calibration)
+{
+    const Adviser adviser(calibration);
+    std::vector<Placement> placements;
+    std::vector<MatrixXd> informations;
+    for (const Placement& placement : adviser.placements())
+    {
+        const MatrixXd information = adviser.informationOf(placement, PAIR);
+        if (information.size() == 0)
+            continue;
+        placements.push_back(placement);
+        informations.push_back(information);
+    }
+    Advice advice;
+    advice.now = adviser.worthOf(adviser.now());
+    MatrixXd covariance = adviser.now();
+    int first = -1;
+    for (int n = 0; n < NEXT && !placements.empty(); n++)
+    {
+        Shot best;
+        MatrixXd bestCovariance;
+        int at = -1;
+        for (size_t i = 0; i < placements.size(); i++)
+        {
+            const MatrixXd after = adviser.covarianceAfter(covariance, informations[i]);
+            const Worth worth = adviser.worthOf(after);
+            if (at >= 0 && !(worth.calibrationPart < best.worth.calibrationPart))
+                continue;
+            best = {placements[i].words, worth};
+            bestCovariance = after;
+            at = (int)i;
+        }
+        covariance = bestCovariance;
+        advice.pairs.push_back(best);
+        if (n == 0)
+            first = at;
+    }
+    if (first < 0)
+        return advice;
+    const struct { Kind kind; const char* words; } others[] = {{GLASS_ONLY, "only the image through the window of the first"},
+                                                              {DIRECT_ONLY, "only the direct image of the first"}};
+    for (const auto& other : others)
+        advice.instead.push_back({other.words, adviser.worthOf(
+            adviser.covarianceAfter(adviser.now(), adviser.informationOf(placements[first], other.kind)))});
+    return advice;
+}
+
+} // namespace tools

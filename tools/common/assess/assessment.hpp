@@ -1,0 +1,25 @@
+#ifndef REFRACT_TOOLS_ASSESSMENT_HPP
+#define REFRACT_TOOLS_ASSESSMENT_HPP
+
+#include "assess/advice.hpp"
+#include "assess/given_values.hpp"
+#include "assess/point_error.hpp"
+#include "assess/tolerance.hpp"
+
+/* What a calibration is good for: how well it measures, what wrong values would do to it, what the next images would bring. */
+namespace tools {
+
+struct Assessment
+{
+    std::vector<ErrorMap> errors;           //!< from half the nearest to twice the farthest board
+    std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
+    std::vector<Tolerance> tolerances;
+    Advice advice;
+    std::vector<Contradiction> contradictions;
+};
+
+Assessment assess(const RigCalibration& calibration, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_ASSESSMENT_HPP

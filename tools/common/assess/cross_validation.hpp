@@ -1,0 +1,42 @@
+#ifndef REFRACT_TOOLS_CROSS_VALIDATION_HPP
+#define REFRACT_TOOLS_CROSS_VALIDATION_HPP
+
+#include "assess/rig_checks.hpp"
+#include "assess/sight.hpp"
+
+/* What the calibration is worth on images that it has not seen: the numbers to judge it by. Lens, window and rig come from
+some of the moments; the others are held out. A lens that does not take part in the fit (given, or from direct images alone)
+stays. */
+namespace tools {
+
+/** Each moment with a glass image is held out once; the rest calibrates. NaN: not applicable. */
+struct HeldOut
+{
+    int folds = 0;                  //!< 0: not done
+    int views = 0, failed = 0;      //!< moments held out; those whose rest did not determine the window
+    double px = NONE;               //!< RMS through the window, the board's pose fitted to the one image
+    double pinholePx = NONE;        //!< the same for a pinhole calibrated through the glass
+    Misfit misfit;                  //!< of all images of the moments, over all folds: error against what was stated
+    double transferPx = NONE;       //!< RMS through the window, the board's pose from the direct image of the pair alone
+    double lengthRms = NONE;        //!< two cameras: distances of neighbouring corners, triangulated minus true, RMS
+    double lengthMean = NONE;
+    double pinholeLengthRms = NONE; //!< the same for a pinhole rig calibrated through the glass
+};
+
+HeldOut holdOut(const RigData& data, const Fit& fit, int flags);
+
+/** Calibrated on the boards of one half of the range, tested on the other. A central camera fitted through the glass
+absorbs the window at the range it was calibrated at, and nowhere else. */
+struct NearFar
+{
+    bool done = false;              //!< false: too few images through the window
+    double nearRange[2], farRange[2];                       //!< board distance from camera 1, from - to
+    double windowNearToFar = NONE, windowFarToNear = NONE;  //!< RMS px on the half not used
+    double pinholeNearToFar = NONE, pinholeFarToNear = NONE;
+};
+
+NearFar nearAgainstFar(const RigData& data, const Fit& fit, int flags);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CROSS_VALIDATION_HPP

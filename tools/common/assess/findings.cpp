@@ -1,0 +1,331 @@
+#include "assess/findings.hpp"
+#include "assess/f_distribution.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+// Where a finding begins. They only choose words; no number depends on them.
+const double WEAK_NORMAL_DEG = 0.1;
+const double WEAK_RELATIVE = 0.1;           // of thickness or distance
+const double WEAK_INDEX = 0.01;
+const double TIED = 0.95;                   // correlation
+const double MISFIT_RATIO = 1.5;            // RMS through the window / RMS direct
+const double OUTLYING_VIEW = 2.5;           // times the median RMS of the views
+const double INFLUENTIAL = 3.;              // standard deviations that one view may turn the normal
+const double LOW_COVERAGE = 0.5;
+const double NARROW_RANGE = 1.2;            // farthest / nearest
+const int FEW_VIEWS = 5;
+const double HELD_OUT_CHANCE = 1e-3;        // that true +- look so wrong on held-out boards
+
+//! "camera 2: " where there are two.
+std::string of(const RigCalibration& c, int camera)
+{
+    return c.data.cameraCount == 1 ? "" : format("camera %d: ", camera + 1);
+}
+
+bool equalMedia(const GlassWindow& window) { return window.innerIndex == window.outerIndex; }
+
+//! The camera that the window's parameters belong to: with one shared window, the first.
+bool ownsWindow(const RigCalibration& c, int camera)
+{
+    return camera == 0 || !(c.options.flags & GLASS_SHARED_WINDOW);
+}
+
+void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
+{
+    const Limits& limits = c.limits;
+    if (limits.rms > 0)
+        f.limits.push_back({format("--max-rms=%g", limits.rms), "RMS over all corners", limits.rms, c.fit.rms, "px"});
+    for (int k = 0; k < c.data.cameraCount && limits.normalStdDeg > 0; k++)
+        f.limits.push_back({format("--max-normal-std=%g", limits.normalStdDeg), of(c, k) + "standard deviation of the normal",
+                            limits.normalStdDeg, windowStd(c.fit, k).normalDeg[0], "deg"});
+    for (size_t i = 0; i < limits.errors.size(); i++)
+    {
+        const ErrorLimit& limit = limits.errors[i];
+        f.limits.push_back({format("--max-error-at=%g:%g", limit.range, limit.error),
+                            format("expected error of the worst point at z = %g %s", limit.range, c.unit.c_str()), limit.error,
+                            a.limits[i].worst(), c.unit});
+    }
+}
+
+void judgeWindow(const RigCalibration& c, int camera, Findings& f)
+{
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const WindowStd std = windowStd(c.fit, camera);
+    if (std.normalDeg[0] > WEAK_NORMAL_DEG)
+        f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std.normalDeg[0])
+                         + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
+                            : "take pairs (the board not moved between an image without and one with the window)"));
+    if (std.distance > WEAK_RELATIVE * window.distance)
+        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
+                                                "strongly tilted boards at the image's border help",
+                                                window.distance, std.distance, c.unit.c_str()));
+    for (size_t i = 0; i < window.thickness.size(); i++)
+    {
+        if (std.thickness[i] > WEAK_RELATIVE * window.thickness[i])
+            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
+                                                    "a caliper and give it by --thickness", window.thickness[i],
+                                                    std.thickness[i], c.unit.c_str()));
+        if (std.index[i] > WEAK_INDEX)
+            f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
+                                                    "by --index", window.index[i], std.index[i]));
+    }
+    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    if (other && !other->isExcluded())
+        f.weak.push_back(of(c, camera) + other->sentence());
+    if (equalMedia(window))
+        f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
+                               "has exactly no effect on the image (and is not needed)");
+    if (c.data.countPairs(camera) == 0 && std.normalDeg[0] > WEAK_NORMAL_DEG)
+        f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
+                               "place, so tilt and board poses are partly exchangeable. Pairs are worth 30 to 90 times more "
+                               "than such glass-only views");
+}
+
+//! Thickness and index of a single layer: what shows at small angles, and how well it is known.
+std::string opticalPath(const RigCalibration& c, int camera)
+{
+    const GlassWindow w = c.fit.rig.cameras[camera]->window();
+    const ParameterColumns at = columnsOf(c.fit.rig, camera);
+    const double d = w.thickness[0], n = w.index[0], byThickness = 1. - w.outerIndex / n, byIndex = d * w.outerIndex / (n * n);
+    const auto cov = [&](int i, int j) { return c.fit.covariance.at<double>(i, j); };
+    const double variance = byThickness * byThickness * cov(at.thickness, at.thickness)
+        + 2. * byThickness * byIndex * cov(at.thickness, at.index) + byIndex * byIndex * cov(at.index, at.index);
+    return of(c, camera) + format("thickness and index apart: only thickness x (1 - %s/index) = ",
+                                  w.outerIndex == 1. ? "1" : format("%.4g", w.outerIndex).c_str())
+        + plusMinus(d * byThickness, std::sqrt(std::max(0., variance))) + " is determined (thickness alone +- "
+        + format("%.2g, index alone +- %.2g); fixing one of them makes the other far better",
+                 std::sqrt(cov(at.thickness, at.thickness)), std::sqrt(cov(at.index, at.index)));
+}
+
+bool isOneOf(const FreeParameter& p, int first, int second) { return p.column == first || p.column == second; }
+
+void judgeCorrelations(const RigCalibration& c, Findings& f)
+{
+    const std::vector<FreeParameter> free = freeWindowParameters(c.fit, c.options.flags);
+    for (size_t i = 0; i < free.size(); i++)
+        for (size_t j = i + 1; j < free.size(); j++)
+        {
+            if (free[i].isNormal && free[j].isNormal)       // told by the two principal deviations
+                continue;
+            const double covariance = c.fit.covariance.at<double>(free[i].column, free[j].column);
+            const double r = covariance / (free[i].std * free[j].std);
+            if (std::abs(r) <= TIED)
+                continue;
+            bool told = false;
+            for (int k = 0; k < c.data.cameraCount && !told; k++)
+            {
+                const ParameterColumns at = columnsOf(c.fit.rig, k);
+                told = at.layers == 1 && isOneOf(free[i], at.thickness, at.index) && isOneOf(free[j], at.thickness, at.index);
+                if (told)
+                    f.cannotTell.push_back(opticalPath(c, k));
+            }
+            if (told)
+                continue;
+            // The combination of both that is known best.
+            const double k = -covariance / (free[j].std * free[j].std);
+            f.cannotTell.push_back(format("%s and %s apart (correlation %.4f): only %s %c %.4g x %s = ", free[i].name.c_str(),
+                                          free[j].name.c_str(), r, free[i].name.c_str(), k < 0 ? '-' : '+', std::abs(k),
+                                          free[j].name.c_str())
+                                   + plusMinus(free[i].value + k * free[j].value, free[i].std * std::sqrt(std::max(0., 1. - r * r)))
+                                   + format(" is determined (each alone +- %.2g, +- %.2g)", free[i].std, free[j].std));
+        }
+}
+
+void judgeFit(const RigCalibration& c, int camera, Findings& f)
+{
+    const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
+    // What the direct images reach without the window; in the joint fit a wrong window drags them along.
+    const LensSource& lens = c.lensSources[camera];
+    const double alone = lens.kind == LensSource::FROM_DIRECT ? std::min(lens.rms, direct.px) : direct.px;
+    if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO * alone)
+        f.weak.push_back(of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
+                         "together, direct alone %.3f px): check thickness and index, whether the board moved within a pair, "
+                         "and whether the window is flat", direct.px, glass.px, alone));
+    const double through = c.baselines.throughGlass[camera];
+    if (glass.px > MISFIT_RATIO * through)
+        f.weak.push_back(of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
+                         "(%.3f px) than lens and window together (%.3f px): the lens or the given values may be wrong",
+                         through, glass.px));
+    else if (glass.px > 0.8 * through)
+        f.cannotTell.push_back(of(c, camera) + format("from the residuals alone that the window is needed: a pinhole camera "
+                               "calibrated on these same images fits them about as well (%.3f px). It does so only near the "
+                               "poses it was calibrated on", through));
+    if (glass.views < FEW_VIEWS)
+        f.weak.push_back(of(c, camera) + format("only %d image(s) through the window: take at least %d, better 10", glass.views,
+                                                FEW_VIEWS));
+    const double covered = coverage(c, camera);
+    if (covered < LOW_COVERAGE)
+        f.weak.push_back(of(c, camera) + format("the board covers only %.0f %% of the image through the window: show it in the "
+                                                "corners too", 100. * covered));
+    const Vec3d depth = workingDepth(c, camera);
+    if (depth[2] < NARROW_RANGE * depth[0])
+        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
+                                                depth[2], c.unit.c_str()));
+}
+
+void judgeViews(const RigCalibration& c, int camera, Findings& f)
+{
+    for (bool glass : {true, false})
+    {
+        std::vector<std::pair<double, int>> views;
+        for (int i : c.fit.moments)
+        {
+            const Rms rms = rmsOf(c, camera, glass, i);
+            if (rms.points)
+                views.push_back({rms.px, i});
+        }
+        if (views.size() < 3)
+            continue;
+        std::sort(views.begin(), views.end());
+        const double median = views[views.size() / 2].first;
+        for (const auto& view : views)
+            if (view.first > OUTLYING_VIEW * median)
+                f.weak.push_back(of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the middle view has %.3f px; look at "
+                                 "the image, leave it out if corners are wrong", c.data.moments[view.second].stem.c_str(),
+                                 glass ? "through the window" : "direct", view.first, median));
+    }
+    const double sigma = windowStd(c.fit, camera).normalDeg[0];
+    for (const Influence& influence : c.influences)
+        if (influence.turnDeg[camera] > INFLUENTIAL * sigma)
+            f.weak.push_back(of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
+                             c.data.moments[influence.moment].stem.c_str(), influence.turnDeg[camera],
+                             influence.turnDeg[camera] / sigma));
+}
+
+bool isLensFree(const RigCalibration& c, int camera)
+{
+    const ParameterColumns at = columnsOf(c.fit.rig, camera);
+    return c.fit.stdDeviations.at<double>(at.lens) > 0.;
+}
+
+std::string whyNotChecked(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    if (h.misfit.directions)
+        return "";
+    if (!c.crossValidated)
+        return "with --no-cross-validation all boards took part";
+    if (!h.folds)
+        return "there are too few images through the window to hold any out";
+    if (h.failed == h.views || !(h.misfit.expectedSquares > 0))
+        return "without the boards held out the others do not determine the calibration";
+    return "on the held-out boards the calibration's stated error is below the noise of the pixels, so they cannot show "
+           "whether it is true";
+}
+
+//! Boards that took no part against what was stated of them.
+void judgeHeldOut(const RigCalibration& c, Findings& f)
+{
+    const Misfit& m = c.heldOut.misfit;
+    f.notChecked = whyNotChecked(c);
+    if (!f.notChecked.empty())
+    {
+        f.cannotTell.push_back("whether the stated +- is true: " + f.notChecked);
+        return;
+    }
+    const double perDirection = m.chiSquare / m.directions;
+    // The folds share most of their images: as if there were only one.
+    const int pairsOfDirections = std::max(1, m.directions / c.heldOut.folds / 2);
+    if (upperTailF(pairsOfDirections, c.fit.freedom, perDirection) < HELD_OUT_CHANCE)
+        f.weak.push_back(format("boards that took no part are %.1f times as far off as the calibration's +- says: the stated "
+                                "uncertainties are too small. A given value, the lens model or the target may be wrong, or "
+                                "the window not flat", std::sqrt(perDirection)));
+}
+
+void judgeAssumptions(const RigCalibration& c, Findings& f)
+{
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
+            f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
+    f.assumed.push_back(format("the square of %g %s: all lengths are in proportion to it, and no image shows it", c.square,
+                               c.unit.c_str()));
+    const GlassWindow& window = c.options.window;
+    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.thicknessStd == 0.)
+        f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
+                            "the distance, as the media on its two sides differ)"));
+    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.indexStd == 0.)
+        f.assumed.push_back("the index");
+    if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
+        f.assumed.push_back("the distance");
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.data.countPairs(k))
+            f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
+                                "all the same way, which no residual shows");
+    if (!c.wrong.fault.empty())
+        f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
+    f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
+}
+
+//! "camera 1: x" and "camera 2: x" become "x".
+void mergeCameras(std::vector<std::string>& sentences)
+{
+    for (size_t i = 0; i < sentences.size(); i++)
+    {
+        const std::string first = "camera 1: ";
+        if (sentences[i].compare(0, first.size(), first) != 0)
+            continue;
+        const std::string rest = sentences[i].substr(first.size());
+        const auto twin = std::find(sentences.begin(), sentences.end(), "camera 2: " + rest);
+        if (twin == sentences.end())
+            continue;
+        sentences.erase(twin);
+        sentences[i] = rest;
+    }
+}
+
+} // namespace
+
+std::string LimitCheck::sentence() const
+{
+    if (std::isnan(value))
+        return what + " is not known there (nothing is seen), so " + option + " is not met";
+    return what + format(" is %.3g %s, ", value, unit.c_str()) + (met() ? "within " : "above ") + option;
+}
+
+bool Findings::pass() const
+{
+    return contradictions.empty() && std::all_of(limits.begin(), limits.end(), [](const LimitCheck& l) { return l.met(); });
+}
+
+std::string Findings::verdict() const
+{
+    if (!limits.empty())
+        return pass() ? "PASS" : "FAIL";
+    if (!contradictions.empty())
+        return "Not usable: the images contradict what was given";
+    if (!weak.empty())
+        return "Look at the weak points";
+    return notChecked.empty() ? "Good" : "Good, but not checked: " + notChecked;
+}
+
+Findings judge(const RigCalibration& calibration, const Assessment& assessment)
+{
+    Findings findings;
+    findings.weak = calibration.notices;
+    judgeLimits(calibration, assessment, findings);
+    for (int c = 0; c < calibration.data.cameraCount; c++)
+    {
+        if (ownsWindow(calibration, c))
+            judgeWindow(calibration, c, findings);
+        judgeFit(calibration, c, findings);
+        judgeViews(calibration, c, findings);
+    }
+    judgeCorrelations(calibration, findings);
+    judgeHeldOut(calibration, findings);
+    for (const Contradiction& contradiction : assessment.contradictions)
+        findings.contradictions.push_back(contradiction.sentence());
+    judgeAssumptions(calibration, findings);
+    for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
+        mergeCameras(*list);
+    return findings;
+}
+
+} // namespace tools

@@ -1,0 +1,25 @@
+#ifndef REFRACT_TOOLS_GIVEN_VALUES_HPP
+#define REFRACT_TOOLS_GIVEN_VALUES_HPP
+
+#include "assess/rig_calibration.hpp"
+
+/* Do the images contradict what was given? Each given value (thickness, index, distance, index of the scene's medium) is set
+free in turn, all else as in the calibration: where the images put it many of its standard deviations away, the stated +- of
+everything that rests on the given value is not true. */
+namespace tools {
+
+//! A given value that the images contradict.
+struct Contradiction
+{
+    std::string what;           //!< "thickness of camera 1's window"
+    std::string option;         //!< "--thickness"
+    double given, estimate, std;
+
+    std::string sentence() const;
+};
+
+std::vector<Contradiction> contradictedValues(const RigCalibration& calibration);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_GIVEN_VALUES_HPP

@@ -1,0 +1,108 @@
+#include "assess/point_error.hpp"
+#include "assess/measurement.hpp"
+#include <algorithm>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double NOT_SEEN = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> sortedAnswers(const std::vector<double>& values)
+{
+    std::vector<double> answers;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(answers), [](double v) { return v == v; });
+    std::sort(answers.begin(), answers.end());
+    return answers;
+}
+
+//! The value below which a share of the answers lies.
+double quantile(const std::vector<double>& values, double share)
+{
+    const std::vector<double> answers = sortedAnswers(values);
+    return answers.empty() ? NOT_SEEN : answers[std::min(answers.size() - 1, (size_t)(share * answers.size()))];
+}
+
+double largest(const std::vector<double>& values)
+{
+    const std::vector<double> answers = sortedAnswers(values);
+    return answers.empty() ? NOT_SEEN : answers.back();
+}
+
+std::vector<double> errorsOf(const Calibration& calibration, const PointsAtRange& seen, double range, double pixelSigma)
+{
+    const Measurement m = calibration.stereo() ? measureStereo(calibration, seen.pixels[0], seen.pixels[1], pixelSigma)
+                                               : measureOnPlane(calibration, seen.pixels[0], Vec4d(0, 0, 1, range), pixelSigma);
+    std::vector<double> errors;
+    for (size_t i = 0; i < m.points.size(); i++)
+        errors.push_back(m.status[i] == REFRACT_OK ? norm(m.sigma[i]) : NOT_SEEN);
+    return errors;
+}
+
+} // namespace
+
+bool ErrorMap::seen() const { return worst() == worst(); }
+
+double ErrorMap::best() const
+{
+    const std::vector<double> answers = sortedAnswers(total);
+    return answers.empty() ? NOT_SEEN : answers.front();
+}
+
+double ErrorMap::worst() const { return largest(total); }
+
+double ErrorMap::worstOfPixels() const { return largest(ofPixels); }
+
+double ErrorMap::most() const { return quantile(total, 0.95); }
+
+double ErrorMap::median() const { return quantile(total, 0.5); }
+
+double ErrorMap::share() const { return total.empty() ? 0. : (double)sortedAnswers(total).size() / total.size(); }
+
+std::vector<Point2d> gridOver(Size image, int columns, Size& grid)
+{
+    grid = Size(columns, std::max(2, cvRound((double)columns * image.height / image.width)));
+    std::vector<Point2d> pixels;
+    for (int row = 0; row < grid.height; row++)
+        for (int column = 0; column < grid.width; column++)
+            pixels.emplace_back((image.width - 1.) * column / (grid.width - 1), (image.height - 1.) * row / (grid.height - 1));
+    return pixels;
+}
+
+PointsAtRange pointsAtRange(const Calibration& calibration, const std::vector<Point2d>& pixels1, double range)
+{
+    PointsAtRange result;
+    result.pixels[0] = pixels1;
+    refractivePointsOnPlane(pixels1, result.points, calibration.cameras[0].camera, Vec4d(0, 0, 1, range));
+    if (!calibration.stereo())
+        return result;
+    const Ptr<RefractiveCamera>& camera2 = calibration.cameras[1].camera;
+    refractiveProjectPoints(result.points, Mat(calibration.R), calibration.T, camera2, result.pixels[1]);
+    const Rect2d image(Point2d(-0.5, -0.5), Size2d(camera2->imageSize()));
+    for (size_t i = 0; i < pixels1.size(); i++)
+        if (!image.contains(result.pixels[1][i]))
+        {
+            result.points[i] = Point3d(NOT_SEEN, NOT_SEEN, NOT_SEEN);
+            result.pixels[0][i] = result.pixels[1][i] = Point2d(NOT_SEEN, NOT_SEEN);
+        }
+    return result;
+}
+
+ErrorMap mapErrors(const Calibration& calibration, double range, double pixelSigma, int columns)
+{
+    ErrorMap map;
+    map.range = range;
+    map.pixels = gridOver(calibration.cameras[0].camera->imageSize(), columns, map.grid);
+    const PointsAtRange seen = pointsAtRange(calibration, map.pixels, range);
+    Calibration certain = calibration;
+    certain.covariance.release();
+    map.total = errorsOf(calibration, seen, range, pixelSigma);
+    map.ofPixels = errorsOf(certain, seen, range, pixelSigma);
+    return map;
+}
+
+} // namespace tools

@@ -1,0 +1,45 @@
+#ifndef REFRACT_TOOLS_POINT_ERROR_HPP
+#define REFRACT_TOOLS_POINT_ERROR_HPP
+
+#include "calibrate/calib_file.hpp"
+
+/* How well a point can be measured, anywhere: its expected error (one standard deviation: the root of the mean square of its
+3-D distance from the truth) from pixel noise and from the calibration's covariance. Two cameras: triangulation; one: a point
+on a plane square to the camera's axis. */
+namespace tools {
+
+//! At one range, over a grid of pixels of camera 1 that reaches the image's borders.
+struct ErrorMap
+{
+    double range = 0.;                  //!< z in the frame of camera 1
+    std::vector<cv::Point2d> pixels;    //!< row by row
+    cv::Size grid;
+    std::vector<double> total;          //!< NaN where a point is not seen
+    std::vector<double> ofPixels;       //!< the part of the pixel noise
+
+    bool seen() const;                  //!< anything at all
+    double best() const;                //!< NaN if nothing is seen
+    double worst() const;
+    double most() const;                //!< 95 % of what is seen is better: the worst may be a single point at a border
+    double median() const;
+    double share() const;               //!< of the grid that is seen
+    double worstOfPixels() const;
+};
+
+/** @param columns of the grid. */
+ErrorMap mapErrors(const Calibration& calibration, double range, double pixelSigma, int columns);
+
+//! What the cameras see of the points where camera 1's rays through some pixels meet the plane z = range.
+struct PointsAtRange
+{
+    std::vector<cv::Point3d> points;            //!< NaN: not seen by all cameras
+    std::vector<cv::Point2d> pixels[2];         //!< exact
+};
+PointsAtRange pointsAtRange(const Calibration& calibration, const std::vector<cv::Point2d>& pixels1, double range);
+
+//! A grid over an image, borders included.
+std::vector<cv::Point2d> gridOver(cv::Size image, int columns, cv::Size& grid);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_POINT_ERROR_HPP

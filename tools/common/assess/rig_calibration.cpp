@@ -1,0 +1,104 @@
+#include "assess/rig_calibration.hpp"
+#include "console/table.hpp"
+#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment)
+{
+    Rms rms;
+    double sum = 0.;
+    std::set<int> views;
+    for (const Residual& r : calibration.residuals)
+        if (r.camera == camera && r.glass == glass && (moment < 0 || r.moment == moment))
+        {
+            sum += r.error.dot(r.error);
+            rms.points++;
+            views.insert(r.moment);
+        }
+    rms.views = (int)views.size();
+    if (rms.points)
+        rms.px = std::sqrt(sum / rms.points);
+    return rms;
+}
+
+Rms rmsOfCamera(const RigCalibration& calibration, int camera)
+{
+    const Rms glass = rmsOf(calibration, camera, true), direct = rmsOf(calibration, camera, false);
+    Rms both;
+    both.points = glass.points + direct.points;
+    both.views = glass.views + direct.views;
+    double sum = 0.;
+    for (const Rms& part : {glass, direct})
+        if (part.points)
+            sum += part.px * part.px * part.points;
+    if (both.points)
+        both.px = std::sqrt(sum / both.points);
+    return both;
+}
+
+std::string OtherMinimum::sentence() const
+{
+    return format("a second solution fits nearly as well: normal (%.4f, %.4f, %.4f), RMS %.4f px against %.4f px (%.1f standard "
+                  "deviations worse; below 3 the data do not exclude it). Take a pair, or boards at other tilts", normal[0],
+                  normal[1], normal[2], rms, fitRms, excess);
+}
+
+std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera)
+{
+    const Mat row = calibration.fit.otherMinima.row(camera);
+    const double excess = row.at<double>(3);
+    if (std::isnan(excess))
+        return std::nullopt;
+    const Vec3d normal(row.ptr<double>());
+    const auto rmsWith = [&](double rms, double freedom) { return rms * std::sqrt(1. + excess * excess / freedom); };
+    // The search that knows of it had all images where none is direct;
+    const Fit& fit = calibration.fit;
+    if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
+        return OtherMinimum{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
+    // else those of one camera, that with most points, and their poses and the normal to fit.
+    Rms seen = rmsOf(calibration, camera, true);
+    if (calibration.options.flags & GLASS_SHARED_WINDOW)
+        for (int other = 0; other < calibration.data.cameraCount; other++)
+            if (rmsOf(calibration, other, true).points > seen.points)
+                seen = rmsOf(calibration, other, true);
+    return OtherMinimum{normal, excess, rmsWith(seen.px, 2. * seen.points - 6. * seen.views - 2.), seen.px};
+}
+
+double coverage(const RigCalibration& calibration, int camera)
+{
+    const int COLUMNS = 8, ROWS = 6;
+    const Size size = calibration.data.imageSize[camera];
+    std::set<int> cells;
+    for (const Residual& r : calibration.residuals)
+        if (r.camera == camera && r.glass)
+            cells.insert((int)(r.pixel.y * ROWS / size.height) * COLUMNS + (int)(r.pixel.x * COLUMNS / size.width));
+    return (double)cells.size() / (COLUMNS * ROWS);
+}
+
+Vec3d workingDepth(const RigCalibration& calibration, int camera)
+{
+    std::vector<double> depths;
+    const Fit& fit = calibration.fit;
+    for (size_t k = 0; k < fit.moments.size(); k++)
+    {
+        if (!calibration.data.moments[fit.moments[k]].hasGlass(camera))
+            continue;
+        Vec3d rvec, tvec;
+        poseInCamera(fit, k, camera, rvec, tvec);
+        Matx33d R;
+        Rodrigues(rvec, R);
+        for (const Point3d& X : calibration.data.objectPoints)
+            depths.push_back((R * Vec3d(X) + tvec)[2]);
+    }
+    std::sort(depths.begin(), depths.end());
+    return depths.empty() ? Vec3d(NONE, NONE, NONE) : Vec3d(depths.front(), depths[depths.size() / 2], depths.back());
+}
+
+} // namespace tools

@@ -1,0 +1,93 @@
+#ifndef REFRACT_TOOLS_RIG_CALIBRATION_HPP
+#define REFRACT_TOOLS_RIG_CALIBRATION_HPP
+
+#include "assess/cross_validation.hpp"
+#include "calibrate/wrong_points.hpp"
+#include <optional>
+
+/* The whole of a calibration, and the numbers that describe it. */
+namespace tools {
+
+//! The expected error of a measured point that the caller allows at a range.
+struct ErrorLimit
+{
+    double range, error;
+};
+
+//! What the caller asks for; 0 or empty: nothing.
+struct Limits
+{
+    double rms = 0., normalStdDeg = 0.;
+    std::vector<ErrorLimit> errors;
+};
+
+//! An image that was searched for the target.
+struct Photo
+{
+    std::string path, stem;
+    int camera;
+    bool glass;
+    std::vector<cv::Point2d> points;            //!< found; empty: the target was not
+};
+
+//! Everything that the table, the JSON summary and the report speak of; what is derived from it is in assessment.hpp.
+struct RigCalibration
+{
+    RigData data;
+    RigOptions options;
+    Rig start;
+    std::vector<LensSource> lensSources;
+    Fit fit;
+    std::vector<Residual> residuals;
+    Baselines baselines;
+    HeldOut heldOut;
+    NearFar nearFar;
+    bool crossValidated = true;                 //!< false: heldOut and nearFar were not wanted
+    std::vector<Influence> influences;          //!< only if asked for
+    std::vector<std::string> withoutTarget;     //!< images in which the target was not found
+    std::vector<Photo> photos;
+    std::vector<std::string> notices;           //!< what is wrong with the images as such, see data_checks.hpp
+    WrongPoints wrong;                          //!< points and images, already taken out of data
+    std::vector<std::string> inputs;            //!< files that it was made from
+    Limits limits;
+    Label label;
+    std::string unit = "mm";                    //!< of length
+    double square = 0.;                         //!< side of a square of the board, as given
+};
+
+struct Rms
+{
+    double px = NONE;           //!< sqrt(mean |r|^2), as cv::calibrateCamera
+    int points = 0, views = 0;
+};
+
+//! Of the images of one camera in one state; moment >= 0: of that moment alone.
+Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment = -1);
+
+//! Both states together.
+Rms rmsOfCamera(const RigCalibration& calibration, int camera);
+
+//! Another tilt of a window that has a minimum of its own: its images through the window alone do not exclude it.
+struct OtherMinimum
+{
+    cv::Vec3d normal;
+    double excess;              //!< root of the difference of the squared errors, in standard deviations of a pixel
+    double rms;                 //!< px, through the window, where the fit has rmsOf
+    double fitRms;
+
+    bool isExcluded() const { return excess >= 3.; }    //!< by the data, see calibrateGlassRig
+    std::string sentence() const;
+};
+
+//! The second best of a camera's window; none with pairs, and for a shared window in the first camera alone.
+std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera);
+
+//! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
+double coverage(const RigCalibration& calibration, int camera);
+
+//! Distance of the board's points from camera 1, at the moments with a glass image: nearest, median, farthest z.
+cv::Vec3d workingDepth(const RigCalibration& calibration, int camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RIG_CALIBRATION_HPP

@@ -1,0 +1,113 @@
+#include "assess/rig_checks.hpp"
+#include "calibrate/pinhole_rig.hpp"
+#include "console/progress.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RefractiveCamera& lens, int camera,
+                                    const std::vector<int>& moments)
+{
+    try
+    {
+        return calibratePinholeThroughGlass(data, camera, moments, pinholeCoefficients(lens)).camera;
+    }
+    catch (const std::exception&)
+    {
+        return Ptr<RefractiveCamera>();     // too few images, or no such lens
+    }
+}
+
+double angleDeg(const Vec3d& a, const Vec3d& b)
+{
+    return std::atan2(norm(a.cross(b)), a.dot(b)) * 180. / CV_PI;
+}
+
+//! RMS px between the two images of each corner of a pair: what ignoring the glass costs if the board cannot give way.
+double shiftOfPairs(const RigData& data, int camera)
+{
+    double sum = 0.;
+    int count = 0;
+    for (const Moment& m : data.moments)
+        for (size_t i = 0; m.isPair(camera) && i < m.glass[camera].size(); i++)
+        {
+            const Point2d d = m.glass[camera][i] - m.direct[camera][i];
+            if (!seen(d))
+                continue;
+            sum += d.dot(d);
+            count++;
+        }
+    return count ? std::sqrt(sum / count) : NONE;
+}
+
+} // namespace
+
+void PooledRms::add(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels,
+                    const Ptr<RefractiveCamera>& camera)
+{
+    if (pixels.empty())
+        return;
+    Vec3d rvec, tvec;
+    std::vector<double> error;
+    const bool found = refractiveSolvePnP(object, pixels, camera, rvec, tvec, false, error);
+    const int n = (int)std::count_if(pixels.begin(), pixels.end(), seen);
+    sum_ += found ? 2. * error[0] * error[0] * n : NONE;      // a view without a pose makes the whole NaN
+    count_ += n;
+}
+
+Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources)
+{
+    Baselines result;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, *start.cameras[c], c, allMoments(data));
+        const Ptr<RefractiveCamera> bare = withWindow(start.cameras[c], GlassWindow());
+        PooledRms ignored, through;
+        for (const Moment& m : data.moments)
+        {
+            ignored.add(data.objectPoints, m.glass[c], bare);
+            if (pinhole)
+                through.add(data.objectPoints, m.glass[c], pinhole);
+        }
+        // A lens that itself came from the glass images knows no "without".
+        const bool airLens = lensSources[c].kind != LensSource::FROM_GLASS;
+        result.glassIgnored.push_back(airLens ? ignored.value() : NONE);
+        result.shift.push_back(shiftOfPairs(data, c));
+        result.throughGlass.push_back(through.value());
+    }
+    return result;
+}
+
+std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet)
+{
+    std::vector<Influence> result;
+    for (int i : fit.moments)
+        if (data.moments[i].hasGlass())
+            result.push_back({i, {NONE, NONE}});
+    if (result.size() < 3)
+        return {};
+    Progress progress("leaving out one view at a time", (int)result.size(), quiet);
+    for (Influence& influence : result)
+    {
+        std::vector<int> others = fit.moments;
+        others.erase(std::find(others.begin(), others.end(), influence.moment));
+        try
+        {
+            const Fit without = fitRig(data, fit.rig, others, flags);
+            for (int c = 0; c < data.cameraCount; c++)
+                influence.turnDeg[c] = angleDeg(fit.rig.cameras[c]->window().normal,
+                                                without.rig.cameras[c]->window().normal);
+        }
+        catch (const cv::Exception&) {}     // the others alone do not determine the window: stays NaN
+        progress.step();
+    }
+    return result;
+}
+
+} // namespace tools

@@ -1,0 +1,48 @@
+#ifndef REFRACT_TOOLS_RIG_CHECKS_HPP
+#define REFRACT_TOOLS_RIG_CHECKS_HPP
+
+#include "calibrate/calibrate_rig.hpp"
+#include <cmath>
+#include <limits>
+
+/* What a user would do instead, on the same images (every board pose is fitted to its single image again, so that the numbers
+compare), and which views the result hangs on. */
+namespace tools {
+
+const double NONE = std::numeric_limits<double>::quiet_NaN();
+
+//! RMS px with the pose of each board fitted to its one image.
+class PooledRms
+{
+public:
+    void add(const std::vector<cv::Point3d>& object, const std::vector<cv::Point2d>& pixels,
+             const cv::Ptr<cv::refract::RefractiveCamera>& camera);
+    double value() const { return count_ ? std::sqrt(sum_ / count_) : NONE; }
+private:
+    double sum_ = 0.;
+    int count_ = 0;
+};
+
+//! RMS px of the images through the window, all cameras; NaN where it could not be computed.
+struct Baselines
+{
+    std::vector<double> glassIgnored;       //!< per camera: the start's lens alone
+    std::vector<double> shift;              //!< the same, board where the direct image of the pair shows it
+    std::vector<double> throughGlass;       //!< per camera: a pinhole camera calibrated on the glass images
+};
+
+Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources);
+
+//! How far the normal of each camera turns (degrees) if one moment is left out.
+struct Influence
+{
+    int moment;
+    double turnDeg[2];              //!< NaN: not determined without it
+};
+
+//! Moments with a glass image; empty if there are fewer than three.
+std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RIG_CHECKS_HPP

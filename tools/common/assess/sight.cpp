@@ -1,0 +1,140 @@
+#include "assess/sight.hpp"
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace tools {
+
+namespace {
+
+//! Poses are found in the first of: direct image, glass image; of camera 1, of camera 2.
+bool startPose(const Rig& rig, const std::vector<Point3d>& object, const Moment& m, Sight& sight)
+{
+    for (bool glass : {false, true})
+        for (int c = 0; c < (int)rig.cameras.size(); c++)
+        {
+            const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
+            const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : withWindow(rig.cameras[c], GlassWindow());
+            if (pixels.empty() || !refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec))
+                continue;
+            if (c == 1)
+            {
+                Rig back = rig;
+                back.R = rig.R.t();
+                back.T = -(rig.R.t() * rig.T);
+                poseInCamera(back, 1, sight.rvec, sight.tvec);
+            }
+            return true;
+        }
+    return false;
+}
+
+//! Gauss-Newton on the pose alone.
+ViewDerivatives atBestPose(const Rig& rig, const std::vector<Point3d>& object, Sight& sight)
+{
+    const int ITERATIONS = 4;       // from a pose that one of the images alone fits best
+    ViewDerivatives view = differentiateView(rig, object, sight.rvec, sight.tvec, sight.images);
+    for (int i = 0; i < ITERATIONS; i++)
+    {
+        const VectorXd step = view.byPose.colPivHouseholderQr().solve(sight.pixels - view.predicted);
+        for (int k = 0; k < 3; k++)
+        {
+            sight.rvec[k] += step[k];
+            sight.tvec[k] += step[3 + k];
+        }
+        view = differentiateView(rig, object, sight.rvec, sight.tvec, sight.images);
+    }
+    return view;
+}
+
+//! H, H H^T = covariance, without the directions that have no variance.
+MatrixXd rootOf(const MatrixXd& covariance)
+{
+    const VectorXd deviations = covariance.diagonal().cwiseMax(0.).cwiseSqrt();
+    const VectorXd inverse = (deviations.array() > 0.).select(deviations.cwiseInverse(), 0.);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+    return deviations.asDiagonal() * correlation.eigenvectors() * correlation.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+}
+
+} // namespace
+
+Sight sightOf(const Rig& rig, const std::vector<Point3d>& object, const Moment& m)
+{
+    Sight sight;
+    if (!startPose(rig, object, m, sight))
+        throw Failure("no pose of the target explains its points in view '" + m.stem + "': check --size and --square");
+    std::vector<double> pixels;
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        for (bool glass : {false, true})
+        {
+            const std::vector<Point2d>& points = glass ? m.glass[c] : m.direct[c];
+            ImageOfView image{c, glass, {}};
+            for (size_t i = 0; i < points.size(); i++)
+                if (seen(points[i]))
+                {
+                    image.points.push_back((int)i);
+                    pixels.insert(pixels.end(), {points[i].x, points[i].y});
+                }
+            if (!image.points.empty())
+                sight.images.push_back(image);
+        }
+    sight.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
+    return sight;
+}
+
+void Misfit::add(const Misfit& other)
+{
+    squares += other.squares;
+    expectedSquares += other.expectedSquares;
+    chiSquare += other.chiSquare;
+    directions += other.directions;
+}
+
+double Misfit::ratio() const
+{
+    return expectedSquares > 0. ? std::sqrt(squares / expectedSquares) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double Misfit::calibrationRatio() const
+{
+    return directions ? std::sqrt(chiSquare / directions) : std::numeric_limits<double>::quiet_NaN();
+}
+
+Misfit misfitOf(const Rig& rig, const Mat& covariance, double sigma, const std::vector<Point3d>& object,
+                const std::vector<Moment>& moments)
+{
+    const MatrixXd H = rootOf(toEigen(covariance));
+    MatrixXd AH(0, H.cols());
+    VectorXd r(0);
+    for (const Moment& moment : moments)
+    {
+        Sight sight = sightOf(rig, object, moment);
+        const ViewDerivatives view = atBestPose(rig, object, sight);
+        const MatrixXd Qt = basisWithoutPose(view.byPose).transpose();
+        const Eigen::Index rows = r.size();
+        AH.conservativeResize(rows + Qt.rows(), Eigen::NoChange);
+        AH.bottomRows(Qt.rows()) = Qt * (view.byParameters * H);
+        r.conservativeResize(rows + Qt.rows());
+        r.tail(Qt.rows()) = Qt * (sight.pixels - view.predicted);
+    }
+    const Eigen::BDCSVD<MatrixXd> svd(AH, Eigen::ComputeThinU);
+    Misfit misfit;
+    misfit.squares = r.squaredNorm();
+    misfit.expectedSquares = sigma * sigma * (double)r.size() + svd.singularValues().squaredNorm();
+    for (int i = 0; i < svd.singularValues().size() && svd.singularValues()[i] > sigma; i++)
+    {
+        const double variance = sigma * sigma + std::pow(svd.singularValues()[i], 2);
+        misfit.chiSquare += std::pow(svd.matrixU().col(i).dot(r), 2) / variance;
+        misfit.directions++;
+    }
+    return misfit;
+}
+
+} // namespace tools

@@ -1,0 +1,327 @@
+#include "assess/tolerance.hpp"
+#include "assess/measurement.hpp"
+#include "assess/point_error.hpp"
+#include "assess/wedge.hpp"
+#include "console/progress.hpp"
+#include "console/table.hpp"
+#include <opencv2/calib3d.hpp>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double THICKNESS_MM = 0.1;
+const double INDEX = 0.001;
+const double ARC_MINUTE = CV_PI / 180. / 60.;
+const double NUDGE_MM = 0.1;
+const double SQUARE = 0.001;            // share of it
+const double BOW_MM = 0.1;
+const int GRID_COLUMNS = 9;
+
+//! One cause: the wrong values that are calibrated with, and how it bends the images (empty: not at all).
+struct Cause
+{
+    std::string name;
+    int camera;                         //!< -1: all
+    std::function<void(GlassWindow&)> spoil;
+    std::vector<Vec3d> tilts;           //!< of the outer surface, each tried on its own, in the frame of its camera
+    bool nudge = false;                 //!< they are not tilts but shifts of the boards seen through the window, camera 1
+    std::function<void(std::vector<Point3d>&)> deform = nullptr;        //!< the board that is seen
+
+    bool concerns(int k) const { return camera < 0 || camera == k; }
+};
+
+//! One pane before both cameras lies to camera 2 as R turns it, and is thicker there by the way along the tilt.
+Wedge wedgeBefore(const Rig& rig, const Cause& cause, int camera, const Vec3d& tilt)
+{
+    if (camera == cause.camera || camera == 0)
+        return {tilt, 0.};
+    return {rig.R * tilt, tilt.dot(rig.R.t() * rig.T)};
+}
+
+//! Points of the working volume as the calibrated rig sees them.
+class Volume
+{
+public:
+    explicit Volume(const RigCalibration& c)
+    {
+        const Calibration truth = calibrationOf(c.fit.rig);
+        std::vector<double> ranges;
+        const Vec3d depth = workingDepth(c, 0);
+        for (double z : {depth[0], 0.5 * (depth[0] + depth[2]), depth[2]})
+        {
+            seen_.push_back(pointsAtRange(truth, gridOver(c.data.imageSize[0], GRID_COLUMNS, grid_), z));
+            range_.push_back(z);
+        }
+    }
+
+    //! Measured by another rig, from images bent by a wedge, minus true; NaN where not seen.
+    std::vector<Vec3d> displacements(const Rig& truth, const Rig& rig, const Cause& cause, const Vec3d& tilt) const
+    {
+        const Calibration calibration = calibrationOf(rig);
+        std::vector<Vec3d> moved;
+        for (size_t k = 0; k < seen_.size(); k++)
+        {
+            PointsAtRange s = seen_[k];
+            for (int c = 0; c < (int)truth.cameras.size(); c++)
+                bend(truth, cause, c, s.points, tilt, s.pixels[c]);
+            const Measurement m = calibration.stereo() ? measureStereo(calibration, s.pixels[0], s.pixels[1], 0.)
+                : measureOnPlane(calibration, s.pixels[0], Vec4d(0, 0, 1, range_[k]), 0.);
+            for (size_t i = 0; i < m.points.size(); i++)
+                moved.push_back(m.points[i] - s.points[i]);
+        }
+        return moved;
+    }
+
+    //! Relative change of the distance from each point to its right and lower neighbour.
+    std::vector<double> stretches(const std::vector<Vec3d>& moved) const
+    {
+        std::vector<double> result;
+        for (size_t k = 0; k < seen_.size(); k++)
+            for (int row = 0; row < grid_.height; row++)
+                for (int column = 0; column < grid_.width; column++)
+                    for (const Point& step : {Point(1, 0), Point(0, 1)})
+                    {
+                        if (column + step.x >= grid_.width || row + step.y >= grid_.height)
+                            continue;
+                        const int i = row * grid_.width + column, j = i + step.y * grid_.width + step.x;
+                        const Vec3d between = seen_[k].points[j] - seen_[k].points[i];
+                        const Vec3d change = moved[k * grid_.area() + j] - moved[k * grid_.area() + i];
+                        const double stretch = norm(between + change) / norm(between) - 1.;
+                        if (stretch == stretch)
+                            result.push_back(stretch);
+                    }
+        return result;
+    }
+
+    static void bend(const Rig& truth, const Cause& cause, int camera, const std::vector<Point3d>& points,
+                     const Vec3d& tilt, std::vector<Point2d>& pixels)
+    {
+        if (cause.nudge || !cause.concerns(camera) || tilt == Vec3d())
+            return;
+        std::vector<Point3d> inCamera;
+        for (const Point3d& X : points)
+            inCamera.push_back(camera == 0 ? X : Point3d(truth.R * Vec3d(X) + truth.T));
+        const std::vector<Point2d> shift = wedgeShift(truth.cameras[camera], inCamera,
+                                                      wedgeBefore(truth, cause, camera, tilt));
+        for (size_t i = 0; i < pixels.size(); i++)
+            pixels[i] += shift[i];
+    }
+
+private:
+    Size grid_;
+    std::vector<PointsAtRange> seen_;
+    std::vector<double> range_;
+};
+
+//! The observations as they would be had all boards moved between their direct and their glass image.
+RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
+{
+    RigData data = c.data;
+    for (size_t k = 0; k < c.fit.moments.size(); k++)
+        for (int camera = 0; camera < data.cameraCount; camera++)
+        {
+            std::vector<Point2d>& pixels = data.moments[c.fit.moments[k]].glass[camera];
+            std::vector<Point2d> before, after;
+            for (bool moved : {false, true})
+            {
+                Vec3d rvec = c.fit.rvecs[k], tvec = c.fit.tvecs[k] + (moved ? shift : Vec3d());
+                poseInCamera(c.fit.rig, camera, rvec, tvec);
+                refractiveProjectPoints(data.objectPoints, rvec, tvec, c.fit.rig.cameras[camera], moved ? after : before);
+            }
+            for (size_t i = 0; i < pixels.size(); i++)
+                pixels[i] += after[i] - before[i];
+        }
+    return data;
+}
+
+//! The observations as they would be of another board than is taken for given.
+RigData deformedData(const RigCalibration& c, const Cause& cause)
+{
+    RigData data = c.data;
+    std::vector<Point3d> board = data.objectPoints;
+    cause.deform(board);
+    for (size_t k = 0; k < c.fit.moments.size(); k++)
+        for (int camera = 0; camera < data.cameraCount; camera++)
+            for (bool glass : {false, true})
+            {
+                Moment& m = data.moments[c.fit.moments[k]];
+                std::vector<Point2d>& pixels = (glass ? m.glass : m.direct)[camera];
+                const Ptr<RefractiveCamera> in = c.fit.rig.cameras[camera];
+                const Ptr<RefractiveCamera> by = glass ? in : withWindow(in, GlassWindow());
+                Vec3d rvec, tvec;
+                poseInCamera(c.fit, k, camera, rvec, tvec);
+                std::vector<Point2d> before, after;
+                refractiveProjectPoints(data.objectPoints, rvec, tvec, by, before);
+                refractiveProjectPoints(board, rvec, tvec, by, after);
+                for (size_t i = 0; i < pixels.size(); i++)
+                    pixels[i] += after[i] - before[i];
+            }
+    return data;
+}
+
+//! The observations as they would be through a wedge.
+RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
+{
+    if (cause.nudge)
+        return nudgedData(c, tilt);
+    if (cause.deform)
+        return deformedData(c, cause);
+    RigData data = c.data;
+    for (size_t k = 0; k < c.fit.moments.size(); k++)
+    {
+        Matx33d R;
+        Rodrigues(c.fit.rvecs[k], R);
+        std::vector<Point3d> points;
+        for (const Point3d& X : data.objectPoints)
+            points.push_back(R * Vec3d(X) + c.fit.tvecs[k]);
+        for (int camera = 0; camera < data.cameraCount; camera++)
+            Volume::bend(c.fit.rig, cause, camera, points, tilt, data.moments[c.fit.moments[k]].glass[camera]);
+    }
+    return data;
+}
+
+Rig refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
+{
+    Rig start = c.fit.rig.clone();
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (cause.spoil && cause.concerns(k))
+        {
+            GlassWindow window = start.cameras[k]->window();
+            cause.spoil(window);
+            start.cameras[k]->setWindow(window);
+        }
+    return fitRig(bentData(c, cause, tilt), start, c.fit.moments, c.options.flags).rig;
+}
+
+double rmsOfAll(const std::vector<double>& values)
+{
+    double sum = 0.;
+    for (double v : values)
+        sum += v * v;
+    return values.empty() ? NONE : std::sqrt(sum / values.size());
+}
+
+//! The worst direction of the tilts: each point moves by a linear map of the tilt.
+Tolerance summarise(const Cause& cause, const Volume& volume, const std::vector<std::vector<Vec3d>>& fields)
+{
+    Tolerance result;
+    result.what = cause.name;
+    result.done = true;
+    std::vector<double> lengths, moves;
+    for (size_t i = 0; i < fields[0].size(); i++)
+    {
+        Eigen::MatrixXd map(3, fields.size());
+        for (size_t f = 0; f < fields.size(); f++)
+            map.col(f) << fields[f][i][0], fields[f][i][1], fields[f][i][2];
+        if (map.allFinite())
+            moves.push_back(Eigen::JacobiSVD<Eigen::MatrixXd>(map).singularValues()[0]);
+    }
+    for (const std::vector<Vec3d>& field : fields)
+        lengths.push_back(rmsOfAll(volume.stretches(field)));
+    result.rms = rmsOfAll(moves);
+    result.worst = moves.empty() ? NONE : *std::max_element(moves.begin(), moves.end());
+    result.lengths = *std::max_element(lengths.begin(), lengths.end());
+    return result;
+}
+
+//! The middle of a board rises, its farthest points stay.
+void bow(std::vector<Point3d>& board, double height)
+{
+    Point3d middle;
+    for (const Point3d& X : board)
+        middle += X * (1. / board.size());
+    double farthest = 0.;
+    for (const Point3d& X : board)
+        farthest = std::max(farthest, norm(X - middle));
+    for (Point3d& X : board)
+        X.z += height * (1. - std::pow(norm(X - middle) / farthest, 2));
+}
+
+//! What no image shows of the board itself, which is calibrated with as given.
+std::vector<Cause> causesOfBoard(double millimetre)
+{
+    const auto scale = [](std::vector<Point3d>& board) {
+        for (Point3d& X : board)
+            X *= 1. + SQUARE;
+    };
+    const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM * millimetre); };
+    return {{"square wrong by 0.1 %", -1, nullptr, {Vec3d()}, false, scale},
+            {"board bent by 0.1 mm", -1, nullptr, {Vec3d()}, false, bend}};
+}
+
+std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
+{
+    std::vector<Cause> causes;
+    const bool shared = c.options.flags & GLASS_SHARED_WINDOW;
+    for (int k = 0; k < (shared ? 1 : c.data.cameraCount); k++)
+    {
+        const GlassWindow window = c.fit.rig.cameras[k]->window();
+        const std::string whose = c.data.cameraCount == 1 ? "" : shared ? ", both cameras" : format(", camera %d", k + 1);
+        const int target = shared ? -1 : k;
+        if (window.thickness.empty())
+            continue;
+        const size_t layer = std::max_element(window.thickness.begin(), window.thickness.end()) - window.thickness.begin();
+        const std::string which = window.thickness.size() == 1 ? "" : format(" of layer %zu", layer + 1);
+        if (!(c.options.flags & GLASS_FREE_THICKNESS))
+            causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, target, [=](GlassWindow& w) {
+                w.thickness[layer] += THICKNESS_MM * millimetre;
+            }, {Vec3d()}});
+        if (!(c.options.flags & GLASS_FREE_INDEX))
+            causes.push_back({"index" + which + " wrong by 0.001" + whose, target, [=](GlassWindow& w) {
+                w.index[layer] += INDEX;
+            }, {Vec3d()}});
+        const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
+        causes.push_back({"wedge of 1 arc minute between the faces" + whose, target, nullptr,
+                          {ARC_MINUTE * across, ARC_MINUTE * window.normal.cross(across)}});
+    }
+    if (c.data.countPairs(0) + (c.data.cameraCount == 2 ? c.data.countPairs(1) : 0))
+    {
+        const double shift = NUDGE_MM * millimetre;
+        causes.push_back({"boards moved by 0.1 mm between direct and glass", -1, nullptr,
+                          {Vec3d(shift, 0, 0), Vec3d(0, shift, 0), Vec3d(0, 0, shift)}, true});
+    }
+    const GlassWindow first = c.fit.rig.cameras[0]->window();
+    if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))
+        causes.push_back({"index of the scene's medium wrong by 0.001", -1, [](GlassWindow& w) { w.outerIndex += INDEX; },
+                          {Vec3d()}});
+    for (const Cause& cause : causesOfBoard(millimetre))
+        causes.push_back(cause);
+    return causes;
+}
+
+} // namespace
+
+std::vector<Tolerance> analyseTolerances(const RigCalibration& c, double millimetre, bool quiet)
+{
+    const Volume volume(c);
+    const std::vector<Cause> causes = causesOf(c, millimetre);
+    Progress progress("trying wrong values", (int)causes.size(), quiet);
+    std::vector<Tolerance> result;
+    for (const Cause& cause : causes)
+    {
+        try
+        {
+            std::vector<std::vector<Vec3d>> fields;
+            for (const Vec3d& tilt : cause.tilts)
+                fields.push_back(volume.displacements(c.fit.rig, refit(c, cause, tilt), cause, tilt));
+            result.push_back(summarise(cause, volume, fields));
+        }
+        catch (const cv::Exception&)
+        {
+            Tolerance failed;
+            failed.what = cause.name;
+            result.push_back(failed);
+        }
+        progress.step();
+    }
+    return result;
+}
+
+} // namespace tools

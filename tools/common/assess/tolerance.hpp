@@ -1,0 +1,26 @@
+#ifndef REFRACT_TOOLS_TOLERANCE_HPP
+#define REFRACT_TOOLS_TOLERANCE_HPP
+
+#include "assess/rig_calibration.hpp"
+
+/* What a wrong given value does to a measurement: the rig is calibrated again with the same images and the wrong value (all
+else that was free takes up what it can), then measures points of the working volume again. */
+namespace tools {
+
+struct Tolerance
+{
+    std::string what;               //!< "thickness + 0.1, camera 1"
+    bool done = false;              //!< false: the images do not allow the fit with the wrong value
+    double rms = NONE, worst = NONE;    //!< how far points move, in the unit of length
+    double lengths = NONE;          //!< relative change of distances between neighbouring points of the grid, RMS
+};
+
+/** Thickness, index and wedge of the thickest layer of each window, the index of the scene's medium where it differs, and with
+pairs a shift of all boards between their direct and their glass images (putting the window in moves camera or board); the
+side of the board's squares, and a bow of the board. What the images themselves determined is left out.
+@param millimetre in the unit of length */
+std::vector<Tolerance> analyseTolerances(const RigCalibration& calibration, double millimetre, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TOLERANCE_HPP

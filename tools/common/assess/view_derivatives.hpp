@@ -1,0 +1,51 @@
+#ifndef REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
+#define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
+
+#include "calibrate/calibrate_rig.hpp"
+#include <Eigen/Core>
+
+/* What one view of the target, taken or only planned, tells about a calibrated rig, to first order:
+
+    pixels = predicted + byParameters dp + byPose dpose,      p = the parameters of Fit::covariance
+
+The pose of the board is unknown, so what counts is the part of byParameters that no pose can imitate. */
+namespace tools {
+
+//! One image of a view: which camera, through its window or not, and the target's points in it.
+struct ImageOfView
+{
+    int camera;
+    bool glass;
+    std::vector<int> points;            //!< indices into the target's points
+};
+
+struct ViewDerivatives
+{
+    Eigen::VectorXd predicted;          //!< u, v of each point, image by image
+    Eigen::MatrixXd byParameters;
+    Eigen::MatrixXd byPose;             //!< rvec, tvec of board -> camera 1
+};
+
+//! Points without an image are an error of the caller's: see pointsInImage.
+ViewDerivatives differentiateView(const Rig& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+                                  const cv::Vec3d& tvec, const std::vector<ImageOfView>& images);
+
+//! The points that a camera sees of a board at a pose.
+ImageOfView pointsInImage(const Rig& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+                          const cv::Vec3d& tvec, int camera, bool glass);
+
+//! An orthonormal basis of what no change of the pose can do: columns; its transpose times the residuals is free of the pose.
+Eigen::MatrixXd basisWithoutPose(const Eigen::MatrixXd& byPose);
+
+/** The covariance of the parameters when a view has been added.
+@param byParameters free of the pose.
+@param sigma of a pixel coordinate. */
+Eigen::MatrixXd covarianceWith(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& byParameters, double sigma);
+
+//! The same numbers.
+Eigen::MatrixXd toEigen(const cv::Mat& matrix);
+cv::Mat toMat(const Eigen::MatrixXd& matrix);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_VIEW_DERIVATIVES_HPP

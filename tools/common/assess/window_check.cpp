@@ -1,0 +1,197 @@
+#include "assess/window_check.hpp"
+#include "assess/f_distribution.hpp"
+#include "assess/sight.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace tools {
+
+namespace {
+
+const int ITERATIONS = 20;
+const double CONVERGED = 1e-9;          // radians
+const double DEGREES = 180. / CV_PI;
+const char* const NO_TILT = "no tilt of the window explains the new images: did the target move between the images of a pair, or "
+                            "are images and calibration not of the same cameras?";
+
+//! A window whose tilt is looked for: n = n0 + basis delta, normalised.
+struct FreeNormal
+{
+    int camera, column;         //!< of the normal in the parameters
+    Eigen::Vector3d calibrated;
+    Eigen::Matrix<double, 3, 2> basis;
+
+    FreeNormal(const Rig& rig, int c) : camera(c), column(columnsOf(rig, c).normal)
+    {
+        const Vec3d n = rig.cameras[c]->window().normal;
+        calibrated << n[0], n[1], n[2];
+        basis.col(0) = calibrated.cross(Eigen::Vector3d::UnitY()).normalized();
+        basis.col(1) = calibrated.cross(basis.col(0));
+    }
+    Eigen::Vector3d at(const Eigen::Vector2d& delta) const { return calibrated + basis * delta; }
+};
+
+//! The new images against the calibration, linearised; the boards' poses projected out.
+class CheckProblem
+{
+public:
+    CheckProblem(const CheckBasis& basis, const std::vector<Point3d>& object, const std::vector<Moment>& moments)
+        : basis_(basis), object_(object), rig_(basis.rig.clone())
+    {
+        for (const Moment& m : moments)
+            sights_.push_back(sightOf(basis.rig, object, m));
+        for (int c = 0; c < (int)rig_.cameras.size(); c++)
+            if (std::any_of(moments.begin(), moments.end(), [c](const Moment& m) { return m.hasGlass(c); }))
+                normals_.emplace_back(rig_, c);
+        if (normals_.empty())
+            throw Failure("there is no image through the window to check: give --glass");
+        delta = VectorXd::Zero(2 * normals_.size());
+    }
+
+    //! Gauss-Newton on tilts and poses.
+    void solve()
+    {
+        for (int i = 0; i < ITERATIONS; i++)
+            if (step() < CONVERGED)
+                return;
+        throw Failure(NO_TILT);
+    }
+
+    const std::vector<FreeNormal>& normals() const { return normals_; }
+
+    VectorXd delta;             //!< two for each window
+    MatrixXd covariance;        //!< of delta
+    double misfit = 0.;         //!< r^T S^-1 r that is left
+    int freedom = 0;            //!< of it
+
+private:
+    double step()
+    {
+        MatrixXd A, B;
+        VectorXd r;
+        std::vector<ViewDerivatives> views;
+        linearise(views, A, B, r);
+        MatrixXd S = MatrixXd::Identity(r.size(), r.size()) * (basis_.sigma * basis_.sigma);
+        MatrixXd CAt = MatrixXd::Zero(A.cols(), A.rows());
+        if (!basis_.covariance.empty())
+            CAt = toEigen(basis_.covariance) * A.transpose();
+        S += A * CAt;
+        const Eigen::LDLT<MatrixXd> inverse(S);
+        covariance = (B.transpose() * inverse.solve(B)).inverse();
+        const VectorXd change = covariance * (B.transpose() * inverse.solve(r));
+        if (!change.allFinite())
+            throw Failure(NO_TILT);
+        const VectorXd rest = r - B * change, weighted = inverse.solve(rest), parameters = CAt * weighted;
+        misfit = rest.dot(weighted);
+        freedom = (int)(r.size() - delta.size());
+        for (size_t i = 0; i < sights_.size(); i++)
+            movePose(sights_[i], views[i], parameters, change);
+        delta += change;
+        for (size_t w = 0; w < normals_.size(); w++)
+        {
+            GlassWindow window = rig_.cameras[normals_[w].camera]->window();
+            const Eigen::Vector3d n = normals_[w].at(delta.segment<2>(2 * w)).normalized();
+            window.normal = Vec3d(n[0], n[1], n[2]);
+            rig_.cameras[normals_[w].camera]->setWindow(window);
+        }
+        return change.cwiseAbs().maxCoeff();
+    }
+
+    MatrixXd byTilts(const ViewDerivatives& view) const
+    {
+        MatrixXd B(view.byParameters.rows(), delta.size());
+        for (size_t w = 0; w < normals_.size(); w++)
+            B.middleCols(2 * w, 2) = view.byParameters.middleCols(normals_[w].column, 3) * normals_[w].basis
+                                     / normals_[w].at(delta.segment<2>(2 * w)).norm();
+        return B;
+    }
+
+    void linearise(std::vector<ViewDerivatives>& views, MatrixXd& A, MatrixXd& B, VectorXd& r) const
+    {
+        Eigen::Index rows = 0;
+        for (const Sight& sight : sights_)
+            rows += sight.pixels.size() - 6;
+        for (const Sight& sight : sights_)
+        {
+            views.push_back(differentiateView(rig_, object_, sight.rvec, sight.tvec, sight.images));
+            const ViewDerivatives& view = views.back();
+            const MatrixXd Q = basisWithoutPose(view.byPose).transpose();
+            if (A.size() == 0)
+            {
+                A.resize(rows, view.byParameters.cols());
+                B.resize(rows, delta.size());
+                r.resize(rows);
+                rows = 0;
+            }
+            A.middleRows(rows, Q.rows()) = Q * view.byParameters;
+            B.middleRows(rows, Q.rows()) = Q * byTilts(view);
+            r.segment(rows, Q.rows()) = Q * (sight.pixels - view.predicted);
+            rows += Q.rows();
+        }
+    }
+
+    void movePose(Sight& sight, const ViewDerivatives& view, const VectorXd& parameters, const VectorXd& change) const
+    {
+        const VectorXd r = sight.pixels - view.predicted - view.byParameters * parameters - byTilts(view) * change;
+        const VectorXd pose = view.byPose.colPivHouseholderQr().solve(r);
+        for (int i = 0; i < 3; i++)
+        {
+            sight.rvec[i] += pose[i];
+            sight.tvec[i] += pose[3 + i];
+        }
+    }
+
+    const CheckBasis& basis_;
+    const std::vector<Point3d>& object_;
+    Rig rig_;                   // the windows as they are now
+    std::vector<Sight> sights_;
+    std::vector<FreeNormal> normals_;
+};
+
+} // namespace
+
+CheckResult checkWindows(const CheckBasis& basis, const std::vector<Point3d>& objectPoints,
+                         const std::vector<Moment>& moments, double falseAlarm)
+{
+    CheckProblem problem(basis, objectPoints, moments);
+    problem.solve();
+    CheckResult result;
+    const size_t count = problem.normals().size();
+    for (size_t w = 0; w < count; w++)
+    {
+        const FreeNormal& free = problem.normals()[w];
+        const Eigen::Vector2d delta = problem.delta.segment<2>(2 * w);
+        const Eigen::Matrix2d V = problem.covariance.block<2, 2>(2 * w, 2 * w);
+        const Eigen::Vector3d n = free.at(delta).normalized();
+        const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(V).eigenvalues();
+        WindowCheck check;
+        check.camera = free.camera;
+        check.normal = Vec3d(n[0], n[1], n[2]);
+        check.tiltDeg = std::atan(delta.norm()) * DEGREES;
+        check.stdDeg[0] = std::sqrt(variances[1]) * DEGREES;
+        check.stdDeg[1] = std::sqrt(variances[0]) * DEGREES;
+        check.probability = upperTailF(1, basis.freedom, 0.5 * delta.dot(V.inverse() * delta));
+        check.moved = check.probability < falseAlarm / count;
+        result.windows.push_back(check);
+    }
+    // Pixels come in twos, and so do poses and tilts: the number of degrees of freedom is even.
+    result.sigmaSeen = basis.sigma * std::sqrt(problem.misfit / problem.freedom);
+    result.misfitProbability = upperTailF(problem.freedom / 2, basis.freedom, problem.misfit / problem.freedom);
+    return result;
+}
+
+double powerOf(const WindowCheck& window, size_t windowCount, double freedom, double falseAlarm, double tiltDeg, double share)
+{
+    const double lambda = tiltDeg * tiltDeg / (share * window.stdDeg[0] * window.stdDeg[0]);
+    return upperTailNoncentralF2(freedom, lambda, quantileF2(freedom, falseAlarm / windowCount));
+}
+
+} // namespace tools

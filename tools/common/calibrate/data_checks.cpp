@@ -1,0 +1,179 @@
+#include "calibrate/data_checks.hpp"
+#include "console/table.hpp"
+#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const double ONE_IMAGE_PX = 1e-4;       // corners that agree so well are the same image: two shots differ by their noise
+const double PARALLEL_DEG = 5.;
+const int FEW_BOARDS = 3;               // to say that all are parallel
+const double USUAL_FOCAL = 1.5;         // in image widths: tilts need no better
+
+std::set<std::string> stemsOf(const ViewSet& set, bool found)
+{
+    std::set<std::string> stems;
+    for (const View& view : set.views)
+        stems.insert(view.stem);
+    for (size_t i = 0; !found && i < set.withoutTarget.size(); i++)
+        stems.insert(stemOf(set.withoutTarget[i]));
+    return stems;
+}
+
+std::vector<std::string> common(const std::set<std::string>& a, const std::set<std::string>& b)
+{
+    std::vector<std::string> both;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both;
+}
+
+std::string examples(const std::set<std::string>& stems)
+{
+    std::string text;
+    int count = 0;
+    for (const std::string& stem : stems)
+    {
+        if (++count > 3)
+            return text + ", ...";
+        text += (text.empty() ? "'" : ", '") + stem + "'";
+    }
+    return text;
+}
+
+bool areOneImage(const View& a, const View& b)
+{
+    for (size_t i = 0; i < a.points.size(); i++)
+    {
+        if (seen(a.points[i]) != seen(b.points[i]))
+            return false;
+        if (seen(a.points[i]) && norm(a.points[i] - b.points[i]) > ONE_IMAGE_PX)
+            return false;
+    }
+    return a.seenCount() > 0;
+}
+
+void noticeDuplicates(const RigViewSets& sets, std::vector<std::string>& notices)
+{
+    struct Named { const View* view; std::string name; };
+    std::vector<Named> all;
+    for (int c = 0; c < 2; c++)
+        for (bool through : {false, true})
+            for (const View& view : (through ? sets.glass : sets.direct)[c].views)
+                all.push_back({&view, "'" + view.path + "'"});
+    for (size_t i = 0; i < all.size(); i++)
+        for (size_t j = 0; j < i; j++)
+            if (areOneImage(*all[i].view, *all[j].view))
+            {
+                notices.push_back(all[j].name + " and " + all[i].name + " are one image (the same corners to 0.0001 px): what it "
+                                  "says counts twice, and the +- come out too small. Leave one out");
+                break;
+            }
+}
+
+//! Unit normal of the board in the frame of the camera, roughly: for a usual lens, without its distortion.
+Vec3d boardNormal(const RigData& data, const std::vector<Point2d>& pixels, Size size)
+{
+    std::vector<Point2d> board, directions;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (seen(pixels[i]))
+        {
+            board.emplace_back(data.objectPoints[i].x, data.objectPoints[i].y);
+            directions.push_back((pixels[i] - 0.5 * Point2d(size)) / (USUAL_FOCAL * size.width));
+        }
+    const Mat H = board.size() < 4 ? Mat() : findHomography(board, directions);
+    if (H.empty())
+        return Vec3d();
+    const Matx33d h = H;
+    return normalize(Vec3d(h(0, 0), h(1, 0), h(2, 0)).cross(Vec3d(h(0, 1), h(1, 1), h(2, 1))));
+}
+
+//! Largest angle between a board and the middle one, degrees; enough boards: otherwise NaN.
+double tiltSpreadDeg(const RigData& data, int camera, bool through)
+{
+    std::vector<Vec3d> normals;
+    Vec3d middle;
+    for (const Moment& m : data.moments)
+    {
+        const Vec3d normal = boardNormal(data, (through ? m.glass : m.direct)[camera], data.imageSize[camera]);
+        if (normal == Vec3d())
+            continue;
+        normals.push_back(normal[2] < 0 ? -normal : normal);
+        middle += normals.back();
+    }
+    if ((int)normals.size() < FEW_BOARDS)
+        return NAN;
+    double spread = 0.;
+    for (const Vec3d& n : normals)
+        spread = std::max(spread, std::atan2(norm(n.cross(middle)), n.dot(middle)) * 180. / CV_PI);
+    return spread;
+}
+
+void noticeParallel(const RigData& data, std::vector<std::string>& notices)
+{
+    for (int c = 0; c < data.cameraCount; c++)
+        for (bool through : {false, true})
+        {
+            const double spread = tiltSpreadDeg(data, c, through);
+            if (!(spread < PARALLEL_DEG) || (through && data.countPairs(c)))     // pairs determine the window all the same
+                continue;
+            notices.push_back((data.cameraCount == 1 ? "" : format("camera %d: ", c + 1))
+                + format("all boards in the %s are parallel within %.1f deg: ", through ? "images through the window"
+                         : "direct images", spread)
+                + (through ? "they hardly tell the window's tilt from their own" : "they hardly tell the focal length from the "
+                   "distance") + ". Tilt the board by 10 to 35 degrees, to all sides");
+        }
+}
+
+void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
+{
+    for (int c = 0; c < 2; c++)
+        for (bool through : {false, true})
+        {
+            const ViewSet& set = (through ? sets.glass : sets.direct)[c];
+            const size_t found = set.views.size(), count = found + set.withoutTarget.size();
+            if (2 * found < count)
+                notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
+                                         "inner corners or dots), light and focus", found, count,
+                                         through ? "images through the window" : "direct images", c ? " of camera 2" : ""));
+        }
+}
+
+} // namespace
+
+void requirePairs(const RigViewSets& sets)
+{
+    for (int c = 0; c < 2; c++)
+    {
+        const ViewSet &direct = sets.direct[c], &glass = sets.glass[c];
+        if (direct.views.empty() || glass.views.empty() || !common(stemsOf(direct, true), stemsOf(glass, true)).empty())
+            continue;
+        const std::string suffix = c ? "2" : "";
+        const std::set<std::string> directStems = stemsOf(direct, false), glassStems = stemsOf(glass, false);
+        const std::vector<std::string> lost = common(directStems, glassStems);
+        if (!lost.empty())
+            throw Failure(format("the target was not found in both images of any of the %zu pair(s) of --direct%s and --glass%s "
+                                 "('%s'): check light and focus, or say --unpaired if no pairs are meant", lost.size(),
+                                 suffix.c_str(), suffix.c_str(), lost.front().c_str()));
+        if (direct.views.size() > 1 && glass.views.size() > 1)
+            throw Failure("no image of --direct" + suffix + " (" + examples(directStems) + ") has the name of one of --glass"
+                          + suffix + " (" + examples(glassStems) + "), so there is no pair: where the board did not move between "
+                          "the two images, give them the same file name in two folders; if it did (hand-held), add --unpaired");
+    }
+}
+
+std::vector<std::string> noticesOf(const RigViewSets& sets, const RigData& data)
+{
+    std::vector<std::string> notices;
+    noticeNotFound(sets, notices);
+    noticeDuplicates(sets, notices);
+    noticeParallel(data, notices);
+    return notices;
+}
+
+} // namespace tools

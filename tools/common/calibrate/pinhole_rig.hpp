@@ -1,0 +1,24 @@
+#ifndef REFRACT_TOOLS_PINHOLE_RIG_HPP
+#define REFRACT_TOOLS_PINHOLE_RIG_HPP
+
+#include "calibrate/calib_file.hpp"
+#include "calibrate/calibrate_rig.hpp"
+
+namespace tools {
+
+/* What a user would do instead: the same images through the window, given to cv::calibrateCamera and
+cv::stereoCalibrate as if there were none. They throw Failure (or cv::Exception) where that cannot be done. */
+
+//! @param coefficients of the lens: 0, 4, 5, 8, 12 or 14
+CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
+                                               int coefficients);
+
+//! One or two cameras.
+Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients);
+
+//! Number of coefficients of a lens as cv::calibrateCamera would find it; throws Failure if it is none of its models.
+int pinholeCoefficients(const cv::refract::RefractiveCamera& camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_PINHOLE_RIG_HPP

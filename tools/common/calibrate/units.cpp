@@ -1,0 +1,53 @@
+#include "calibrate/units.hpp"
+#include "console/cli.hpp"
+#include "console/table.hpp"
+#include <cmath>
+#include <map>
+
+namespace tools {
+
+namespace {
+
+const std::map<std::string, double> MILLIMETRES = {{"mm", 1.}, {"cm", 10.}, {"m", 1000.}, {"inch", 25.4}};
+const double NEARLY = 0.05;
+const double OTHER_BOARD = 3.;      // boards of one caller differ less, most of the time
+
+} // namespace
+
+std::vector<std::string> unitNames()
+{
+    std::vector<std::string> names;
+    for (const auto& unit : MILLIMETRES)
+        names.push_back(unit.first);
+    return names;
+}
+
+double millimetresIn(const std::string& unit)
+{
+    return MILLIMETRES.at(unit);
+}
+
+bool isRatioOfUnits(double ratio)
+{
+    for (double unit : {10., 25.4, 1000., 2.54, 100.})
+        for (double r : {ratio, 1. / ratio})
+            if (std::abs(r / unit - 1.) < NEARLY)
+                return true;
+    return false;
+}
+
+void requireSameUnit(const Calibration& calibration, double square, const std::string& unit)
+{
+    if (!unit.empty() && !calibration.unit.empty() && unit != calibration.unit)
+        throw Failure("--unit=" + unit + ": the calibration's lengths are in " + calibration.unit + ", so give --square in "
+                      + calibration.unit + " too");
+    if (!unit.empty() || !(calibration.square > 0))
+        return;
+    const double ratio = square / calibration.square;
+    if ((ratio > OTHER_BOARD || ratio < 1. / OTHER_BOARD) && isRatioOfUnits(ratio))
+        throw Failure(format("the calibration's board has squares of %g %s, this one %g: another unit? Lengths are in the "
+                             "calibration's. If the boards do differ so much, say --unit=", calibration.square,
+                             calibration.unit.c_str(), square) + (calibration.unit.empty() ? "..." : calibration.unit));
+}
+
+} // namespace tools

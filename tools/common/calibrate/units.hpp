@@ -1,0 +1,24 @@
+#ifndef REFRACT_TOOLS_UNITS_HPP
+#define REFRACT_TOOLS_UNITS_HPP
+
+#include "calibrate/calib_file.hpp"
+
+/* A length in another unit than it is taken for. */
+namespace tools {
+
+//! The units that --unit knows.
+std::vector<std::string> unitNames();
+
+double millimetresIn(const std::string& unit);
+
+//! One length over another is nearly 10, 25.4, 1000, 2.54 or 100, or one over that: as if they were in two units.
+bool isRatioOfUnits(double ratio);
+
+/** Refuses a board whose square looks as if it were in another unit than that of the calibration's board, in which all
+lengths come out.
+@param unit of the square, as the caller says; empty: unknown. One that is the calibration's settles it */
+void requireSameUnit(const Calibration& calibration, double square, const std::string& unit);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_UNITS_HPP

@@ -1,0 +1,145 @@
+#include "calibrate/wrong_points.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const char* reasonOf(uchar status)
+{
+    switch (status)
+    {
+    case GLASS_IMAGE_MOVED: return "its board is not where the other images of the moment have it";
+    case GLASS_IMAGE_UNUSABLE: return "hardly any of its points fit one pose of the board";
+    default: return "points that do not fit: hidden, smeared or wrongly detected";
+    }
+}
+
+//! Takes the marked points out; true if there were any.
+bool clean(std::vector<Point2d>& pixels, uchar status, const Mat& inliers, Dropped& dropped)
+{
+    dropped.image = status == GLASS_IMAGE_MOVED || status == GLASS_IMAGE_UNUSABLE;
+    dropped.why = reasonOf(status);
+    dropped.points = 0;
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        if (!seen(pixels[i]) || (!dropped.image && inliers.at<uchar>((int)i)))
+            continue;
+        pixels[i] = Point2d(NAN, NAN);
+        dropped.points++;
+    }
+    if (dropped.image)
+        pixels.clear();
+    return dropped.points > 0;
+}
+
+//! Images of pairs that a robust fit has no use for, and how many pairs there are.
+bool losesPairs(const RigData& data, const Fit& fit)
+{
+    const double MOST = 1. / 3;
+    int pairs = 0, lost = 0;
+    for (int i = 0; i < (int)data.moments.size(); i++)
+        for (int c = 0; c < data.cameraCount; c++)
+        {
+            if (!data.moments[i].isPair(c))
+                continue;
+            pairs++;
+            bool whole = true;
+            for (int column : {2 * c, 2 * c + 1})
+                whole = whole && fit.imageStatus.at<uchar>(i, column) == GLASS_IMAGE_USED;
+            lost += !whole;
+        }
+    return lost > MOST * pairs;
+}
+
+/** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
+are then evidence of it. The fit with that value free knows which points are wrong. */
+Fit robustFit(const RigData& data, const Rig& start, int flags)
+{
+    const Fit fit = fitRig(data, start, allMoments(data), flags | GLASS_ROBUST);
+    if (!losesPairs(data, fit))
+        return fit;
+    for (int value : {GLASS_FREE_THICKNESS, GLASS_FREE_INDEX, GLASS_FREE_OUTER_INDEX})
+        try
+        {
+            const Fit freed = fitRig(data, start, allMoments(data), flags | value | GLASS_ROBUST);
+            if (!losesPairs(data, freed))
+                return freed;
+        }
+        catch (const cv::Exception&) {}     // there is no such value, or it is not determined
+    return fit;
+}
+
+bool fromImages(const std::vector<LensSource>& sources)
+{
+    return std::any_of(sources.begin(), sources.end(), [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
+}
+
+bool areSame(const std::vector<Dropped>& a, const std::vector<Dropped>& b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Dropped& x, const Dropped& y)
+           { return x.view == y.view && x.camera == y.camera && x.glass == y.glass && x.points == y.points; });
+}
+
+} // namespace
+
+std::string Dropped::sentence() const
+{
+    return format("'%s' (camera %d, %s): %s: %s", view.c_str(), camera + 1, glass ? "through the window" : "direct",
+                  image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
+}
+
+WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
+{
+    Fit fit;
+    try
+    {
+        fit = robustFit(data, start, flags);
+    }
+    catch (const cv::Exception& e)
+    {
+        return {{}, e.err};
+    }
+    WrongPoints wrong;
+    for (int i = 0; i < (int)data.moments.size(); i++)
+        for (int c = 0; c < data.cameraCount; c++)
+            for (bool glass : {true, false})
+            {
+                Moment& m = data.moments[i];
+                const int column = 2 * c + glass;
+                Dropped dropped{m.stem, c, glass, 0, false, ""};
+                if (clean(glass ? m.glass[c] : m.direct[c], fit.imageStatus.at<uchar>(i, column),
+                          fit.inliers[fit.imageStatus.cols * i + column], dropped))
+                    wrong.dropped.push_back(dropped);
+            }
+    return wrong;
+}
+
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+                                    std::vector<LensSource>& lensSources)
+{
+    const int MOST_ROUNDS = 5;
+    const RigData all = data;
+    start = startRig(all, options, lensSources);
+    WrongPoints wrong;
+    bool settled = false;
+    for (int round = 0; round < MOST_ROUNDS && !settled; round++)
+    {
+        RigData rest = all;
+        WrongPoints found = dropWrongPoints(rest, start, options.flags);
+        if (!found.fault.empty() && fromImages(lensSources))        // so wrong a lens that nothing fits it
+            found = dropWrongPoints(rest, start, options.flags | GLASS_FREE_INTRINSICS);
+        if (!found.fault.empty() && round > 0)
+            break;
+        settled = areSame(found.dropped, wrong.dropped);
+        wrong = found;
+        data = rest;
+        if (!settled)
+            start = startRig(data, options, lensSources);
+    }
+    return wrong;
+}
+
+} // namespace tools

@@ -1,0 +1,40 @@
+#ifndef REFRACT_TOOLS_WRONG_POINTS_HPP
+#define REFRACT_TOOLS_WRONG_POINTS_HPP
+
+#include "calibrate/calibrate_rig.hpp"
+
+/* Dirty glass: hidden, smeared or wrongly detected points, and images whose target was moved. They are found by a robust fit
+of everything (GLASS_ROBUST) and taken out of the data before the calibration itself, which then knows nothing of them. */
+namespace tools {
+
+//! What was left out of one image.
+struct Dropped
+{
+    std::string view;
+    int camera;
+    bool glass;
+    int points;                 //!< of those seen
+    bool image;                 //!< the whole image
+    std::string why;
+
+    std::string sentence() const;
+};
+
+struct WrongPoints
+{
+    std::vector<Dropped> dropped;
+    std::string fault;          //!< why wrong points could not be looked for; empty if they were
+};
+
+//! Takes wrong points and images out of the data. Leaves all of them where the robust fit is not possible.
+WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags);
+
+/** The same where the start comes from the data too: wrong points are in its lens, and so in what seems wrong. They are looked
+for again in all the data, from the start that the others give, until the same ones are wrong.
+@param start, lensSources result: as of startRig from what is left */
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+                                    std::vector<LensSource>& lensSources);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_WRONG_POINTS_HPP

@@ -1,0 +1,140 @@
+#include "console/cli.hpp"
+
+#include <opencv2/core/utils/logger.hpp>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <locale>
+#include <sstream>
+
+namespace tools {
+
+namespace {
+
+std::string quoted(const std::string& argument)
+{
+    const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%@";
+    if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
+        return argument;
+    std::string result = "'";
+    for (char c : argument)
+        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+//! OpenCV's checks speak in several lines that begin with '>'.
+std::string oneLine(const std::string& text)
+{
+    std::istringstream words(text);
+    std::string result, word;
+    while (words >> word)
+        if (word != ">")
+            result += (result.empty() ? "" : " ") + word;
+    return result;
+}
+
+} // namespace
+
+Command::Command(int argc, char** argv, const std::string& manual)
+    : app(manual, argc > 0 ? stripFolder(argv[0]) : "")
+{
+    for (int i = 0; i < argc; ++i)
+        line_ += (i ? " " : "") + quoted(i ? argv[i] : app.get_name());
+    for (int i = argc - 1; i > 0; --i)      // CLI11 takes them in reverse
+        arguments_.push_back(argv[i]);
+    app.set_version_flag("--version", app.get_name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
+    app.add_flag("--quiet", quiet_, "no progress, no table: errors and warnings only");
+    app.get_formatter()->column_width(34);
+}
+
+std::string Command::stripFolder(const std::string& path)
+{
+    return path.substr(path.find_last_of('/') + 1);
+}
+
+void Command::parse()
+{
+    app.parse(arguments_);
+}
+
+void Command::warn(const std::string& text) const
+{
+    std::cerr << app.get_name() << ": warning: " << text << std::endl;
+}
+
+int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body)
+{
+    // What goes wrong is said once, in the exception; OpenCV's log would repeat it in its own words.
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    Command command(argc, argv, manual);
+    std::string error;
+    try
+    {
+        return body(command);
+    }
+    catch (const CLI::Success& e)       // --help, --version
+    {
+        return command.app.exit(e);
+    }
+    catch (const CLI::ParseError& e)
+    {
+        error = oneLine(e.what()) + " (see " + command.app.get_name() + " --help)";
+    }
+    catch (const cv::Exception& e)
+    {
+        error = oneLine(e.err);
+    }
+    catch (const std::bad_alloc&)
+    {
+        error = "not enough memory: use fewer or smaller images";
+    }
+    catch (const std::exception& e)
+    {
+        error = oneLine(e.what());
+    }
+    std::cerr << command.app.get_name() << ": " << error << std::endl;
+    return CANNOT;
+}
+
+bool parseNumber(const std::string& text, double& number)
+{
+    const char* const end = text.data() + text.size();
+    const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-');
+    const std::from_chars_result result = std::from_chars(begin, end, number);
+    return result.ec == std::errc() && result.ptr == end;
+}
+
+cv::Size parseSize(const std::string& text, const std::string& option)
+{
+    std::istringstream in(text);
+    in.imbue(std::locale::classic());
+    cv::Size size;
+    char x = 0, rest;
+    if (!(in >> size.width >> x >> size.height) || (x != 'x' && x != 'X') || in >> rest
+        || size.width <= 0 || size.height <= 0)
+        throw Failure(option + "=" + text + ": give two positive whole numbers, as in " + option + "=6x5");
+    return size;
+}
+
+std::vector<double> parseNumbers(const std::string& text, const std::string& option)
+{
+    std::vector<double> numbers;
+    for (const std::string& item : CLI::detail::split(text, ','))
+    {
+        double number;
+        if (!parseNumber(CLI::detail::trim_copy(item), number) || !std::isfinite(number))
+            throw Failure(option + "=" + text + ": '" + item + "' is not a number; give numbers with commas between");
+        numbers.push_back(number);
+    }
+    return numbers;
+}
+
+cv::Vec4d parsePlane(const std::string& text)
+{
+    const std::vector<double> numbers = parseNumbers(text, "--plane");
+    if (numbers.size() != 4 || (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0))
+        throw Failure("--plane=" + text + ": four numbers a,b,c,d are needed, a, b and c not all 0");
+    return cv::Vec4d(numbers.data());
+}
+
+} // namespace tools

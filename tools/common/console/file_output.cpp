@@ -1,0 +1,157 @@
+#include "console/file_output.hpp"
+#include "console/cli.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+namespace tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const int MOST_LINKS = 40;      // as Linux
+
+fs::path folderOf(const fs::path& file)
+{
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+bool isFolder(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::is_directory(path, ignored);
+}
+
+//! Its own stream, as a second one on the same file would write over what the tool prints.
+bool isStandardOutput(const std::string& path) { return path == "/dev/stdout"; }
+
+//! Also of root, who may write everywhere: a file without that bit is meant to stay.
+bool isReadOnly(const fs::path& file)
+{
+    std::error_code ignored;
+    const fs::file_status status = fs::status(file, ignored);
+    const fs::perms write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+    return fs::exists(status) && ((status.permissions() & write) == fs::perms::none || access(file.c_str(), W_OK) != 0);
+}
+
+//! Into what is there, at one go.
+bool copyInto(const std::string& special, const std::string& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    if (isStandardOutput(special))
+        return (bool)(std::cout << in.rdbuf() << std::flush);
+    std::ofstream out(special, std::ios::binary);
+    out << in.rdbuf();
+    out.close();
+    return (bool)out;
+}
+
+} // namespace
+
+std::string targetOfLinks(const std::string& path)
+{
+    std::error_code ignored;
+    fs::path target = path;
+    for (int i = 0; i < MOST_LINKS && fs::is_symlink(target, ignored); ++i)
+        target = folderOf(target) / fs::read_symlink(target, ignored);
+    if (fs::is_symlink(target, ignored))
+        throw Failure("cannot write '" + path + "': its links lead round in a circle");
+    return target.string();
+}
+
+bool isSpecialFile(const std::string& path)
+{
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    return isStandardOutput(path) || (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status));
+}
+
+void requireWritable(const std::string& path)
+{
+    if (isSpecialFile(path))
+    {
+        if (access(path.c_str(), W_OK) != 0)
+            throw Failure("cannot write '" + path + "': no right to write into it");
+        return;
+    }
+    const fs::path target = targetOfLinks(path), folder = folderOf(target);
+    if (target.filename().empty() || isFolder(target))
+        throw Failure("'" + path + "' is a folder: name a file to write");
+    if (!isFolder(folder))
+        throw Failure("cannot write '" + path + "': the folder '" + folder.string() + "' does not exist; make it first");
+    if (isReadOnly(target))
+        throw Failure("cannot write '" + path + "': it is there and may not be written: name another, or allow it "
+                      "(chmod u+w)");
+    if (access(folder.c_str(), W_OK) != 0)
+        throw Failure("cannot write '" + path + "': no right to write in the folder '" + folder.string() + "'");
+}
+
+OutputFile::OutputFile(const std::string& path, const std::string& extension) : path_(path)
+{
+    requireWritable(path);
+    if (!isSpecialFile(path))
+        target_ = targetOfLinks(path);
+    const fs::path name(target_.empty() ? path : target_);
+    temporary_ = ((target_.empty() ? fs::temp_directory_path() : folderOf(name))
+                  / ("." + name.stem().string() + ".part" + std::to_string(getpid())
+                     + (name.has_extension() ? name.extension().string() : extension))).string();
+}
+
+OutputFile::~OutputFile()
+{
+    std::error_code ignored;
+    if (!committed_)
+        fs::remove(temporary_, ignored);
+}
+
+void OutputFile::commit()
+{
+    std::error_code error;
+    if (target_.empty())        // the temporary goes with the destructor
+    {
+        if (!copyInto(path_, temporary_))
+            throw Failure("cannot write into '" + path_ + "'");
+        return;
+    }
+    if (fs::exists(target_, error))     // who may read it stays
+        fs::permissions(temporary_, fs::status(target_, error).permissions(), error);
+    fs::rename(temporary_, target_, error);
+    if (error)
+        throw Failure("cannot write '" + path_ + "': " + error.message());
+    committed_ = true;
+}
+
+void writeText(const std::string& path, const std::string& text)
+{
+    OutputFile file(path);
+    std::ofstream out(file.temporary(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out)
+        throw Failure("cannot write '" + path + "': is the disk full?");
+    file.commit();
+}
+
+void writeImage(const std::string& path, const cv::Mat& image, const std::vector<int>& parameters)
+{
+    OutputFile file(path);
+    if (!cv::haveImageWriter(file.temporary()))
+        throw Failure("cannot write '" + path + "': no image format has this extension; use .png or .jpg");
+    if (!cv::imwrite(file.temporary(), image, parameters))
+        throw Failure("cannot write '" + path + "': is the disk full?");
+    file.commit();
+}
+
+void makeFolder(const std::string& path)
+{
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error || !fs::is_directory(path))
+        throw Failure("cannot make the folder '" + path + "'" + (error ? ": " + error.message() : ""));
+}
+
+} // namespace tools

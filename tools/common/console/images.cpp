@@ -1,0 +1,126 @@
+#include "console/images.hpp"
+#include "console/cli.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <glob.h>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<uchar> readBytes(const std::string& path)
+{
+    if (!fs::exists(path))
+        throw Failure("there is no file '" + path + "'");
+    if (!fs::is_regular_file(path))
+        throw Failure("'" + path + "' is not a file: name an image");
+    std::ifstream in(path, std::ios::binary);
+    std::vector<uchar> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!in)
+        throw Failure("cannot read '" + path + "': have you the right to?");
+    if (bytes.empty())
+        throw Failure("'" + path + "' is empty: take or copy the image again");
+    return bytes;
+}
+
+/* libjpeg fills what is missing of a cut file with grey and only warns, so the end is looked for here: the marker FF D9
+after the first scan (FF DA); before it, segments are skipped by their length, as a thumbnail has an end of its own. */
+bool isCutJpeg(const std::vector<uchar>& bytes)
+{
+    if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8)
+        return false;
+    size_t at = 2;
+    while (at + 4 <= bytes.size() && bytes[at] == 0xFF && bytes[at + 1] != 0xDA)
+        at += bytes[at + 1] == 0xFF ? 1 : 2 + 256 * bytes[at + 2] + bytes[at + 3];
+    for (; at + 2 <= bytes.size(); ++at)
+        if (bytes[at] == 0xFF && bytes[at + 1] == 0xD9)
+            return false;
+    return true;
+}
+
+/* As the sensor saw it: the orientation in the EXIF data is ignored, which turns with how the camera was held, while
+the lens does not. */
+cv::Mat decode(const std::string& path, int flags)
+{
+    const std::vector<uchar> bytes = readBytes(path);
+    if (isCutJpeg(bytes))
+        throw Failure("'" + path + "' is cut short: take or copy the image again");
+    cv::Mat image;
+    try
+    {
+        image = cv::imdecode(bytes, flags | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+    }
+    catch (const cv::Exception&)
+    {
+        image.release();    // said below
+    }
+    if (image.empty())
+        throw Failure("'" + path + "' is not an image that can be read, or is cut short: take or copy it again");
+    return image;
+}
+
+} // namespace
+
+std::vector<std::string> matchingFiles(const std::string& pattern)
+{
+    if (fs::is_regular_file(pattern))
+        return {pattern};
+    glob_t matches = {};
+    const int result = ::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches);
+    std::vector<std::string> paths(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+    globfree(&matches);
+    if (result == GLOB_NOSPACE)
+        throw std::bad_alloc();
+    return paths;
+}
+
+std::vector<std::string> expandGlob(const std::string& pattern)
+{
+    if (pattern.empty())
+        throw Failure("an empty name was given for images: is a variable of the shell not set?");
+    if (fs::is_directory(pattern))
+        throw Failure("'" + pattern + "' is a folder: say which images in it, as in '" + pattern + "/*.png'");
+    const std::vector<std::string> paths = matchingFiles(pattern);
+    if (paths.empty() && pattern.find_first_of("*?[{") == std::string::npos)
+        throw Failure("there is no file '" + pattern + "': check folder and name");
+    if (paths.empty())
+        throw Failure("no file matches '" + pattern + "': check the folder, and quote the pattern on the command line");
+    return paths;
+}
+
+cv::Mat readGrey(const std::string& path)
+{
+    cv::Mat image = decode(path, cv::IMREAD_GRAYSCALE);
+    double brightest = 0;
+    if (image.depth() != CV_8U)
+    {
+        cv::minMaxLoc(image, nullptr, &brightest);
+        image.convertTo(image, CV_8U, brightest > 0 ? 255. / brightest : 1.);
+    }
+    return image;
+}
+
+cv::Mat readImage(const std::string& path)
+{
+    return decode(path, cv::IMREAD_ANYCOLOR);
+}
+
+void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated)
+{
+    if (!calibrated.empty() && image.size() != calibrated)
+        throw Failure("'" + path + "'" + cv::format(" is %dx%d pixels, the calibration is for %dx%d: use the images of this "
+                      "camera, not resized", image.cols, image.rows, calibrated.width, calibrated.height));
+}
+
+std::string stemOf(const std::string& path)
+{
+    return fs::path(path).stem().string();
+}
+
+} // namespace tools

@@ -1,0 +1,82 @@
+#include "console/outputs.hpp"
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/images.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+//! One name for one file, also for a file that is not there yet.
+std::string canonical(const std::string& path)
+{
+    std::error_code error;
+    const fs::path target = fs::absolute(targetOfLinks(path)), name = fs::weakly_canonical(target, error);
+    return (error ? target : name).lexically_normal().string();
+}
+
+std::string extensionOf(const std::string& path)
+{
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+void checkKind(const Output& output)
+{
+    static const std::set<std::string> CALIBRATIONS = {".yml", ".yaml", ".xml", ".json"};
+    const bool asYaml = isSpecialFile(output.path) && extensionOf(output.path).empty();     // /dev/stdout
+    if (output.kind == OUTPUT_CALIBRATION && !asYaml && !CALIBRATIONS.count(extensionOf(output.path)))
+        throw Failure(output.option + "=" + output.path + ": the extension of a calibration is .yml, .yaml, .xml or .json, which "
+                      "says how it is written");
+    if (output.kind == OUTPUT_PICTURE && (extensionOf(output.path).empty() || !cv::haveImageWriter(output.path)))
+        throw Failure(output.option + "=" + output.path + ": no image format that can be written has this extension; use .png or "
+                      ".jpg");
+}
+
+} // namespace
+
+void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs)
+{
+    std::map<std::string, std::string> read;        // canonical name -> as the caller wrote it
+    for (const std::string& input : inputs)
+        for (const std::string& file : matchingFiles(input))
+            read[canonical(file)] = file;
+    std::map<std::string, const Output*> written;
+    for (const Output& output : outputs)
+    {
+        if (output.path.empty())
+            continue;
+        checkKind(output);
+        if (isSpecialFile(output.path))         // takes whatever comes, also twice, and is not replaced
+        {
+            requireWritable(output.path);
+            continue;
+        }
+        const std::string name = canonical(output.path);
+        const auto isHardLink = [&](const std::pair<const std::string, std::string>& input) {
+            std::error_code ignored;
+            return fs::equivalent(input.second, output.path, ignored);
+        };
+        if (read.count(name) || (fs::exists(output.path) && std::any_of(read.begin(), read.end(), isHardLink)))
+            throw Failure(output.option + ": '" + output.path + "' is one of the files to read and would be overwritten: name "
+                          "another");
+        const Output*& other = written[name];
+        if (other)
+            throw Failure((output.option == other->option ? "" : other->option + " and ") + output.option + ": '" + output.path
+                          + "' would be written twice: give each output a file of its own");
+        other = &output;
+        if (output.kind != OUTPUT_IN_FOLDER)
+            requireWritable(output.path);
+    }
+}
+
+} // namespace tools

@@ -1,0 +1,47 @@
+#ifndef REFRACT_TOOLS_FIGURES_HPP
+#define REFRACT_TOOLS_FIGURES_HPP
+
+#include "assess/assessment.hpp"
+
+/* The report's pictures, one function each, as SVG text. A picture whose scale needs words returns them beside it. */
+namespace tools {
+
+struct Figure
+{
+    std::string svg;
+    std::string note;       //!< scale and exaggeration, half a sentence
+};
+
+//! Section through camera, window and boards: axis 0 = seen from above (x-z), 1 = from the side (y-z). To scale.
+Figure drawSideView(const RigCalibration& calibration, int camera, int axis);
+
+//! Where the window moves the image of points at the middle working depth.
+Figure drawDisplacement(const RigCalibration& calibration, int camera);
+
+//! RMS of each view, direct and through the window.
+Figure drawViewRms(const RigCalibration& calibration, int camera);
+
+//! Residuals through the window as arrows over the image.
+Figure drawResidualVectors(const RigCalibration& calibration, int camera);
+
+//! Mean residual of each cell of the image: what is left is not noise.
+Figure drawResidualMap(const RigCalibration& calibration, int camera);
+
+//! Both residual coordinates against the normal law.
+Figure drawResidualHistogram(const RigCalibration& calibration, int camera);
+
+//! Where the image was covered by corners, direct and through the window.
+Figure drawCoverage(const RigCalibration& calibration, int camera);
+
+//! How far the normal turns without each view.
+Figure drawInfluence(const RigCalibration& calibration, int camera);
+
+//! Expected error of a measured point over the image of camera 1.
+Figure drawErrorMap(const RigCalibration& calibration, const ErrorMap& map);
+
+//! The same over the range: worst, typical, of pixel noise alone, and the limits.
+Figure drawErrorOverRange(const RigCalibration& calibration, const Assessment& assessment);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_FIGURES_HPP

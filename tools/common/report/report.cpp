@@ -1,0 +1,279 @@
+#include "report/report.hpp"
+#include "console/progress.hpp"
+#include "console/table.hpp"
+#include "report/figures.hpp"
+#include "report/report_template.hpp"
+#include "report/summary.hpp"
+#include "report/thumbnails.hpp"
+#include <kainjow/mustache.hpp>
+#include <cmath>
+
+using namespace cv;
+using namespace kainjow::mustache;
+
+namespace tools {
+
+namespace {
+
+data listOf(const std::vector<std::string>& sentences)
+{
+    data list{data::type::list};
+    for (const std::string& sentence : sentences)
+        list << data{"text", sentence};
+    return list;
+}
+
+data rowsOf(const std::vector<SummaryRow>& rows)
+{
+    data list{data::type::list};
+    for (const SummaryRow& row : rows)
+    {
+        data entry;
+        entry.set("name", row.name);
+        entry.set("cells", listOf(row.cells));
+        list << entry;
+    }
+    return list;
+}
+
+//! What the calibration is worth, on boards that it has not seen.
+std::string headline(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    if (!h.folds)
+        return format("All %zu corners fit within %.3f px RMS; that is no proof, as nothing was held out.", c.residuals.size(),
+                      c.fit.rms);
+    if (std::isnan(h.px))
+        return format("No board could be held out: without it the other images do not determine the calibration. The %zu corners of "
+                      "the fit itself lie within %.3f px RMS, which is no proof.", c.residuals.size(), c.fit.rms);
+    std::string text = format("Boards that took no part in it are seen within %.3f px RMS", h.px);
+    if (!std::isnan(h.lengthRms))
+        text += format("; the distances between their corners, measured in 3-D, are right within %.3g %s RMS", h.lengthRms,
+                       c.unit.c_str());
+    if (c.nearFar.done && !std::isnan(c.nearFar.windowNearToFar + c.nearFar.pinholeNearToFar))
+        text += format(". Calibrated on the near boards alone it predicts the far ones within %.3f px, a pinhole calibrated "
+                       "through the glass within %.3f px", c.nearFar.windowNearToFar, c.nearFar.pinholeNearToFar);
+    return text + ".";
+}
+
+//! Verdict in plain words: the class colours the card.
+void setVerdict(data& page, const RigCalibration& c, const Findings& f)
+{
+    page.set("verdict", f.verdict());
+    page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || (f.weak.empty() && f.notChecked.empty()) ? "good"
+                              : "weak");
+    std::string windows;
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2])) * 180. / CV_PI;
+        windows += c.data.cameraCount == 1 ? "The window" : format("%sThe window of camera %d", k ? " " : "", k + 1);
+        windows += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+    }
+    page.set("headline", headline(c));
+    page.set("windows", windows);
+    data limits{data::type::list};
+    for (const LimitCheck& limit : f.limits)
+    {
+        data entry;
+        entry.set("mark", limit.met() ? "✓" : "✗");
+        entry.set("class", limit.met() ? "met" : "missed");
+        entry.set("text", limit.sentence());
+        limits << entry;
+    }
+    page.set("limits", limits);
+    page.set("serial", c.label.serial);
+    page.set("has_serial", !c.label.serial.empty());
+    data notes{data::type::list};
+    for (const auto& note : c.label.notes)
+    {
+        data entry;
+        entry.set("key", note.first);
+        entry.set("text", note.second);
+        notes << entry;
+    }
+    page.set("notes", notes);
+}
+
+data figure(const Figure& picture, const std::string& title, const std::string& reading)
+{
+    data entry;
+    entry.set("title", title);
+    entry.set("svg", picture.svg);
+    entry.set("reading", reading + (picture.note.empty() ? "" : " (" + picture.note + ")") + ".");
+    return entry;
+}
+
+data figuresOf(const RigCalibration& c, int camera, Progress& progress)
+{
+    data list{data::type::list};
+    auto add = [&](const Figure& picture, const char* title, const char* reading) {
+        list << figure(picture, title, reading);
+        progress.step();
+    };
+    add(drawSideView(c, camera, 0), "Seen from above",
+        "To scale: the camera at the left, its rays bending at the window, the boards where they were seen");
+    add(drawSideView(c, camera, 1), "Seen from the side",
+        "The same with y pointing down; a window that is not where you mounted it shows here");
+    add(drawDisplacement(c, camera), "What the window does",
+        "Each arrow leads from where a point would be seen without the window to where it is seen");
+    add(drawCoverage(c, camera), "Where the board was seen",
+        "Empty parts of the image are extrapolated: what is measured there is less certain");
+    add(drawViewRms(c, camera), "Residual of each view",
+        "All bars should be about equally high; one that stands out has wrong corners or a board that moved");
+    if (!c.influences.empty())
+        add(drawInfluence(c, camera), "Which view pulls",
+            "How far the normal turns if a view is left out; a bar far above the line means that the result hangs on that view");
+    add(drawResidualVectors(c, camera), "Residuals through the window",
+        "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
+    add(drawResidualMap(c, camera), "Mean residual over the image",
+        "Noise averages out, so most cells should be blue or green; red cells next to each other, where residuals all point the "
+        "same way, are a systematic error. Cells with few corners are left white");
+    add(drawResidualHistogram(c, camera), "Residuals against the normal law",
+        "The bars should follow the curve; long tails are single bad corners");
+    return list;
+}
+
+//! Parameters with their standard deviations, and their correlations as coloured cells.
+void setParameters(data& page, const Fit& fit, int flags)
+{
+    const std::vector<FreeParameter> window = freeWindowParameters(fit, flags);
+    std::vector<FreeParameter> all = window;
+    const std::vector<FreeParameter> rig = freeRigParameters(fit);
+    all.insert(all.end(), rig.begin(), rig.end());
+    data parameters{data::type::list}, correlations{data::type::list}, heads{data::type::list};
+    for (const FreeParameter& p : all)
+    {
+        data entry;
+        entry.set("name", p.name);
+        entry.set("value", format("%.7g", p.value));
+        entry.set("std", format("%.2g", p.std));
+        parameters << entry;
+    }
+    for (const FreeParameter& p : window)
+    {
+        data entry, cells{data::type::list};
+        entry.set("name", p.name);
+        for (const FreeParameter& q : window)
+        {
+            const double r = fit.covariance.at<double>(p.column, q.column) / (p.std * q.std);
+            data cell;
+            cell.set("value", format("%.2f", std::round(100. * r) / 100. + 0.));    // no minus before 0.00
+            cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6 * std::abs(r)));
+            cells << cell;
+        }
+        entry.set("cells", cells);
+        correlations << entry;
+        heads << data{"name", p.name};
+    }
+    page.set("parameters", parameters);
+    page.set("correlations", correlations);
+    page.set("correlation_heads", heads);
+}
+
+void setTable(data& page, const std::string& name, const std::vector<SummaryRow>& rows)
+{
+    page.set(name, rowsOf(rows));
+    page.set("has_" + name, !rows.empty());
+}
+
+//! How well it measures: pictures of the expected error, over the range and over the image.
+data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    data list{data::type::list};
+    list << figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
+                   "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
+                   "where they meet, only a better image would");
+    progress.step();
+    for (const ErrorMap& map : a.errors)
+    {
+        if (map.seen())
+            list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
+                           c.data.cameraCount == 2 ? "Over the image of camera 1; white parts are not seen by both cameras, "
+                                                     "each picture has its own colour scale"
+                                                   : "Over the image, for points on a plane square to the camera; each picture "
+                                                     "has its own colour scale");
+        progress.step();
+    }
+    return list;
+}
+
+data thumbnailsOf(const RigCalibration& c, Progress& progress)
+{
+    data list{data::type::list};
+    for (const Photo& photo : c.photos)
+    {
+        const Thumbnail thumbnail = makeThumbnail(c, photo);
+        data entry;
+        entry.set("uri", thumbnail.uri);
+        entry.set("caption", thumbnail.caption);
+        entry.set("class", thumbnail.suspect ? "suspect" : "");
+        list << entry;
+        progress.step();
+    }
+    return list;
+}
+
+} // namespace
+
+std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings, const std::string& commandLine, bool quiet)
+{
+    data page;
+    setVerdict(page, c, findings);
+    page.set("contradictions", listOf(findings.contradictions));
+    page.set("has_contradictions", !findings.contradictions.empty());
+    page.set("weak", listOf(findings.weak));
+    page.set("has_weak", !findings.weak.empty());
+    page.set("cannot_tell", listOf(findings.cannotTell));
+    page.set("has_cannot_tell", !findings.cannotTell.empty());
+    page.set("assumed", listOf(findings.assumed));
+    page.set("without_target", listOf(c.withoutTarget));
+    page.set("has_without_target", !c.withoutTarget.empty());
+
+    std::vector<std::string> dropped;
+    for (const Dropped& d : c.wrong.dropped)
+        dropped.push_back(d.sentence());
+    page.set("dropped", listOf(dropped));
+    page.set("has_dropped", !dropped.empty());
+    page.set("stereo", c.data.cameraCount == 2);
+    page.set("window_rows", rowsOf(windowRows(c)));
+    page.set("fit_rows", rowsOf(fitRows(c)));
+    setTable(page, "held_out", heldOutRows(c));
+    setTable(page, "point_errors", pointErrorRows(c, assessment));
+    setTable(page, "tolerances", toleranceRows(assessment));
+    setTable(page, "advice", assessment.advice.pairs.empty() ? std::vector<SummaryRow>() : adviceRows(assessment.advice));
+    page.set("point_error_note", pointErrorNote(c, assessment));
+    page.set("unit", c.unit);
+    setParameters(page, c.fit, c.options.flags);
+
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount
+                                             + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
+    page.set("error_figures", errorFigures(c, assessment, progress));
+    data cameras{data::type::list}, heads{data::type::list};
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const std::string name = c.data.cameraCount == 1 ? "Camera" : format("Camera %d", k + 1);
+        data camera;
+        camera.set("name", name);
+        camera.set("figures", figuresOf(c, k, progress));
+        cameras << camera;
+        heads << data{"name", name};
+    }
+    page.set("cameras", cameras);
+    page.set("photos", thumbnailsOf(c, progress));
+    page.set("has_photos", !c.photos.empty());
+    page.set("photo_count", std::to_string(c.photos.size()));
+    page.set("camera_heads", heads);
+
+    page.set("command", commandLine);
+    page.set("version", REFRACT_VERSION);
+    page.set("opencv_version", CV_VERSION);
+    page.set("time", timeOfFiles(c.inputs));
+
+    mustache page_template(REPORT_TEMPLATE);
+    const std::string html = page_template.render(page);
+    if (!page_template.is_valid())
+        throw Failure("the report's template is broken: " + page_template.error_message());
+    return html;
+}
+
+} // namespace tools

@@ -1,0 +1,14 @@
+#ifndef REFRACT_TOOLS_REPORT_HPP
+#define REFRACT_TOOLS_REPORT_HPP
+
+#include "assess/findings.hpp"
+
+namespace tools {
+
+//! One self-contained HTML page that a technician can judge the calibration by.
+std::string makeReport(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
+                       const std::string& commandLine, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_REPORT_HPP

@@ -1,0 +1,279 @@
+#include "report/summary.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <ostream>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double FAR_WORSE = 5.;        // the worst point against 95 % of all
+
+std::string estimateOr(double value, double std, const char* otherwise)
+{
+    return std > 0 ? plusMinus(value, std) : format("%.6g (%s)", value, otherwise);
+}
+
+std::string px(double value) { return std::isnan(value) ? "-" : format("%.3f", value); }
+
+std::string viewsAndCorners(const Rms& rms) { return format("%d / %d", rms.views, rms.points); }
+
+std::string lensOf(const RigCalibration& c, int camera)
+{
+    const LensSource& source = c.lensSources[camera];
+    std::string text = format("%s, %d coefficients, ", c.fit.rig.cameras[camera]->lensModel().c_str(),
+                              c.fit.rig.cameras[camera]->lensParameters().rows - 4);
+    text += source.kind == LensSource::FROM_FILE ? std::string("given") : format("%d views, %.3f px", source.views, source.rms);
+    return text + (c.options.flags & GLASS_FREE_INTRINSICS ? ", refined" : "");
+}
+
+std::string worstViews(const RigCalibration& c, int camera)
+{
+    std::vector<std::pair<double, int>> views;
+    for (int i : c.fit.moments)
+    {
+        const Rms rms = rmsOf(c, camera, true, i);
+        if (rms.points)
+            views.push_back({rms.px, i});
+    }
+    std::sort(views.rbegin(), views.rend());
+    std::string text;
+    for (size_t k = 0; k < std::min<size_t>(3, views.size()); k++)
+        text += (k ? ", " : "") + c.data.moments[views[k].second].stem + format(" %.3f", views[k].first);
+    return text;
+}
+
+SummaryRow row(const RigCalibration& c, const std::string& name, const std::function<std::string(int)>& cell)
+{
+    SummaryRow result{name, {}};
+    for (int k = 0; k < c.data.cameraCount; k++)
+        result.cells.push_back(cell(k));
+    return result;
+}
+
+void printSentences(std::ostream& out, const char* heading, const std::vector<std::string>& sentences)
+{
+    if (sentences.empty())
+        return;
+    out << '\n' << heading << '\n';
+    for (const std::string& sentence : sentences)
+        out << "  - " << sentence << '\n';
+}
+
+void printRows(std::ostream& out, const std::string& title, const std::vector<std::string>& heading,
+               const std::vector<SummaryRow>& rows)
+{
+    if (rows.empty())
+        return;
+    if (!title.empty())
+        out << '\n' << title << '\n';
+    Table table(heading);
+    for (const SummaryRow& row : rows)
+    {
+        std::vector<std::string> cells{row.name};
+        cells.insert(cells.end(), row.cells.begin(), row.cells.end());
+        table.add(cells);
+    }
+    table.print(out);
+}
+
+} // namespace
+
+std::vector<SummaryRow> windowRows(const RigCalibration& c)
+{
+    const auto window = [&c](int k) { return c.fit.rig.cameras[k]->window(); };
+    const auto deviation = [&c](int k) { return windowStd(c.fit, k); };
+    std::vector<SummaryRow> rows;
+    rows.push_back(row(c, "normal", [&](int k) {
+        const Vec3d n = window(k).normal;
+        return format("(%.5f, %.5f, %.5f)", n[0], n[1], n[2]);
+    }));
+    rows.push_back(row(c, "tilt against the optical axis, deg",
+                       [&](int k) { return format("%.3f", std::acos(std::min(1., window(k).normal[2])) * 180. / CV_PI); }));
+    rows.push_back(row(c, "normal +- (two principal), deg", [&](int k) {
+        const std::vector<double> std = deviation(k).normalDeg;
+        return format("%.2g, %.2g", std[0], std[1]);
+    }));
+    rows.push_back(row(c, "distance, " + c.unit, [&](int k) {
+        const GlassWindow w = window(k);
+        return w.innerIndex == w.outerIndex ? std::string("no effect") : estimateOr(w.distance, deviation(k).distance, "given");
+    }));
+    const GlassWindow first = window(0);
+    for (size_t i = 0; i < first.thickness.size(); i++)
+    {
+        const std::string layer = first.thickness.size() == 1 ? "" : format(" of layer %zu", i + 1);
+        rows.push_back(row(c, "thickness" + layer + ", " + c.unit,
+                           [&](int k) { return estimateOr(window(k).thickness[i], deviation(k).thickness[i], "given"); }));
+        rows.push_back(row(c, "index" + layer,
+                           [&](int k) { return estimateOr(window(k).index[i], deviation(k).index[i], "given"); }));
+    }
+    rows.push_back(row(c, "index of the scene's medium",
+                       [&](int k) { return estimateOr(window(k).outerIndex, deviation(k).outerIndex, "given"); }));
+    bool hasOther = false;
+    for (int k = 0; k < c.data.cameraCount; k++)
+        hasOther = hasOther || otherMinimum(c, k);
+    if (hasOther)
+        rows.push_back(row(c, "second solution: normal; RMS, px", [&](int k) {
+            const std::optional<OtherMinimum> other = otherMinimum(c, k);
+            return other ? format("(%.4f, %.4f, %.4f); %.4f", other->normal[0], other->normal[1], other->normal[2], other->rms)
+                         : std::string("-");
+        }));
+    rows.push_back(row(c, "lens", [&](int k) { return lensOf(c, k); }));
+    return rows;
+}
+
+std::vector<SummaryRow> fitRows(const RigCalibration& c)
+{
+    std::vector<SummaryRow> rows;
+    rows.push_back(row(c, "RMS through the window, px", [&](int k) { return px(rmsOf(c, k, true).px); }));
+    rows.push_back(row(c, "  the same, glass ignored, px", [&](int k) { return px(c.baselines.glassIgnored[k]); }));
+    rows.push_back(row(c, "  the same, board where it is, px", [&](int k) { return px(c.baselines.shift[k]); }));
+    rows.push_back(row(c, "  the same, pinhole through glass, px", [&](int k) { return px(c.baselines.throughGlass[k]); }));
+    rows.push_back(row(c, "RMS direct, px", [&](int k) { return px(rmsOf(c, k, false).px); }));
+    rows.push_back(row(c, "views / corners through the window", [&](int k) { return viewsAndCorners(rmsOf(c, k, true)); }));
+    rows.push_back(row(c, "views / corners direct", [&](int k) { return viewsAndCorners(rmsOf(c, k, false)); }));
+    rows.push_back(row(c, "pairs of direct and glass", [&](int k) { return format("%d", c.data.countPairs(k)); }));
+    rows.push_back(row(c, "worst views, px", [&](int k) { return worstViews(c, k); }));
+    return rows;
+}
+
+std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    const NearFar& n = c.nearFar;
+    std::vector<SummaryRow> rows;
+    const auto add = [&rows](const std::string& name, const std::string& window, const std::string& pinhole) {
+        rows.push_back({name, {window, pinhole}});
+    };
+    if (h.folds)
+        add("RMS through the window, px", px(h.px), px(h.pinholePx));
+    if (n.done)
+    {
+        add("  calibrated near, tested far, px", px(n.windowNearToFar), px(n.pinholeNearToFar));
+        add("  calibrated far, tested near, px", px(n.windowFarToNear), px(n.pinholeFarToNear));
+    }
+    if (!std::isnan(h.transferPx))
+        add("  board where its direct image is, px", px(h.transferPx), "-");
+    if (h.folds)
+        add("  error over stated (1: as stated)",
+            h.misfit.directions ? format("%.2f", h.misfit.calibrationRatio()) : std::string("not known"), "-");
+    if (!std::isnan(h.lengthRms))
+        add("lengths between corners, RMS, " + c.unit, format("%.3g", h.lengthRms),
+            std::isnan(h.pinholeLengthRms) ? "-" : format("%.3g", h.pinholeLengthRms));
+    return rows;
+}
+
+std::vector<SummaryRow> pointErrorRows(const RigCalibration& c, const Assessment& a)
+{
+    std::vector<SummaryRow> rows;
+    for (const ErrorMap& map : a.errors)
+        rows.push_back({format("z = %.4g %s", map.range, c.unit.c_str()),
+                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.most()),
+                                                              format("%.3g", map.worst()), format("%.3g", map.worstOfPixels()),
+                                                              format("%.0f %%", 100. * map.share())}
+                                   : std::vector<std::string>{"-", "-", "-", "-", "0 %"}});
+    return rows;
+}
+
+std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
+{
+    const bool stereo = c.data.cameraCount == 2;
+    std::string note = stereo ? "Seen: the share of camera 1's image that camera 2 sees too at that z."
+                              : "Seen: the share of the image whose rays meet the plane at that z.";
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return !map.seen(); }))
+        note += stereo ? " 0 %: no point there is in both images." : " 0 %: that z lies within or before the window.";
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE * map.most(); }))
+        note += " Where the worst is far above the rest it is a few points at the border of what is seen: leave them out.";
+    return note;
+}
+
+std::vector<SummaryRow> toleranceRows(const Assessment& a)
+{
+    std::vector<SummaryRow> rows;
+    for (const Tolerance& t : a.tolerances)
+        rows.push_back({t.what, t.done ? std::vector<std::string>{format("%.3g", t.rms), format("%.3g", t.worst),
+                                                                  format("%.3g", 1000. * t.lengths)}
+                                       : std::vector<std::string>{"no fit", "-", "-"}});
+    return rows;
+}
+
+std::vector<SummaryRow> adviceRows(const Advice& advice)
+{
+    std::vector<SummaryRow> rows;
+    const auto add = [&rows](const std::string& name, const Worth& worth) {
+        std::string normals;
+        for (double std : worth.normalStdDeg)
+            normals += (normals.empty() ? "" : ", ") + format("%.2g", std);
+        rows.push_back({name, {normals, format("%.3g", worth.worstPoint), format("%.3g", worth.calibrationPart)}});
+    };
+    add("now", advice.now);
+    for (size_t i = 0; i < advice.pairs.size(); i++)
+        add(format("pair %zu: ", i + 1) + advice.pairs[i].words, advice.pairs[i].worth);
+    for (const Shot& shot : advice.instead)
+        add("instead: " + shot.words, shot.worth);
+    return rows;
+}
+
+void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& assessment, const Findings& findings)
+{
+    std::vector<std::string> limits;
+    for (const LimitCheck& limit : findings.limits)
+        limits.push_back(limit.sentence());
+    out << findings.verdict() << '\n';
+    printSentences(out, "Limits:", limits);
+    out << '\n';
+    const std::vector<std::string> cameras = c.data.cameraCount == 1 ? std::vector<std::string>{"", "camera"}
+                                                                     : std::vector<std::string>{"", "camera 1", "camera 2"};
+    std::vector<SummaryRow> rows = windowRows(c);
+    const std::vector<SummaryRow> fit = fitRows(c);
+    rows.insert(rows.end(), fit.begin(), fit.end());
+    printRows(out, "", cameras, rows);
+    printRows(out, "On boards that took no part (held out in turn):", {"", "lens and window", "pinhole through glass"},
+              heldOutRows(c));
+    printRows(out, "Expected error of a measured point, " + c.unit + " (one standard deviation, 3-D):",
+              {"", "half within", "95 % within", "worst", "of pixel noise", "seen"}, pointErrorRows(c, assessment));
+    out << pointErrorNote(c, assessment) << '\n';
+    printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
+              {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
+    if (!assessment.advice.pairs.empty())
+        printRows(out, "What the next images would bring:",
+                  {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
+                  adviceRows(assessment.advice));
+    out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
+    printSentences(out, "Images in which the target was not found:", c.withoutTarget);
+    std::vector<std::string> dropped;
+    for (const Dropped& d : c.wrong.dropped)
+        dropped.push_back(d.sentence());
+    printSentences(out, "Left out:", dropped);
+    printSentences(out, "Contradictions:", findings.contradictions);
+    printSentences(out, "Weak:", findings.weak);
+    printSentences(out, "The data cannot tell:", findings.cannotTell);
+    printSentences(out, "Taken as given:", findings.assumed);
+}
+
+Calibration toFile(const RigCalibration& c, const std::string& command)
+{
+    Calibration file = calibrationOf(c.fit.rig);
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        file.cameras[k].windowStd = windowStd(c.fit, k);
+        file.cameras[k].rms = rmsOfCamera(c, k).px;
+    }
+    file.rms = c.fit.rms;
+    file.sigma = c.fit.sigma;
+    file.freedom = c.fit.freedom;
+    file.covariance = c.fit.covariance;
+    file.unit = c.unit;
+    file.square = c.square;
+    file.label = c.label;
+    file.command = command;
+    file.time = timeOfFiles(c.inputs);
+    return file;
+}
+
+} // namespace tools

@@ -1,0 +1,212 @@
+#include "report/summary_json.hpp"
+#include "console/table.hpp"
+#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+using Json = nlohmann::ordered_json;
+
+namespace tools {
+
+namespace {
+
+//! Six digits: more are rounding errors, which need not be the same every time.
+void roundNumbers(Json& json)
+{
+    if (json.is_number_float() && std::isfinite(json.get<double>()))
+        json = std::stod(format("%.6g", json.get<double>()));
+    else if (json.is_structured())
+        for (Json& item : json)
+            roundNumbers(item);
+}
+
+Json listOf(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+
+//! What was estimated has a standard deviation, what was given none.
+Json estimate(double value, double std)
+{
+    Json result = {{"value", value}};
+    if (std > 0)
+        result["std"] = std;
+    return result;
+}
+
+Json estimates(const std::vector<double>& values, const std::vector<double>& std)
+{
+    Json list = Json::array();
+    for (size_t i = 0; i < values.size(); i++)
+        list.push_back(estimate(values[i], std[i]));
+    return list;
+}
+
+Json parameters(const std::vector<FreeParameter>& list)
+{
+    Json result = Json::object();
+    for (const FreeParameter& p : list)
+        result[p.name] = estimate(p.value, p.std);
+    return result;
+}
+
+//! null: there is none.
+Json otherMinimumJson(const RigCalibration& c, int camera)
+{
+    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    if (!other)
+        return nullptr;
+    return {{"normal", listOf(other->normal)}, {"rms_px", other->rms}, {"standard_deviations_worse", other->excess},
+            {"excluded", other->isExcluded()}};
+}
+
+Json cameraJson(const RigCalibration& c, int camera)
+{
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const WindowStd std = windowStd(c.fit, camera);
+    const LensSource& lens = c.lensSources[camera];
+    const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
+    Json result = {
+        {"window", {
+            {"normal", listOf(window.normal)},
+            {"normal_std_deg", std.normalDeg},
+            {"tilt_deg", std::acos(std::min(1., window.normal[2])) * 180. / CV_PI},
+            {"distance", window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance)},
+            {"thickness", estimates(window.thickness, std.thickness)},
+            {"index", estimates(window.index, std.index)},
+            {"inner_index", window.innerIndex},
+            {"outer_index", estimate(window.outerIndex, std.outerIndex)},
+            {"second_solution", otherMinimumJson(c, camera)}}},
+        {"lens", {
+            {"model", c.fit.rig.cameras[camera]->lensModel()},
+            {"parameters", std::vector<double>(c.fit.rig.cameras[camera]->lensParameters())},
+            {"source", lens.kind == LensSource::FROM_FILE ? "file" : lens.kind == LensSource::FROM_DIRECT ? "direct images"
+                                                                                                     : "glass images"},
+            {"refined", (c.options.flags & GLASS_FREE_INTRINSICS) != 0}}},
+        {"rms_px", {{"glass", glass.px}, {"direct", direct.px}}},
+        {"views", {{"glass", glass.views}, {"direct", direct.views}, {"pairs", c.data.countPairs(camera)}}},
+        {"corners", {{"glass", glass.points}, {"direct", direct.points}}},
+        {"coverage", coverage(c, camera)},
+        {"baselines_px", {{"glass_ignored", c.baselines.glassIgnored[camera]},
+                          {"glass_ignored_board_fixed", c.baselines.shift[camera]},
+                          {"pinhole_through_glass", c.baselines.throughGlass[camera]}}}};
+    return result;
+}
+
+Json viewsJson(const RigCalibration& c)
+{
+    Json views = Json::array();
+    for (int i : c.fit.moments)
+    {
+        Json rms = Json::object();
+        for (int camera = 0; camera < c.data.cameraCount; camera++)
+            for (bool glass : {true, false})
+            {
+                const Rms image = rmsOf(c, camera, glass, i);
+                if (image.points)
+                    rms[(glass ? "glass" : "direct") + std::to_string(camera + 1)] = image.px;
+            }
+        views.push_back({{"name", c.data.moments[i].stem}, {"rms_px", rms}});
+    }
+    return views;
+}
+
+Json droppedJson(const RigCalibration& c)
+{
+    Json list = Json::array();
+    for (const Dropped& d : c.wrong.dropped)
+        list.push_back({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
+                        {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
+    return list;
+}
+
+Json heldOutJson(const HeldOut& h)
+{
+    if (!h.folds)
+        return nullptr;
+    return {{"folds", h.folds}, {"views", h.views}, {"views_without_result", h.failed}, {"rms_px", h.px},
+            {"rms_px_pinhole_through_glass", h.pinholePx}, {"rms_px_board_from_direct_image", h.transferPx},
+            {"error_over_stated", h.misfit.calibrationRatio()}, {"length_rms", h.lengthRms}, {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
+}
+
+Json nearFarJson(const NearFar& n)
+{
+    if (!n.done)
+        return nullptr;
+    return {{"near_range", n.nearRange}, {"far_range", n.farRange},
+            {"window_rms_px", {{"near_to_far", n.windowNearToFar}, {"far_to_near", n.windowFarToNear}}},
+            {"pinhole_rms_px", {{"near_to_far", n.pinholeNearToFar}, {"far_to_near", n.pinholeFarToNear}}}};
+}
+
+Json limitsJson(const Findings& findings)
+{
+    Json list = Json::array();
+    for (const LimitCheck& limit : findings.limits)
+        list.push_back({{"option", limit.option}, {"what", limit.what}, {"limit", limit.limit}, {"value", limit.value},
+                        {"unit", limit.unit}, {"met", limit.met()}});
+    return list;
+}
+
+Json worthJson(const Worth& worth)
+{
+    return {{"normal_std_deg", worth.normalStdDeg}, {"worst_point_error", worth.worstPoint},
+            {"calibration_part", worth.calibrationPart}};
+}
+
+Json shotsJson(const std::vector<Shot>& shots)
+{
+    Json list = Json::array();
+    for (const Shot& shot : shots)
+        list.push_back({{"image", shot.words}, {"predicted", worthJson(shot.worth)}});
+    return list;
+}
+
+void addAssessment(Json& json, const Assessment& a)
+{
+    Json errors = Json::array(), tolerances = Json::array();
+    for (const ErrorMap& map : a.errors)
+        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.most()}, {"worst", map.worst()}, {"share_seen", map.share()},
+                          {"worst_of_pixel_noise", map.worstOfPixels()}});
+    for (const Tolerance& t : a.tolerances)
+        tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
+    json["point_error"] = errors;
+    json["tolerances"] = tolerances;
+    json["next_images"] = {{"now", worthJson(a.advice.now)}, {"pairs", shotsJson(a.advice.pairs)},
+                           {"instead_of_the_first", shotsJson(a.advice.instead)}};
+}
+
+} // namespace
+
+std::string summaryJson(const RigCalibration& c, const Assessment& assessment, const Findings& findings,
+                        const std::string& command)
+{
+    Json notes = Json::object();
+    for (const auto& note : c.label.notes)
+        notes[note.first] = note.second;
+    Json json = {
+        {"verdict", findings.verdict()},
+        {"limits", limitsJson(findings)},
+        {"window_serial", c.label.serial},
+        {"notes", notes},
+        {"unit", c.unit},
+        {"square", c.square},
+        {"held_out", heldOutJson(c.heldOut)},
+        {"not_checked", findings.notChecked.empty() ? Json() : Json(findings.notChecked)},
+        {"near_far", nearFarJson(c.nearFar)},
+        {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.freedom}}}};
+    Json cameras = Json::array();
+    for (int k = 0; k < c.data.cameraCount; k++)
+        cameras.push_back(cameraJson(c, k));
+    json["cameras"] = cameras;
+    json["rig"] = parameters(freeRigParameters(c.fit));
+    addAssessment(json, assessment);
+    json["views"] = viewsJson(c);
+    json["images_without_target"] = c.withoutTarget;
+    json["left_out"] = droppedJson(c);
+    json["findings"] = {{"contradictions", findings.contradictions}, {"weak", findings.weak}, {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
+    json["made_by"] = {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
+                       {"time", timeOfFiles(c.inputs)}};
+    roundNumbers(json);
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+} // namespace tools

@@ -1,0 +1,175 @@
+#include "simulate/render.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <cmath>
+
+namespace tools {
+
+using cv::Mat;
+using cv::Matx33d;
+using cv::Point2d;
+using cv::Size;
+using cv::Vec2d;
+using cv::Vec3d;
+
+namespace {
+
+const int FINE = 2;         // samples per pixel, each way
+const int PARTS = 8;        // points per sample at an edge, each way
+const int DRAWING = 240;    // pixels per square of a ChArUco board's drawing
+const int PAD = 8;          // pixels rendered around the image, so that the blur has no border
+
+//! Grey level of the target's plane at (s, t) in units of --square, (0, 0) the first point.
+class Paint
+{
+public:
+    Paint(const Target& target, const Exposure& exposure) : pattern_(target.pattern()), exposure_(exposure)
+    {
+        drawing_ = target.drawing(DRAWING);
+        columns_ = target.size().width * (pattern_ == Target::ACIRCLES ? 2 : 1);
+        rows_ = target.size().height;
+    }
+
+    double operator()(double s, double t) const
+    {
+        if (!(s > -1.5 && t > -1.5 && s < columns_ + 0.5 && t < rows_ + 0.5))
+            return exposure_.background;
+        return isDark(s, t) ? exposure_.dark : exposure_.light;
+    }
+
+private:
+    bool isDark(double s, double t) const
+    {
+        const bool inside = s >= -1 && t >= -1 && s < columns_ && t < rows_;
+        if (pattern_ == Target::CHESSBOARD)
+            return inside && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
+        if (pattern_ == Target::CHARUCO)
+            return inside && drawing_.at<uchar>((int)((t + 1) * DRAWING), (int)((s + 1) * DRAWING)) < 128;
+        const double radius = 0.3 * (pattern_ == Target::ACIRCLES ? 2 : 1);
+        for (int row = cvFloor(t); row <= cvFloor(t) + 1; ++row)
+        {
+            if (row < 0 || row >= rows_)
+                continue;
+            const int step = pattern_ == Target::ACIRCLES ? 2 : 1, shift = pattern_ == Target::ACIRCLES ? row % 2 : 0;
+            const int column = cvRound((s - shift) / step) * step + shift;
+            if (column >= 0 && column < columns_ && std::hypot(s - column, t - row) < radius)
+                return true;
+        }
+        return false;
+    }
+
+    Target::Pattern pattern_;
+    Exposure exposure_;
+    int columns_, rows_;
+    Mat drawing_;           // of a ChArUco board
+};
+
+//! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.
+Mat traceTarget(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera)
+{
+    const Size size = camera->imageSize() + Size(2 * PAD, 2 * PAD);
+    Mat pixels(size, CV_64FC2);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            pixels.at<Vec2d>(y, x) = Vec2d(x - PAD, y - PAD);
+    Matx33d R;
+    cv::Rodrigues(pose.rvec, R);
+    const Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
+    Mat points;
+    cv::refract::refractivePointsOnPlane(pixels.reshape(2, (int)pixels.total()), points, camera,
+                                         cv::Vec4d(normal[0], normal[1], normal[2], normal.dot(pose.tvec)));
+    Mat coordinates(size, CV_64FC2);
+    const Vec3d* point = points.ptr<Vec3d>();
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            const Vec3d onTarget = R.t() * (*point++ - pose.tvec) * (1. / target.square());
+            coordinates.at<Vec2d>(y, x) = Vec2d(onTarget[0], onTarget[1]);
+        }
+    return coordinates;
+}
+
+//! Mean grey level of the parallelogram with the sides du, dv round the centre.
+double meanLevel(const Paint& paint, const Vec2d& centre, const Vec2d& du, const Vec2d& dv)
+{
+    const double middle = paint(centre[0], centre[1]);
+    bool edge = false;
+    for (const double a : {-0.5, 0.5})
+        for (const double b : {-0.5, 0.5})
+        {
+            const Vec2d corner = centre + a * du + b * dv;
+            edge = edge || paint(corner[0], corner[1]) != middle;
+        }
+    if (!edge)
+        return middle;
+    double sum = 0;
+    for (int i = 0; i < PARTS; ++i)
+        for (int j = 0; j < PARTS; ++j)
+        {
+            const Vec2d part = centre + ((i + 0.5) / PARTS - 0.5) * du + ((j + 0.5) / PARTS - 0.5) * dv;
+            sum += paint(part[0], part[1]);
+        }
+    return sum / (PARTS * PARTS);
+}
+
+//! The light that falls on the fine grid, before blur.
+Mat paintFine(const Paint& paint, const Mat& coordinates)
+{
+    Mat fine, levels(coordinates.size() * FINE, CV_32F);
+    cv::resize(coordinates, fine, levels.size(), 0, 0, cv::INTER_LINEAR);    // aligned by pixel areas, as needed here
+    cv::parallel_for_(cv::Range(0, fine.rows), [&](const cv::Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+            for (int x = 0; x < fine.cols; ++x)
+            {
+                const int x0 = std::min(x, fine.cols - 2), y0 = std::min(y, fine.rows - 2);
+                const Vec2d du = fine.at<Vec2d>(y0, x0 + 1) - fine.at<Vec2d>(y0, x0);
+                const Vec2d dv = fine.at<Vec2d>(y0 + 1, x0) - fine.at<Vec2d>(y0, x0);
+                levels.at<float>(y, x) = (float)meanLevel(paint, fine.at<Vec2d>(y, x), du, dv);
+            }
+    });
+    return levels;
+}
+
+void vignette(Mat& levels, double loss)
+{
+    const Point2d centre(0.5 * (levels.cols - 1), 0.5 * (levels.rows - 1));
+    for (int y = 0; y < levels.rows; ++y)
+        for (int x = 0; x < levels.cols; ++x)
+        {
+            const Point2d offset = Point2d(x, y) - centre;
+            levels.at<float>(y, x) *= (float)(1 - loss * offset.dot(offset) / centre.dot(centre));
+        }
+}
+
+} // namespace
+
+Mat render(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+           const Exposure& exposure, uint64_t seed)
+{
+    Mat levels = paintFine(Paint(target, exposure), traceTarget(target, pose, camera));
+    if (exposure.blur > 0)
+        cv::GaussianBlur(levels, levels, Size(), exposure.blur * FINE);
+    cv::resize(levels, levels, levels.size() / FINE, 0, 0, cv::INTER_AREA);
+    levels = levels(cv::Rect(cv::Point(PAD, PAD), camera->imageSize())).clone();
+    vignette(levels, exposure.vignetting);
+    Mat noise(levels.size(), CV_32F);
+    cv::RNG rng(seed);
+    rng.fill(noise, cv::RNG::NORMAL, 0., exposure.noise);
+    levels += noise;
+    Mat image;
+    levels.convertTo(image, CV_8U);
+    return image;
+}
+
+Pose inSecondCamera(const Pose& pose, const Matx33d& R, const Vec3d& T)
+{
+    Matx33d board;
+    cv::Rodrigues(pose.rvec, board);
+    Pose second;
+    cv::Rodrigues(R * board, second.rvec);
+    second.tvec = R * pose.tvec + T;
+    return second;
+}
+
+} // namespace tools

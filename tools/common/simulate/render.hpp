@@ -1,0 +1,36 @@
+#ifndef REFRACT_TOOLS_RENDER_HPP
+#define REFRACT_TOOLS_RENDER_HPP
+
+#include "target/target.hpp"
+#include <opencv2/refract.hpp>
+
+namespace tools {
+
+//! Object -> camera.
+struct Pose
+{
+    cv::Vec3d rvec, tvec;
+};
+
+//! What a camera adds to the light that reaches it. Grey levels 0 ... 255.
+struct Exposure
+{
+    double dark = 35., light = 205., background = 110.;
+    double blur = 0.7;          //!< standard deviation of the lens's point spread, pixels, 0 ... 2
+    double noise = 2.;          //!< standard deviation, grey levels
+    double vignetting = 0.;     //!< loss of light in the image's corners, 0 ... 1
+};
+
+/* Ray tracing, not warping: every pixel's ray is followed through the lens and the window to the target's plane, and
+the target is drawn there from its formula. Twice as many samples as pixels each way, each the mean of 8x8 points where
+it meets an edge; between pixels the target's coordinates are interpolated linearly, which is wrong by less than 1e-4
+pixels at any usual distortion. Blur at the finer resolution, then the mean over each pixel, then noise. */
+cv::Mat render(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+               const Exposure& exposure, uint64_t seed);
+
+//! Camera 2's pose of a target whose pose in camera 1 is known.
+Pose inSecondCamera(const Pose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RENDER_HPP

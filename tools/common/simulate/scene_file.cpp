@@ -1,0 +1,243 @@
+#include "simulate/scene_file.hpp"
+#include "calibrate/calibrate_rig.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace tools {
+
+using cv::FileNode;
+using cv::FileStorage;
+using cv::Point2d;
+using cv::Vec3d;
+using cv::refract::GlassWindow;
+
+namespace {
+
+//! The keys of one map of the file; an error names the map and the key.
+class Keys
+{
+public:
+    Keys(const FileNode& node, const std::string& name) : node_(node), name_(name) {}
+
+    double number(const std::string& key, double least, double most, double otherwise = NAN) const
+    {
+        const FileNode node = node_[key];
+        if (node.empty() && !std::isnan(otherwise))
+            return otherwise;
+        const double value = node.isReal() || node.isInt() ? (double)node : NAN;
+        if (!(value >= least && value <= most))
+            throw Failure(name_ + ": '" + key + "' must be a number" + cv::format(" from %g to %g", least, most));
+        return value;
+    }
+    std::string text(const std::string& key, const std::string& otherwise) const
+    {
+        const FileNode node = node_[key];
+        if (!node.empty() && !node.isString())
+            throw Failure(name_ + ": '" + key + "' must be a text");
+        return node.empty() ? otherwise : (std::string)node;
+    }
+    std::vector<double> numbers(const std::string& key, size_t count) const
+    {
+        std::vector<double> values;
+        if (node_[key].isSeq())
+            node_[key] >> values;
+        if (values.size() != count || !cv::checkRange(values))
+            throw Failure(name_ + ": '" + key + "' must be a list of " + std::to_string(count) + " numbers");
+        return values;
+    }
+    const std::string& name() const { return name_; }
+
+private:
+    FileNode node_;
+    std::string name_;
+};
+
+Exposure readExposure(const FileNode& node)
+{
+    const Keys keys(node, "exposure");
+    Exposure e;
+    e.dark = keys.number("dark", 0, 255, e.dark);
+    e.light = keys.number("light", 0, 255, e.light);
+    e.background = keys.number("background", 0, 255, e.background);
+    e.blur = keys.number("blur", 0, 2, e.blur);
+    e.noise = keys.number("noise", 0, 100, e.noise);
+    e.vignetting = keys.number("vignetting", 0, 1, e.vignetting);
+    return e;
+}
+
+std::vector<Point2d> projectPoints(const std::vector<cv::Point3d>& points, const Pose& pose,
+                                   const cv::Ptr<cv::refract::RefractiveCamera>& camera)
+{
+    std::vector<Point2d> pixels;
+    cv::refract::refractiveProjectPoints(points, pose.rvec, pose.tvec, camera, pixels);
+    return pixels;
+}
+
+//! Draws poses that every camera sees, with and without its window.
+class PoseLottery
+{
+public:
+    PoseLottery(const Keys& keys, const Target& target, const Calibration& rig, uint64_t seed)
+        : target_(target), rig_(rig), rng_(seed), distance_(keys.numbers("distance", 2)),
+          tilt_(keys.numbers("tilt_deg", 2)), roll_(keys.number("roll_deg", 0, 180, 0)),
+          margin_(keys.number("margin", 0, 1e5, 20))
+    {
+        if (!(distance_[0] > 0 && distance_[1] >= distance_[0] && tilt_[0] >= 0 && tilt_[1] >= tilt_[0] && tilt_[1] < 90))
+            throw Failure(keys.name() + ": distance must be [near, far] with 0 < near <= far, tilt_deg [least, most] "
+                          "with 0 <= least <= most < 90");
+    }
+
+    Pose draw(const std::string& stem)
+    {
+        for (int attempt = 0; attempt < 20000; ++attempt)
+        {
+            const Pose pose = any();
+            if (isSeen(pose))
+                return pose;
+        }
+        throw Failure(stem + ": no pose found in which all cameras see the whole target; move the cameras, take a "
+                      "smaller target or another distance");
+    }
+
+private:
+    //! Target turned by the roll and tilted about a random axis in its plane; its centre anywhere in camera 1's view.
+    Pose any()
+    {
+        const double degree = CV_PI / 180, axis = rng_.uniform(0., 2 * CV_PI);
+        const double tilt = degree * rng_.uniform(tilt_[0], tilt_[1]), roll = degree * rng_.uniform(-roll_, roll_);
+        cv::Matx33d tilted, rolled;
+        cv::Rodrigues(tilt * Vec3d(std::cos(axis), std::sin(axis), 0), tilted);
+        cv::Rodrigues(Vec3d(0, 0, roll), rolled);
+        const cv::Ptr<cv::refract::RefractiveCamera>& camera = rig_.cameras[0].camera;
+        const cv::Matx33d K = camera->cameraMatrix();
+        const double z = rng_.uniform(distance_[0], distance_[1]);
+        const Vec3d centre(z * (rng_.uniform(0., (double)camera->imageSize().width) - K(0, 2)) / K(0, 0),
+                           z * (rng_.uniform(0., (double)camera->imageSize().height) - K(1, 2)) / K(1, 1), z);
+        Pose pose;
+        cv::Rodrigues(tilted * rolled, pose.rvec);
+        const Vec3d first(target_.objectPoints().front()), last(target_.objectPoints().back());
+        pose.tvec = centre - tilted * rolled * (0.5 * (first + last));
+        return pose;
+    }
+
+    //! The corners first, as a target that is out of view is so by them: most draws end there.
+    bool isSeen(const Pose& pose) const
+    {
+        const std::vector<cv::Point3d>& all = target_.objectPoints();
+        const int n = target_.count(), columns = target_.size().width;
+        return areSeen({all[0], all[columns - 1], all[n - columns], all[n - 1]}, pose) && areSeen(all, pose);
+    }
+
+    bool areSeen(const std::vector<cv::Point3d>& points, const Pose& pose) const
+    {
+        for (size_t i = 0; i < rig_.cameras.size(); ++i)
+        {
+            const Pose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
+            const auto& camera = rig_.cameras[i].camera;
+            for (const GlassWindow& window : {camera->window(), GlassWindow()})
+                for (const Point2d& p : projectPoints(points, here, withWindow(camera, window)))
+                    if (!(p.x >= margin_ && p.y >= margin_ && p.x <= camera->imageSize().width - 1 - margin_
+                          && p.y <= camera->imageSize().height - 1 - margin_))
+                        return false;
+        }
+        return true;
+    }
+
+    const Target& target_;
+    const Calibration& rig_;
+    cv::RNG rng_;
+    std::vector<double> distance_, tilt_;
+    double roll_, margin_;
+};
+
+std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, const Calibration& rig, uint64_t seed)
+{
+    const std::string name = node.name();
+    std::vector<NamedPose> poses;
+    if (node.isSeq())
+    {
+        for (const FileNode& item : node)
+        {
+            const Keys keys(item, "poses: " + name);
+            const auto r = keys.numbers("rvec", 3), t = keys.numbers("tvec", 3);
+            poses.push_back({name + std::to_string(poses.size() + 1), {Vec3d(r.data()), Vec3d(t.data())}});
+        }
+        return poses;
+    }
+    const Keys keys(node, "poses: " + name);
+    const int count = (int)keys.number("count", 1, 10000);
+    PoseLottery lottery(keys, target, rig, seed);
+    const int digits = (int)std::to_string(count).size();
+    for (int i = 1; i <= count; ++i)
+    {
+        const std::string stem = name + cv::format("%0*d", digits, i);
+        poses.push_back({stem, lottery.draw(stem)});
+    }
+    return poses;
+}
+
+ImageSet readSet(const FileNode& node, const std::map<std::string, std::vector<NamedPose>>& poses)
+{
+    ImageSet set;
+    set.name = node.name();
+    const Keys keys(node, "sets: " + set.name);
+    set.window = keys.number("window", 0, 1, 1) != 0;
+    if (set.name.find('/') != std::string::npos || !node["poses"].isSeq() || node["poses"].size() == 0)
+        throw Failure(keys.name() + ": 'poses' must be a list of names of poses, and the set's name a folder's");
+    for (const FileNode& name : node["poses"])
+    {
+        const auto found = poses.find((std::string)name);
+        if (found == poses.end())
+            throw Failure(keys.name() + ": there are no poses called '" + (std::string)name + "'");
+        set.poses.insert(set.poses.end(), found->second.begin(), found->second.end());
+    }
+    return set;
+}
+
+} // namespace
+
+std::vector<Point2d> projectTarget(const Target& target, const Pose& pose,
+                                   const cv::Ptr<cv::refract::RefractiveCamera>& camera)
+{
+    return projectPoints(target.objectPoints(), pose, camera);
+}
+
+Scene readScene(const std::string& filename)
+{
+    Scene scene;
+    scene.cameras = readCalibration(filename);
+    for (const CameraCalibration& c : scene.cameras.cameras)
+        if (c.camera->imageSize().empty())
+            throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
+    const FileStorage fs(filename, FileStorage::READ);
+    if (fs["target"].empty())
+        throw Failure("'" + filename + "' has no 'target' and so says nothing to render (see refract_simulate --help)");
+    const Keys target(fs["target"], "target"), top(fs.root(), filename);
+    scene.target.pattern = target.text("pattern", "chessboard");
+    scene.target.size = target.text("size", "");
+    scene.target.square = target.number("square", 1e-9, 1e9);
+    scene.target.marker = target.number("marker", 0, 1e9, 0);
+    scene.target.dictionary = target.text("dictionary", scene.target.dictionary);
+    scene.exposure = readExposure(fs["exposure"]);
+    scene.seed = (uint64_t)top.number("seed", 0, 2147483647, 1);
+
+    const Target points(scene.target);
+    std::map<std::string, std::vector<NamedPose>> poses;
+    uint64_t seed = scene.seed;     // of each kind of pose, so that one more at the end leaves the others as they were
+    for (const FileNode& node : fs["poses"])
+        poses[node.name()] = readPoses(node, points, scene.cameras, ++seed * 0x9E3779B97F4A7C15ull);
+    for (const FileNode& node : fs["sets"])
+        scene.sets.push_back(readSet(node, poses));
+    const bool windowNeeded = std::any_of(scene.sets.begin(), scene.sets.end(), [](const ImageSet& set) { return set.window; });
+    for (const CameraCalibration& c : scene.cameras.cameras)
+        if (windowNeeded && !c.windowGiven)
+            throw Failure("'" + filename + "': sets with 'window: 1' need a glass_window of each camera");
+    if (scene.sets.empty())
+        throw Failure("'" + filename + "': 'sets' names no images to render (see refract_simulate --help)");
+    return scene;
+}
+
+} // namespace tools

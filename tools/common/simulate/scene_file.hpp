@@ -1,0 +1,57 @@
+#ifndef REFRACT_TOOLS_SCENE_FILE_HPP
+#define REFRACT_TOOLS_SCENE_FILE_HPP
+
+#include "calibrate/calib_file.hpp"
+#include "simulate/render.hpp"
+
+/* RIG.yml, what refract_simulate renders (cv::FileStorage):
+
+    target: { pattern: chessboard, size: 6x5, square: 39. }
+    camera1: { ... as in calib.yml ... }     # one camera: its keys at top level instead
+    camera2: { ... }
+    R: ...                                   # camera 1 -> camera 2
+    T: ...
+    exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
+    seed: 1
+    poses:                                   # of the target in camera 1, by name
+      board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] }, ... ]                     # given, or
+      pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }   # drawn
+    sets:                                    # folder <name> (two cameras: <name>1, <name>2)
+      direct: { window: 0, poses: [ pair ] }
+      glass: { window: 1, poses: [ pair ] }
+
+Drawn poses keep every point of the target `margin` pixels inside all images, with and without window. */
+namespace tools {
+
+struct NamedPose
+{
+    std::string stem;       //!< name of the poses and a number: pair1
+    Pose pose;              //!< object -> camera 1
+};
+
+struct ImageSet
+{
+    std::string name;
+    bool window = true;
+    std::vector<NamedPose> poses;
+};
+
+struct Scene
+{
+    TargetOptions target;
+    Calibration cameras;
+    Exposure exposure;
+    uint64_t seed = 1;
+    std::vector<ImageSet> sets;
+};
+
+//! Throws Failure (or cv::Exception) that names the file and the key.
+Scene readScene(const std::string& filename);
+
+//! Exact pixels of the target's points.
+std::vector<cv::Point2d> projectTarget(const Target& target, const Pose& pose,
+                                       const cv::Ptr<cv::refract::RefractiveCamera>& camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SCENE_FILE_HPP

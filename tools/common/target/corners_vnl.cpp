@@ -1,0 +1,110 @@
+#include "target/corners_vnl.hpp"
+#include "console/cli.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+namespace tools {
+
+namespace {
+
+std::vector<std::string> splitWords(const std::string& line)
+{
+    std::istringstream in(line);
+    std::vector<std::string> words;
+    for (std::string word; in >> word; )
+        words.push_back(word);
+    return words;
+}
+
+//! The columns by name: the first comment line of the file with a single '#'.
+class Columns
+{
+public:
+    Columns(const std::vector<std::string>& names, const std::string& path) : names_(names)
+    {
+        filename = find("filename");
+        x = find("x");
+        y = find("y");
+        byWeight = find("weight") >= 0;
+        weight = byWeight ? find("weight") : find("level");
+        if (filename < 0 || x < 0 || y < 0)
+            throw Failure("'" + path + "': the columns filename, x and y are needed");
+    }
+    size_t size() const { return names_.size(); }
+    int filename, x, y, weight;
+    bool byWeight;
+private:
+    int find(const std::string& name) const
+    {
+        const auto found = std::find(names_.begin(), names_.end(), name);
+        return found == names_.end() ? -1 : (int)(found - names_.begin());
+    }
+    std::vector<std::string> names_;
+};
+
+//! NaN if the row says that the point was not seen.
+cv::Point2d pointOf(const std::vector<std::string>& row, const Columns& columns, const std::string& where)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const cv::Point2d none(nan, nan);
+    if (row[columns.x] == "-" || row[columns.y] == "-" || (columns.weight >= 0 && row[columns.weight] == "-"))
+        return none;
+    cv::Point2d point;
+    double weight = 1.;
+    if (!parseNumber(row[columns.x], point.x) || !parseNumber(row[columns.y], point.y)
+        || !std::isfinite(point.x) || !std::isfinite(point.y)
+        || (columns.weight >= 0 && !parseNumber(row[columns.weight], weight)))
+        throw Failure(where + ": x, y and weight or level must be numbers or '-'");
+    return columns.byWeight && weight <= 0 ? none : point;
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, std::vector<cv::Point2d>>> readCornersVnl(const std::string& path, int count)
+{
+    std::ifstream in(path);
+    if (!in)
+        throw Failure("there is no file '" + path + "' that can be read");
+    std::vector<std::pair<std::string, std::vector<cv::Point2d>>> images;
+    std::unique_ptr<Columns> columns;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number)
+    {
+        if (line.empty() || line.compare(0, 2, "##") == 0 || line.compare(0, 2, "#!") == 0)
+            continue;
+        if (line[0] == '#')
+        {
+            if (!columns)
+                columns.reset(new Columns(splitWords(line.substr(1)), path));
+            continue;
+        }
+        const std::vector<std::string> row = splitWords(line);
+        const std::string where = "'" + path + "' line " + std::to_string(number);
+        if (row.empty())
+            continue;
+        if (!columns)
+            throw Failure(where + ": a line '# filename x y' must come before the data");
+        if (row.size() != columns->size())
+            throw Failure(where + ": " + std::to_string(columns->size()) + " columns expected; is the file cut short?");
+        if (images.empty() || images.back().first != row[columns->filename])
+            images.push_back({row[columns->filename], {}});
+        images.back().second.push_back(pointOf(row, *columns, where));
+    }
+    for (auto& image : images)
+    {
+        std::vector<cv::Point2d>& points = image.second;
+        if (points.size() == 1 && count > 1 && points[0].x != points[0].x)
+            points.clear();
+        else if ((int)points.size() != count)
+            throw Failure("'" + path + "' has " + std::to_string(points.size()) + " points of '" + image.first
+                          + "', the target has " + std::to_string(count) + ": check --size, or the file is cut short");
+    }
+    return images;
+}
+
+} // namespace tools

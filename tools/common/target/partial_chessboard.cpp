@@ -1,0 +1,99 @@
+#include "target/partial_chessboard.hpp"
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <limits>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const int LEAST = 3;                // rows and columns of a piece that is worth keeping
+const double ABRUPT = 1.6;          // ratio of two steps in a row; a board near and steep to the camera reaches 1.3
+
+//! x right, y down, seen from the front: the same handedness as the object points.
+bool isMirrored(const Mat_<Point2f>& grid)
+{
+    const Point2f right = grid(0, grid.cols - 1) - grid(0, 0), down = grid(grid.rows - 1, 0) - grid(0, 0);
+    return right.cross(down) < 0;
+}
+
+//! The found grid turned so that it lies in `size`, without its outermost corners; empty if too little is left.
+Mat_<Point2f> inner(Mat_<Point2f> grid, Size size)
+{
+    if ((grid.cols > size.width || grid.rows > size.height) && grid.rows <= size.width && grid.cols <= size.height)
+        grid = grid.t();
+    grid = grid(Rect(0, 0, std::min(grid.cols, size.width), std::min(grid.rows, size.height)));
+    if (std::min(grid.cols, grid.rows) < LEAST + 2)
+        return Mat_<Point2f>();
+    grid = grid(Rect(1, 1, grid.cols - 2, grid.rows - 2)).clone();
+    if (isMirrored(grid))
+        flip(grid.clone(), grid, 0);
+    return grid;
+}
+
+bool isEvenStep(const Point2d& a, const Point2d& b, const Point2d& c)
+{
+    const double first = norm(b - a), second = norm(c - b);
+    return !(std::max(first, second) > ABRUPT * std::min(first, second));   // true with a NaN
+}
+
+} // namespace
+
+std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    // The detector starts from a grid of a given size and lets it grow; a large start is the more reliable.
+    for (int less = 2; ; less++)
+    {
+        const Size start(size.width - less, size.height - less);
+        if (std::min(start.width, start.height) < LEAST)
+            return {};
+        std::vector<Point2f> corners;
+        Mat meta;
+        if (!findChessboardCornersSB(grey, start, corners,
+                                     CALIB_CB_EXHAUSTIVE | CALIB_CB_ACCURACY | CALIB_CB_LARGER, meta))
+            continue;
+        const Mat_<Point2f> piece = inner(Mat_<Point2f>(meta.rows, meta.cols, corners.data()), size);
+        std::vector<Point2d> points(size.area(), Point2d(nan, nan));
+        for (int row = 0; row < piece.rows; row++)
+            for (int column = 0; column < piece.cols; column++)
+                points[row * size.width + column] = piece(row, column);
+        if (!piece.empty() && isEvenGrid(points, size))
+            return points;
+    }
+}
+
+Size lookForChessboard(const Mat& grey)
+{
+    const int sideOfCopy = 1000, leastCorners = 12;
+    const double scale = std::min(1., (double)sideOfCopy / std::max(grey.cols, grey.rows));
+    Mat copy;
+    resize(grey, copy, Size(), scale, scale, INTER_AREA);
+    Size largest;
+    for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
+    {
+        Mat meta;
+        std::vector<Point2f> corners;
+        if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+            && meta.size().area() >= std::max(leastCorners, largest.area() + 1)
+            && isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
+            largest = meta.size();
+    }
+    return largest;
+}
+
+bool isEvenGrid(const std::vector<Point2d>& points, Size size)
+{
+    const auto at = [&](int row, int column) { return points[row * size.width + column]; };
+    for (int row = 0; row < size.height; row++)
+        for (int column = 0; column < size.width; column++)
+            if ((column > 1 && !isEvenStep(at(row, column - 2), at(row, column - 1), at(row, column))) ||
+                (row > 1 && !isEvenStep(at(row - 2, column), at(row - 1, column), at(row, column))))
+                return false;
+    return true;
+}
+
+} // namespace tools

@@ -1,0 +1,76 @@
+#ifndef REFRACT_TOOLS_TARGET_HPP
+#define REFRACT_TOOLS_TARGET_HPP
+
+#include "console/cli.hpp"
+#include <utility>
+
+namespace tools {
+
+//! --pattern, --size, --square (and --marker, --dictionary for ChArUco) as given on the command line.
+struct TargetOptions
+{
+    std::string pattern = "chessboard";
+    std::string size;
+    double square = 0.;
+    double marker = 0.;                         //!< ChArUco: side of a marker; 0 = 3/4 of a square
+    std::string dictionary = "DICT_4X4_250";    //!< ChArUco
+    bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
+
+    bool given() const { return !size.empty(); }
+    void addTo(CLI::App& app, bool required);
+};
+
+/* A flat calibration target: its points, row by row, in the plane z = 0, and how to find them in an image.
+
+The order of the points is the same in every image as far as the target allows. A chessboard with one even and one odd
+side, an asymmetric circle grid with an odd number of rows, and ChArUco have no ambiguity: the first point is told by
+the pattern (chessboard: the first square between corners is dark). On the others the first point is the one
+nearest to the image's top left among those the symmetry allows; alignWith() makes two views agree. */
+class Target
+{
+public:
+    enum Pattern { CHESSBOARD, CIRCLES, ACIRCLES, CHARUCO };
+
+    explicit Target(const TargetOptions& options);
+
+    Pattern pattern() const { return pattern_; }
+    cv::Size size() const { return size_; }                 //!< inner corners, or dots
+    double square() const { return square_; }
+    int count() const { return size_.area(); }
+    const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
+
+    //! ChArUco: the board seen from the front, its outer squares' corner at pixel (-0.5, -0.5); else empty.
+    cv::Mat drawing(int pixelsPerSquare) const;
+
+    //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
+    std::vector<std::pair<int, int>> neighbours() const;
+
+    /** Pixels of the points in an 8-bit grey image, NaN where one was not seen; empty if the target was not found, which is
+    known after some seconds in any image.
+    @param other a chessboard's size, if it was not found but one of another size is in the image (the longer side first) */
+    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr) const;
+
+    /** The same points, renumbered by the target's symmetry so that the target is turned as in `reference`, another
+    view of it by the same or a similarly turned camera. */
+    std::vector<cv::Point2d> alignWith(const std::vector<cv::Point2d>& reference,
+                                       const std::vector<cv::Point2d>& points) const;
+
+private:
+    std::vector<cv::Point2d> canonical(const std::vector<cv::Point2d>& points, const cv::Mat& grey) const;
+    //! Renumberings that give the same pattern, the unchanged one first.
+    std::vector<std::vector<int>> symmetries() const;
+
+    Pattern pattern_;
+    cv::Size size_;
+    double square_, marker_;
+    int dictionary_;
+    bool partial_;
+    std::vector<cv::Point3d> objectPoints_;
+};
+
+//! True where the point was seen.
+inline bool seen(const cv::Point2d& p) { return p.x == p.x && p.y == p.y; }
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TARGET_HPP
