@@ -225,9 +225,9 @@ void fit(const Options& o, RigCalibration& c, Progress& progress)
     if (o.robust)
         c.wrong = startWithoutWrongPoints(c.data, c.options, c.start, c.lensSources);
     else
-        c.start = startRig(c.data, c.options, c.lensSources);
+        c.start = startModel(c.data, c.options, c.lensSources);
     progress.step();
-    c.fit = fitAll(c.data, c.start, c.lensSources, c.options.flags);
+    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags);
     c.residuals = residualsOf(c.data, c.fit);
     progress.step();
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);

@@ -85,7 +85,7 @@ void nameSingles(RigViewSets& sets)
     const std::vector<ViewSet*> all = {&sets.direct[0], &sets.glass[0], &sets.direct[1], &sets.glass[1]};
     if (std::all_of(all.begin(), all.end(), [](const ViewSet* set) { return set->files.size() <= 1 && set->views.size() <= 1; }))
         for (ViewSet* set : all)
-            for (View& view : set->views)
+            for (DetectedView& view : set->views)
                 view.stem = stemOf(sets.glass[0].views[0].path);
 }
 
@@ -97,7 +97,7 @@ void requirePairs(const Options& o, const RigViewSets& sets, const Command& comm
         const std::string number = c ? "2" : "";
         std::string alone;
         int count = 0;
-        for (const View& view : sets.direct[c].views)
+        for (const DetectedView& view : sets.direct[c].views)
             if (!sets.glass[c].find(view.stem))
                 alone += (count++ ? ", '" : "'") + view.stem + "'";
         if (!count)
@@ -225,7 +225,7 @@ int main(int argc, char** argv)
                       options.images.direct[1]});
         const CheckBasis basis = basisOf(options, calibration);
         const std::vector<Moment> moments = readMoments(options, calibration, target, command);
-        const CheckResult result = checkWindows(basis, target.objectPoints(), moments, options.falseAlarm);
+        const CheckResult result = checkTilts(basis, target.objectPoints(), moments, options.falseAlarm);
         const bool moved = anyMoved(result);
         const std::string why = whyNot(result, options, basis), verdict = verdictOf(moved, why);
         if (!options.summary.empty())

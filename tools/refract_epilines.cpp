@@ -5,7 +5,7 @@
 #include "console/point_file.hpp"
 #include "console/table.hpp"
 #include "report/drawing.hpp"
-#include "target/views.hpp"
+#include "target/detected_views.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>

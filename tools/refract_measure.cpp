@@ -3,7 +3,7 @@
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
-#include "target/views.hpp"
+#include "target/detected_views.hpp"
 
 #include <cmath>
 #include <iostream>
@@ -90,7 +90,7 @@ std::vector<Sight> readSights(const Options& options, const Calibration& calibra
     if (options.image2.empty())
     {
         sayMissing(first, "", command);
-        for (const View& view : first.views)
+        for (const DetectedView& view : first.views)
             sights.push_back({view.stem, view.points, {}});
         return sights;
     }
@@ -99,9 +99,9 @@ std::vector<Sight> readSights(const Options& options, const Calibration& calibra
                         && second.views.size() == 1;        // a pair whatever the names
     std::vector<std::string> alone1, alone2;
     std::set<std::string> paired;
-    for (const View& view : first.views)
+    for (const DetectedView& view : first.views)
     {
-        const View* other = single ? &second.views[0] : second.find(view.stem);
+        const DetectedView* other = single ? &second.views[0] : second.find(view.stem);
         if (!other)
         {
             alone1.push_back(view.stem);
@@ -110,7 +110,7 @@ std::vector<Sight> readSights(const Options& options, const Calibration& calibra
         paired.insert(other->stem);
         sights.push_back({view.stem, view.points, target.alignWith(view.points, other->points)});
     }
-    for (const View& view : second.views)
+    for (const DetectedView& view : second.views)
         if (!paired.count(view.stem))
             alone2.push_back(view.stem);
     if (sights.empty())

@@ -1,4 +1,4 @@
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
@@ -44,7 +44,7 @@ struct Job
     std::string set, stem;
     int camera;
     bool window;
-    Pose pose;              // in camera 1
+    BoardPose pose;         // in camera 1
 };
 
 std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
@@ -65,12 +65,12 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
 {
     const auto& camera = scene.cameras.cameras[job.camera].camera;
     cv::Ptr<cv::refract::RefractiveCamera> result =
-        withWindow(camera, job.window ? camera->window() : GlassWindow());
+        copyWithWindow(camera, job.window ? camera->window() : GlassWindow());
     result->setImageSize(camera->imageSize());
     return result;
 }
 
-Pose poseOf(const Scene& scene, const Job& job)
+BoardPose poseOf(const Scene& scene, const Job& job)
 {
     return job.camera ? inSecondCamera(job.pose, scene.cameras.R, scene.cameras.T) : job.pose;
 }

@@ -7,14 +7,14 @@
 #include "scenes.hpp"
 #include <opencv2/calib3d.hpp>
 
-inline tools::Rig paperRig(int cameras)
+inline tools::RigModel paperRig(int cameras)
 {
     using namespace cv;
     using namespace cv::refract;
     const Matx33d K(2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1);
     const Mat dist = (Mat_<double>(1, 4) << -0.4082, 0.4359, 0, 0);
     const Vec3d normals[2] = {Vec3d(-0.2483, 0.0961, 1), Vec3d(0.1823, -0.2809, 1)};
-    tools::Rig rig;
+    tools::RigModel rig;
     for (int c = 0; c < cameras; c++)
     {
         rig.cameras.push_back(RefractiveCamera::create(Mat(K), dist, GlassWindow(normals[c], 20., 1.5437, 50.)));
@@ -35,7 +35,7 @@ inline std::vector<cv::Point3d> board(int columns, int rows, double square = 39.
 }
 
 //! What the rig sees of a board, with noise; points outside the images too.
-inline tools::Moment observe(const tools::Rig& rig, const std::vector<cv::Point3d>& object, const cv::Vec3d& rvec,
+inline tools::Moment observe(const tools::RigModel& rig, const std::vector<cv::Point3d>& object, const cv::Vec3d& rvec,
                              const cv::Vec3d& tvec, bool direct, double sigma, scenes::Random& random)
 {
     tools::Moment moment;
@@ -49,7 +49,7 @@ inline tools::Moment observe(const tools::Rig& rig, const std::vector<cv::Point3
             tools::poseInCamera(rig, c, r, t);
             std::vector<cv::Point2d>& pixels = glass ? moment.glass[c] : moment.direct[c];
             cv::refract::refractiveProjectPoints(object, r, t,
-                glass ? rig.cameras[c] : tools::withWindow(rig.cameras[c], cv::refract::GlassWindow()), pixels);
+                glass ? rig.cameras[c] : tools::copyWithWindow(rig.cameras[c], cv::refract::GlassWindow()), pixels);
             for (cv::Point2d& p : pixels)
                 p += cv::Point2d(random.normal(sigma), random.normal(sigma));
         }

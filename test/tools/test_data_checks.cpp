@@ -10,7 +10,7 @@ namespace {
 //! Views of one camera, as pairs if the names are common.
 RigViewSets views(const std::string& direct, const std::string& glass, double tilt, scenes::Random& random)
 {
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     RigViewSets sets;
     for (int i = 0; i < 6; i++)
     {

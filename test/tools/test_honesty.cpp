@@ -11,7 +11,6 @@ distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 using namespace cv;
 using namespace cv::refract;
 using namespace tools;
-using tools::Pose;
 
 namespace {
 
@@ -63,9 +62,9 @@ GlassWindow windowOf(const Setup& setup, const Vec3d& normal)
     return window;
 }
 
-Rig trueRig(const Setup& setup)
+RigModel trueRig(const Setup& setup)
 {
-    Rig rig = paperRig(setup.cameras);
+    RigModel rig = paperRig(setup.cameras);
     rig.cameras[0]->setWindow(windowOf(setup, Vec3d(-0.2483, 0.0961, 1)));
     if (setup.cameras == 1)
         return rig;
@@ -107,18 +106,18 @@ bool allInside(const std::vector<Point2d>& pixels)
 }
 
 //! The corners that are found in a rendered image; none if the board is not all in it.
-std::vector<Point2d> findRendered(const Rig& rig, int c, bool glass, Vec3d rvec, Vec3d tvec, scenes::Random& random)
+std::vector<Point2d> findRendered(const RigModel& rig, int c, bool glass, Vec3d rvec, Vec3d tvec, scenes::Random& random)
 {
     poseInCamera(rig, c, rvec, tvec);
-    const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : withWindow(rig.cameras[c], GlassWindow());
+    const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
     const Mat image = render(renderedBoard(), {rvec, tvec}, camera, Exposure(), (uint64_t)random.uniform(0, 1e9));
     return renderedBoard().detect(image);
 }
 
 //! A board before camera 1, tilted anyhow, its middle near the optical axis.
-Pose randomPose(const std::vector<Point3d>& object, scenes::Random& random)
+BoardPose randomPose(const std::vector<Point3d>& object, scenes::Random& random)
 {
-    Pose pose;
+    BoardPose pose;
     pose.rvec = random.vector(0.45);
     const double z = random.uniform(500, 900);
     Matx33d R;
@@ -129,7 +128,7 @@ Pose randomPose(const std::vector<Point3d>& object, scenes::Random& random)
 }
 
 //! What the cameras see, without what lies outside the images.
-Moment look(const Rig& rig, const std::vector<Point3d>& object, const Pose& pose, bool direct, bool glass,
+Moment look(const RigModel& rig, const std::vector<Point3d>& object, const BoardPose& pose, bool direct, bool glass,
             const Setup& setup, scenes::Random& random)
 {
     const Vec3d rvec = pose.rvec, tvec = pose.tvec;
@@ -163,10 +162,10 @@ Moment look(const Rig& rig, const std::vector<Point3d>& object, const Pose& pose
 struct Images
 {
     RigData data;
-    std::vector<Pose> poses;
+    std::vector<BoardPose> poses;
 };
 
-Images takeImages(const Rig& rig, const Setup& setup, scenes::Random& random)
+Images takeImages(const RigModel& rig, const Setup& setup, scenes::Random& random)
 {
     Images images;
     RigData& data = images.data;
@@ -179,7 +178,7 @@ Images takeImages(const Rig& rig, const Setup& setup, scenes::Random& random)
     const auto take = [&](bool direct, bool glass)
     {
         Moment moment;
-        Pose pose;
+        BoardPose pose;
         while (!moment.hasDirect(0) && !moment.hasGlass())      // a rendered board may not be all in the image
         {
             pose = randomPose(data.objectPoints, random);
@@ -197,7 +196,7 @@ Images takeImages(const Rig& rig, const Setup& setup, scenes::Random& random)
 }
 
 //! A robot tells where the board is, within its +-; the lens, from the direct images, is free.
-Fit fitAtKnownPoses(const RigData& data, const std::vector<Pose>& poses, const Rig& start, int flags,
+Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, const RigModel& start, int flags,
                     scenes::Random& random)
 {
     const double sigmaR = 2e-4, sigmaT = 0.05;      // rad, mm
@@ -236,7 +235,7 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<Pose>& poses, const R
 }
 
 //! As refract_calib does it; poses, which it does not know, as a caller of the library.
-Fit calibrate(const Images& images, const Setup& setup, const Rig& truth, scenes::Random& random)
+Fit calibrate(const Images& images, const Setup& setup, const RigModel& truth, scenes::Random& random)
 {
     RigData data = images.data;
     RigOptions options;
@@ -253,14 +252,14 @@ Fit calibrate(const Images& images, const Setup& setup, const Rig& truth, scenes
     if (!setup.hasDirect())
         options.flags |= GLASS_FREE_INTRINSICS;
     std::vector<LensSource> sources;
-    Rig start;
+    RigModel start;
     if (setup.flow == Flow::ROBUST)
         startWithoutWrongPoints(data, options, start, sources);
     else
-        start = startRig(data, options, sources);
+        start = startModel(data, options, sources);
     if (setup.flow == Flow::KNOWN_POSES)
         return fitAtKnownPoses(data, images.poses, start, options.flags, random);
-    return fitAll(data, start, sources, options.flags);
+    return fitAllImages(data, start, sources, options.flags);
 }
 
 //! Errors and stated deviations of one kind of number.
@@ -300,7 +299,7 @@ void addParameters(Ratio& ratio, const Mat& covariance, int first, const std::ve
         ratio.add(errors[i], std::sqrt(covariance.at<double>(first + i, first + i)));
 }
 
-void compare(const Fit& fit, const Rig& truth, Honesty& honesty)
+void compare(const Fit& fit, const RigModel& truth, Honesty& honesty)
 {
     Mat C = fit.covariance;
     for (int c = 0; c < (int)truth.cameras.size(); c++)
@@ -331,7 +330,7 @@ void compare(const Fit& fit, const Rig& truth, Honesty& honesty)
 }
 
 //! Points of the working volume, of pixels without noise: the calibration's part alone.
-void comparePoints(const Fit& fit, const Rig& truth, Honesty& honesty)
+void comparePoints(const Fit& fit, const RigModel& truth, Honesty& honesty)
 {
     Calibration calibration = calibrationOf(fit.rig);
     calibration.covariance = fit.covariance;
@@ -363,7 +362,7 @@ void comparePoints(const Fit& fit, const Rig& truth, Honesty& honesty)
 Honesty honestyOf(const Setup& setup, int trials, unsigned salt)
 {
     Honesty honesty;
-    const Rig truth = trueRig(setup);
+    const RigModel truth = trueRig(setup);
     for (int trial = 0; trial < trials; trial++)
     {
         scenes::Random random(salt + trial);
@@ -453,7 +452,7 @@ TEST_CASE("A sealed rig's windows are not tilted the other way, and the second b
     {
         CAPTURE(r.cameras);
         const Setup setup{Flow::SEALED, Medium::AIR, r.cameras};
-        const Rig truth = trueRig(setup);
+        const RigModel truth = trueRig(setup);
         scenes::Random random(r.seed);
         const Images images = takeImages(truth, setup, random);
         const Fit fit = calibrate(images, setup, truth, random);
@@ -474,7 +473,7 @@ TEST_CASE("Boards that took no part are as far off as stated, and the check sees
 {
     std::cout << "seed " << scenes::seed() << '\n';
     const Setup setup{Flow::HAND_HELD, Medium::HOUSING, 1};
-    const Rig truth = trueRig(setup);
+    const RigModel truth = trueRig(setup);
     Misfit stated, tooSure;
     for (int trial = 0; trial < 10; trial++)
     {
@@ -518,7 +517,7 @@ double lengthVariance(const Fit& fit, const Point3d& a, const Point3d& b)
 //! Two cameras before a wall or each behind its port, in water; few views from afar, some corners wrong.
 struct SealedRig
 {
-    Rig truth;
+    RigModel truth;
     RigData data;
     bool shared;
 
@@ -589,9 +588,9 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             options.lensCoefficients = 4;
             std::vector<LensSource> sources;
             RigData data = scene.data;
-            Rig start;
+            RigModel start;
             startWithoutWrongPoints(data, options, start, sources);
-            const Fit fit = fitAll(data, start, sources, options.flags);
+            const Fit fit = fitAllImages(data, start, sources, options.flags);
             const Point3d a(-60, 20, 1800), b(60, -30, 2000);
             std::vector<Point2d> pixels1, pixels2;
             std::vector<Point3d> points;

@@ -12,7 +12,7 @@ namespace {
 const double PIXEL = 0.05, FOCAL = 2., THICKNESS = 0.05, TILT = 1e-3;
 
 //! A camera whose focal lengths, thickness and normal are known only so far.
-Calibration uncertain(const Rig& rig)
+Calibration uncertain(const RigModel& rig)
 {
     Calibration c = calibrationOf(rig);
     const ParameterColumns at = columnsOf(rig, 0);
@@ -26,9 +26,9 @@ Calibration uncertain(const Rig& rig)
     return c;
 }
 
-Calibration drawn(const Rig& rig, scenes::Random& random)
+Calibration drawn(const RigModel& rig, scenes::Random& random)
 {
-    Rig other = rig.clone();
+    RigModel other = rig.clone();
     Mat lens = other.cameras[0]->lensParameters();
     lens.at<double>(0) += random.normal(FOCAL);
     lens.at<double>(1) += random.normal(FOCAL);
@@ -42,7 +42,7 @@ Calibration drawn(const Rig& rig, scenes::Random& random)
 
 //! Measures the same pixels with drawn calibrations and noise; checks sigma against the spread, coordinate by coordinate.
 template <class Measure>
-void checkSpread(const Rig& rig, const std::vector<Point2d>& pixels, unsigned salt, const Measure& measure)
+void checkSpread(const RigModel& rig, const std::vector<Point2d>& pixels, unsigned salt, const Measure& measure)
 {
     scenes::Random random(salt);
     std::cout << "seed " << scenes::seed() << '\n';
@@ -73,7 +73,7 @@ void checkSpread(const Rig& rig, const std::vector<Point2d>& pixels, unsigned sa
 
 TEST_CASE("Points on a plane carry the calibration's uncertainty", "[measurement]")
 {
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     checkSpread(rig, {{100, 100}, {640, 500}, {1200, 900}}, 3020, [](const Calibration& c, const std::vector<Point2d>& pixels) {
         return measureOnPlane(c, pixels, Vec4d(0.1, -0.2, 1, 600), PIXEL);
     });
@@ -81,7 +81,7 @@ TEST_CASE("Points on a plane carry the calibration's uncertainty", "[measurement
 
 TEST_CASE("Points of a target of known shape carry the calibration's uncertainty", "[measurement]")
 {
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     TargetOptions options;
     options.size = "6x5";
     options.square = 39;
@@ -141,7 +141,7 @@ TEST_CASE("Partners that agree within the noise keep their uncertainty", "[measu
         int flagged = 0, inflated = 0, all = 0;
         for (int trial = 0; trial < 100; trial++)
         {
-            Rig rig = paperRig(2);
+            RigModel rig = paperRig(2);
             if (calibrationIsUncertain)
             {
                 GlassWindow window = rig.cameras[1]->window();
@@ -218,7 +218,7 @@ TEST_CASE("Images noisier than the calibration's make all their points less cert
 
 TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[measurement]")
 {
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     TargetOptions options;
     options.size = "6x5";
     options.square = 39;

@@ -11,7 +11,7 @@ namespace {
 //! Pairs of the paper's rig as they are, with all that is given right.
 Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
 {
-    const Rig rig = paperRig(cameras);
+    const RigModel rig = paperRig(cameras);
     Given given;
     given.square = 39.;
     given.data.cameraCount = cameras;
@@ -21,7 +21,7 @@ Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
     for (int c = 0; c < cameras; c++)
     {
         given.data.imageSize[c] = Size(1280, 1024);
-        given.options.known[c] = withWindow(rig.cameras[c], GlassWindow());
+        given.options.known[c] = copyWithWindow(rig.cameras[c], GlassWindow());
     }
     for (int i = 0; i < 6; i++)
     {
@@ -83,7 +83,7 @@ TEST_CASE("Water taken for air is found from glass-only views, and refused", "[m
 {
     scenes::Random random(915);
     CAPTURE(scenes::seed());
-    Rig wet = paperRig(1);
+    RigModel wet = paperRig(1);
     GlassWindow window = wet.cameras[0]->window();
     window.outerIndex = 1.333;
     wet.cameras[0]->setWindow(window);
@@ -99,8 +99,8 @@ TEST_CASE("Water taken for air is found from glass-only views, and refused", "[m
     RigCalibration c;
     c.data = given.data;
     c.options = given.options;
-    c.start = startRig(c.data, c.options, c.lensSources);
-    c.fit = fitRig(c.data, c.start, allMoments(c.data), 0);
+    c.start = startModel(c.data, c.options, c.lensSources);
+    c.fit = fitImages(c.data, c.start, allMoments(c.data), 0);
     c.residuals = residualsOf(c.data, c.fit);
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);
     CHECK_THROWS_WITH(requireSensible(c, given), Catch::Contains("does not fit its images")

@@ -9,7 +9,7 @@ using namespace tools;
 namespace {
 
 //! One camera, eight pairs without noise, all boards moved between the direct and the glass image.
-RigData pairsMovedBy(const Rig& rig, const Vec3d& shift)
+RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
 {
     scenes::Random random(1010);
     RigData data;
@@ -24,13 +24,13 @@ RigData pairsMovedBy(const Rig& rig, const Vec3d& shift)
     return data;
 }
 
-RigCalibration calibrated(const Rig& rig, const Vec3d& shift)
+RigCalibration calibrated(const RigModel& rig, const Vec3d& shift)
 {
     RigCalibration c;
     c.data = pairsMovedBy(rig, shift);
     c.start = rig;
     c.lensSources.resize(1);
-    c.fit = fitRig(c.data, rig, allMoments(c.data), 0);
+    c.fit = fitImages(c.data, rig, allMoments(c.data), 0);
     c.residuals = residualsOf(c.data, c.fit);
     return c;
 }
@@ -39,7 +39,7 @@ RigCalibration calibrated(const Rig& rig, const Vec3d& shift)
 
 TEST_CASE("What a nudge between direct and glass images does is told, and is much", "[tolerance]")
 {
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     const RigCalibration still = calibrated(rig, Vec3d());
     const std::vector<Tolerance> tolerances = analyseTolerances(still, 1., true);
     REQUIRE(tolerances.size() == 6);
@@ -73,7 +73,7 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
 
 TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
 {
-    const Rig rig = paperRig(2);
+    const RigModel rig = paperRig(2);
     RigCalibration right;
     right.data.cameraCount = 2;
     right.data.objectPoints = board(6, 5);
@@ -92,7 +92,7 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     }
     right.start = rig;
     right.lensSources.resize(2);
-    right.fit = fitRig(right.data, rig, allMoments(right.data), 0);
+    right.fit = fitImages(right.data, rig, allMoments(right.data), 0);
     right.residuals = residualsOf(right.data, right.fit);
     const std::vector<Tolerance> tolerances = analyseTolerances(right, 1., true);
     REQUIRE(tolerances.size() >= 2);
@@ -106,7 +106,7 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     CHECK(square.rms == Approx(0.6).epsilon(0.2));
 
     // A calibration of images of a bent board, taken for flat.
-    const Rig found = fitRig(ofBent, rig, allMoments(ofBent), 0).rig;
+    const RigModel found = fitImages(ofBent, rig, allMoments(ofBent), 0).rig;
     double worst = 0.;
     for (const Point3d& X : {Point3d(0, 0, 600), Point3d(60, 40, 650), Point3d(-60, -40, 560), Point3d(50, -60, 610)})
     {

@@ -9,9 +9,9 @@ using Eigen::MatrixXd;
 namespace {
 
 //! The rig with one of its parameters, in the order of Fit::covariance, moved; a normal stays a unit vector.
-Rig moved(const Rig& rig, int column, double step)
+RigModel moved(const RigModel& rig, int column, double step)
 {
-    Rig result = rig.clone();
+    RigModel result = rig.clone();
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(rig, c);
@@ -50,14 +50,14 @@ Rig moved(const Rig& rig, int column, double step)
 
 TEST_CASE("Derivatives of a view of two cameras agree with differences", "[view_derivatives]")
 {
-    const Rig rig = paperRig(2);
+    const RigModel rig = paperRig(2);
     const std::vector<Point3d> object = board(6, 5);
     const Vec3d rvec(0.2, -0.3, 0.1), tvec(-30, 10, 620);
     std::vector<ImageOfView> images;
     for (int c = 0; c < 2; c++)
         for (bool glass : {true, false})
             images.push_back(pointsInImage(rig, object, rvec, tvec, c, glass));
-    const auto predicted = [&](const Rig& r, const Vec3d& rv, const Vec3d& tv) {
+    const auto predicted = [&](const RigModel& r, const Vec3d& rv, const Vec3d& tv) {
         return differentiateView(r, object, rv, tv, images).predicted;
     };
     const ViewDerivatives d = differentiateView(rig, object, rvec, tvec, images);

@@ -11,8 +11,8 @@ TEST_CASE("Traced with parallel faces, the rays are the library's", "[wedge]")
     std::cout << "seed " << scenes::seed() << '\n';
     for (int kind = 1; kind < scenes::WINDOW_KINDS; kind++)
     {
-        const Ptr<RefractiveCamera> camera = withWindow(paperRig(1).cameras[0],
-                                                        scenes::makeWindow((scenes::WindowKind)kind, random));
+        const Ptr<RefractiveCamera> camera = copyWithWindow(paperRig(1).cameras[0],
+                                                            scenes::makeWindow((scenes::WindowKind)kind, random));
         const std::vector<Point2d> pixels = {{10, 10}, {640, 500}, {1270, 1000}};
         std::vector<Point3d> points;
         refractivePointsOnPlane(pixels, points, camera, Vec4d(0, 0, 1, 700));
@@ -25,7 +25,7 @@ TEST_CASE("Traced with parallel faces, the rays are the library's", "[wedge]")
 
 TEST_CASE("A thin wedge turns the ray by (index - 1) times its angle", "[wedge]")
 {
-    const Ptr<RefractiveCamera> camera = withWindow(paperRig(1).cameras[0], GlassWindow(Vec3d(0, 0, 1), 1e-6, 1.5, 0.));
+    const Ptr<RefractiveCamera> camera = copyWithWindow(paperRig(1).cameras[0], GlassWindow(Vec3d(0, 0, 1), 1e-6, 1.5, 0.));
     const std::vector<Point2d> centre = {{643.98, 500.01}};
     const double angle = 1e-5;
     const Point3d at = traceWedge(camera, centre, {Vec3d(angle, 0, 0), 0.}, {1000.})[0];

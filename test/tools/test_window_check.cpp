@@ -12,7 +12,7 @@ namespace {
 const double SIGMA = 0.1, FREEDOM = 500., FALSE_ALARM = 0.01;
 
 //! A calibration from ten pairs at 0.1 px: its covariance for sigma = 0.1.
-Mat calibratedCovariance(const Rig& rig, const std::vector<Point3d>& object, scenes::Random& random)
+Mat calibratedCovariance(const RigModel& rig, const std::vector<Point3d>& object, scenes::Random& random)
 {
     std::vector<std::vector<Point3d>> objects;
     std::vector<std::vector<Point2d>> direct, glass;
@@ -26,19 +26,19 @@ Mat calibratedCovariance(const Rig& rig, const std::vector<Point3d>& object, sce
         direct.push_back(m.direct[0]);
         glass.push_back(m.glass[0]);
     }
-    Rig found = rig.clone();
+    RigModel found = rig.clone();
     rms = calibrateGlass(objects, direct, glass, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
                          noArray());
     return covariance * (2. * SIGMA * SIGMA / (rms * rms));
 }
 
 //! A rig as a calibration would have found it: its normal off by a draw from the covariance.
-Rig drawn(const Rig& truth, const Mat& covariance, scenes::Random& random)
+RigModel drawn(const RigModel& truth, const Mat& covariance, scenes::Random& random)
 {
     const int at = columnsOf(truth, 0).normal;
     const Eigen::MatrixXd C = toEigen(covariance(Rect(at, at, 3, 3)));
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(C);
-    Rig rig = truth.clone();
+    RigModel rig = truth.clone();
     GlassWindow window = rig.cameras[0]->window();
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++)
@@ -48,9 +48,9 @@ Rig drawn(const Rig& truth, const Mat& covariance, scenes::Random& random)
     return rig;
 }
 
-Rig tilted(const Rig& rig, double degrees, double azimuth)
+RigModel tilted(const RigModel& rig, double degrees, double azimuth)
 {
-    Rig result = rig.clone();
+    RigModel result = rig.clone();
     GlassWindow window = result.cameras[0]->window();
     const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
     window.normal = normalize(window.normal + std::tan(degrees * CV_PI / 180)
@@ -65,7 +65,7 @@ struct Rates { double falseAlarms, found, predicted, inTwoSigma; };
 Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int trials, unsigned salt)
 {
     scenes::Random random(salt);
-    const Rig truth = paperRig(1);
+    const RigModel truth = paperRig(1);
     const Mat covariance = calibratedCovariance(truth, board(6, 5), random);
     Rates result = {};
     for (int i = 0; i < trials; i++)
@@ -76,10 +76,10 @@ Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int tr
         const double scale = chi / FREEDOM;
         const CheckBasis basis{drawn(truth, covariance, random), covariance * scale, SIGMA * std::sqrt(scale), FREEDOM};
         const Vec3d rvec = random.vector(0.3), tvec(random.uniform(-20, 20), random.uniform(-20, 20), z);
-        const auto check = [&](const Rig& now) {
-            return checkWindows(basis, object, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
+        const auto check = [&](const RigModel& now) {
+            return checkTilts(basis, object, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
         };
-        const Rig away = tilted(truth, tiltDeg, random.uniform(0, 2 * CV_PI));
+        const RigModel away = tilted(truth, tiltDeg, random.uniform(0, 2 * CV_PI));
         const WindowCheck same = check(truth), other = check(away);
         result.falseAlarms += same.moved / (double)trials;
         result.found += other.moved / (double)trials;
@@ -108,12 +108,12 @@ TEST_CASE("A large tilt of both windows is measured, and the camera named", "[wi
     scenes::Random random(3011);
     std::cout << "seed " << scenes::seed() << '\n';
     const std::vector<Point3d> object = board(6, 5);
-    const Rig rig = paperRig(2), now = tilted(rig, 5., 1.);
+    const RigModel rig = paperRig(2), now = tilted(rig, 5., 1.);
     const CheckBasis basis{rig, Mat(), 0.02, FREEDOM};
     for (bool direct : {true, false})       // two cameras that see the same board need no image without the window
     {
-        const CheckResult result = checkWindows(basis, object, {observe(now, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620),
-                                                                        direct, 0.02, random)}, FALSE_ALARM);
+        const CheckResult result = checkTilts(basis, object, {observe(now, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620),
+                                                                      direct, 0.02, random)}, FALSE_ALARM);
         REQUIRE(result.windows.size() == 2);
         CHECK(result.windows[0].moved);
         CHECK(result.windows[0].tiltDeg == Approx(5.).margin(5 * result.windows[0].stdDeg[0]));
@@ -128,14 +128,14 @@ TEST_CASE("A board that moved within its pair is no tilt of the window", "[windo
     scenes::Random random(3012);
     std::cout << "seed " << scenes::seed() << '\n';
     const std::vector<Point3d> object = board(6, 5);
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     Moment m = observe(rig, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620), true, 0.02, random);
     m.glass[0] = observe(rig, object, Vec3d(0.2, 0.3, 0.02), Vec3d(-20, 0, 620), true, 0.02, random).glass[0];
-    CHECK(checkWindows({rig, Mat(), 0.02, FREEDOM}, object, {m}, FALSE_ALARM).misfitProbability < 1e-4);
+    CHECK(checkTilts({rig, Mat(), 0.02, FREEDOM}, object, {m}, FALSE_ALARM).misfitProbability < 1e-4);
 
     Moment without = m;
     without.glass[0].clear();
-    CHECK_THROWS_AS(checkWindows({rig, Mat(), 0.02, FREEDOM}, object, {without}, FALSE_ALARM), Failure);
+    CHECK_THROWS_AS(checkTilts({rig, Mat(), 0.02, FREEDOM}, object, {without}, FALSE_ALARM), Failure);
 }
 
 TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-carlo]")

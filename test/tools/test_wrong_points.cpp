@@ -8,7 +8,7 @@ using namespace tools;
 namespace {
 
 //! Six pairs of one camera.
-RigData sixPairs(const Rig& rig, scenes::Random& random)
+RigData sixPairs(const RigModel& rig, scenes::Random& random)
 {
     RigData data;
     data.objectPoints = board(6, 5);
@@ -28,7 +28,7 @@ TEST_CASE("Wrong points and a moved board are taken out by name", "[wrong_points
 {
     scenes::Random random(710);
     CAPTURE(scenes::seed());
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     RigData data = sixPairs(rig, random);
     data.moments[1].glass[0][7] += Point2d(5, -3);
     for (Point2d& p : data.moments[3].direct[0])
@@ -49,7 +49,7 @@ TEST_CASE("If most points are wrong, all stay and it is said", "[wrong_points]")
 {
     scenes::Random random(720);
     CAPTURE(scenes::seed());
-    const Rig rig = paperRig(1);
+    const RigModel rig = paperRig(1);
     RigData data = sixPairs(rig, random);
     for (Moment& m : data.moments)
         for (std::vector<Point2d>* pixels : {&m.direct[0], &m.glass[0]})

@@ -44,7 +44,7 @@ Fit trainWindow(const RigData& data, const Fit& fit, int flags, const std::vecto
 {
     try
     {
-        return fitRig(data, fit.rig, train, flags);
+        return fitImages(data, fit.rig, train, flags);
     }
     catch (const cv::Exception&)
     {
@@ -52,12 +52,12 @@ Fit trainWindow(const RigData& data, const Fit& fit, int flags, const std::vecto
     }
 }
 
-Rig trainPinhole(const RigData& data, const Fit& fit, const std::vector<int>& train)
+RigModel trainPinhole(const RigData& data, const Fit& fit, const std::vector<int>& train)
 {
     try
     {
         const Calibration pinhole = calibratePinholeRig(data, train, pinholeCoefficients(*fit.rig.cameras[0]));
-        Rig rig;
+        RigModel rig;
         for (const CameraCalibration& camera : pinhole.cameras)
             rig.cameras.push_back(camera.camera);
         rig.R = pinhole.R;
@@ -66,7 +66,7 @@ Rig trainPinhole(const RigData& data, const Fit& fit, const std::vector<int>& tr
     }
     catch (const std::exception&)
     {
-        return Rig();       // too few images, or no such lens
+        return RigModel();       // too few images, or no such lens
     }
 }
 
@@ -87,7 +87,7 @@ private:
     int count_ = 0;
 };
 
-void addLengths(const RigData& data, const Rig& rig, const Moment& m, Pool& lengths)
+void addLengths(const RigData& data, const RigModel& rig, const Moment& m, Pool& lengths)
 {
     if (data.cameraCount == 1 || !m.hasGlass(0) || !m.hasGlass(1))
         return;
@@ -105,7 +105,7 @@ void addLengths(const RigData& data, const Rig& rig, const Moment& m, Pool& leng
 void addTransfer(const RigData& data, const Ptr<RefractiveCamera>& camera, const Moment& m, int c, Pool& errors)
 {
     Vec3d rvec, tvec;
-    if (!m.isPair(c) || !refractiveSolvePnP(data.objectPoints, m.direct[c], withWindow(camera, GlassWindow()), rvec, tvec))
+    if (!m.isPair(c) || !refractiveSolvePnP(data.objectPoints, m.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
         return;
     std::vector<Point2d> predicted;
     refractiveProjectPoints(data.objectPoints, rvec, tvec, camera, predicted);
@@ -129,7 +129,7 @@ void addMisfit(const RigData& data, const Fit& trained, const std::vector<int>& 
     catch (const Failure&) {}       // no pose: the other numbers say it
 }
 
-double testRig(const RigData& data, const Rig& rig, const std::vector<int>& test)
+double testRig(const RigData& data, const RigModel& rig, const std::vector<int>& test)
 {
     PooledRms rms;
     for (size_t c = 0; c < rig.cameras.size(); c++)
@@ -158,7 +158,7 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
             ((int)k % result.folds == fold ? test : trainGlass).push_back(byRange[k].second);
         train.insert(train.end(), trainGlass.begin(), trainGlass.end());
         const Fit trained = trainWindow(data, fit, flags, train);
-        const Rig window = trained.rig, pinhole = trainPinhole(data, fit, trainGlass);
+        const RigModel window = trained.rig, pinhole = trainPinhole(data, fit, trainGlass);
         result.views += (int)test.size();
         if (window.cameras.empty())
             result.failed += (int)test.size();

@@ -77,7 +77,7 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
             f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
     }
-    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (other && !other->isExcluded())
         f.weak.push_back(of(c, camera) + other->sentence());
     if (equalMedia(window))
@@ -105,11 +105,11 @@ std::string opticalPath(const RigCalibration& c, int camera)
                  std::sqrt(cov(at.thickness, at.thickness)), std::sqrt(cov(at.index, at.index)));
 }
 
-bool isOneOf(const FreeParameter& p, int first, int second) { return p.column == first || p.column == second; }
+bool isOneOf(const EstimatedParameter& p, int first, int second) { return p.column == first || p.column == second; }
 
 void judgeCorrelations(const RigCalibration& c, Findings& f)
 {
-    const std::vector<FreeParameter> free = freeWindowParameters(c.fit, c.options.flags);
+    const std::vector<EstimatedParameter> free = estimatedWindowParameters(c.fit, c.options.flags);
     for (size_t i = 0; i < free.size(); i++)
         for (size_t j = i + 1; j < free.size(); j++)
         {

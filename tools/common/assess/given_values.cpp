@@ -54,7 +54,7 @@ std::vector<Contradiction> contradictedValues(const RigCalibration& c)
             continue;
         try
         {
-            const Fit fit = fitRig(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
+            const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
             const bool shared = c.options.flags & GLASS_SHARED_WINDOW;
             for (int k = 0; k < (shared ? 1 : c.data.cameraCount); k++)
             {

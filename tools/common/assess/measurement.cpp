@@ -309,7 +309,7 @@ Calibration withoutWindows(const Calibration& calibration)
     Calibration bare = calibration;
     bare.covariance.release();      // it speaks of windows
     for (CameraCalibration& c : bare.cameras)
-        c.camera = withWindow(c.camera, cv::refract::GlassWindow());
+        c.camera = copyWithWindow(c.camera, cv::refract::GlassWindow());
     return bare;
 }
 

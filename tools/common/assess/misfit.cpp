@@ -56,12 +56,12 @@ double cornersLimit(const RigData& data)
     return limit;
 }
 
-double misfitOf(const RigData& data, const RigOptions& options, Rig* result = nullptr)
+double misfitOf(const RigData& data, const RigOptions& options, RigModel* result = nullptr)
 {
     try
     {
         std::vector<LensSource> sources;
-        const Fit fit = fitRig(data, startRig(data, options, sources), allMoments(data), options.flags, ITERATIONS);
+        const Fit fit = fitImages(data, startModel(data, options, sources), allMoments(data), options.flags, ITERATIONS);
         if (result)
             *result = fit.rig;
         return medianOf(data, residualsOf(data, fit));
@@ -113,7 +113,7 @@ Explanation wrongScale(const Given& given)
     {
         options.window = pane;
         options.window.thickness[0] *= start;
-        Rig rig;
+        RigModel rig;
         const double px = misfitOf(given.data, options, &rig);
         if (px >= 0.5 * best)
             continue;
@@ -138,7 +138,7 @@ Explanation wrongIndex(const Given& given)
     RigOptions options = given.options;
     options.flags = (options.flags | GLASS_FREE_INDEX) & ~GLASS_FREE_THICKNESS;
     options.window.index[0] = USUAL_INDEX;
-    Rig rig;
+    RigModel rig;
     const double px = misfitOf(given.data, options, &rig);
     const double index = px < NO_FIT ? rig.cameras[0]->window().index[0] : 1.;
     return {format("--index=%.3g in place of %.4g", index, given.options.window.index[0]),
@@ -305,7 +305,7 @@ std::string badCorners(const Given& given)
         {
             std::vector<LensSource> sources;
             const Given one = oneCamera(given, c);
-            startRig(one.data, one.options, sources);
+            startModel(one.data, one.options, sources);
             if (sources[0].kind == LensSource::FROM_DIRECT && sources[0].rms > cornersLimit(one.data))
                 return format("already the direct images of camera %d, without any window, do not fit a lens (%.1f px): the "
                               "target is not as --pattern and --size say, or its points were found wrongly", c + 1,

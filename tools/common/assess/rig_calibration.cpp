@@ -43,14 +43,14 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
     return both;
 }
 
-std::string OtherMinimum::sentence() const
+std::string SecondSolution::sentence() const
 {
     return format("a second solution fits nearly as well: normal (%.4f, %.4f, %.4f), RMS %.4f px against %.4f px (%.1f standard "
                   "deviations worse; below 3 the data do not exclude it). Take a pair, or boards at other tilts", normal[0],
                   normal[1], normal[2], rms, fitRms, excess);
 }
 
-std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera)
+std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, int camera)
 {
     const Mat row = calibration.fit.otherMinima.row(camera);
     const double excess = row.at<double>(3);
@@ -61,14 +61,14 @@ std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int 
     // The search that knows of it had all images where none is direct;
     const Fit& fit = calibration.fit;
     if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
-        return OtherMinimum{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
+        return SecondSolution{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
     // else those of one camera, that with most points, and their poses and the normal to fit.
     Rms seen = rmsOf(calibration, camera, true);
     if (calibration.options.flags & GLASS_SHARED_WINDOW)
         for (int other = 0; other < calibration.data.cameraCount; other++)
             if (rmsOf(calibration, other, true).points > seen.points)
                 seen = rmsOf(calibration, other, true);
-    return OtherMinimum{normal, excess, rmsWith(seen.px, 2. * seen.points - 6. * seen.views - 2.), seen.px};
+    return SecondSolution{normal, excess, rmsWith(seen.px, 2. * seen.points - 6. * seen.views - 2.), seen.px};
 }
 
 double coverage(const RigCalibration& calibration, int camera)

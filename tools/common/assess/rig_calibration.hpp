@@ -35,7 +35,7 @@ struct RigCalibration
 {
     RigData data;
     RigOptions options;
-    Rig start;
+    RigModel start;
     std::vector<LensSource> lensSources;
     Fit fit;
     std::vector<Residual> residuals;
@@ -68,7 +68,7 @@ Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment 
 Rms rmsOfCamera(const RigCalibration& calibration, int camera);
 
 //! Another tilt of a window that has a minimum of its own: its images through the window alone do not exclude it.
-struct OtherMinimum
+struct SecondSolution
 {
     cv::Vec3d normal;
     double excess;              //!< root of the difference of the squared errors, in standard deviations of a pixel
@@ -80,7 +80,7 @@ struct OtherMinimum
 };
 
 //! The second best of a camera's window; none with pairs, and for a shared window in the first camera alone.
-std::optional<OtherMinimum> otherMinimum(const RigCalibration& calibration, int camera);
+std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, int camera);
 
 //! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
 double coverage(const RigCalibration& calibration, int camera);

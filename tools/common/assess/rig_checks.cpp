@@ -61,13 +61,13 @@ void PooledRms::add(const std::vector<Point3d>& object, const std::vector<Point2
     count_ += n;
 }
 
-Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources)
+Baselines computeBaselines(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources)
 {
     Baselines result;
     for (int c = 0; c < data.cameraCount; c++)
     {
         const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, *start.cameras[c], c, allMoments(data));
-        const Ptr<RefractiveCamera> bare = withWindow(start.cameras[c], GlassWindow());
+        const Ptr<RefractiveCamera> bare = copyWithWindow(start.cameras[c], GlassWindow());
         PooledRms ignored, through;
         for (const Moment& m : data.moments)
         {
@@ -99,7 +99,7 @@ std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flag
         others.erase(std::find(others.begin(), others.end(), influence.moment));
         try
         {
-            const Fit without = fitRig(data, fit.rig, others, flags);
+            const Fit without = fitImages(data, fit.rig, others, flags);
             for (int c = 0; c < data.cameraCount; c++)
                 influence.turnDeg[c] = angleDeg(fit.rig.cameras[c]->window().normal,
                                                 without.rig.cameras[c]->window().normal);

@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_RIG_CHECKS_HPP
 #define REFRACT_TOOLS_RIG_CHECKS_HPP
 
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include <cmath>
 #include <limits>
 
@@ -31,7 +31,7 @@ struct Baselines
     std::vector<double> throughGlass;       //!< per camera: a pinhole camera calibrated on the glass images
 };
 
-Baselines computeBaselines(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources);
+Baselines computeBaselines(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources);
 
 //! How far the normal of each camera turns (degrees) if one moment is left out.
 struct Influence

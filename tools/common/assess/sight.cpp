@@ -15,18 +15,18 @@ namespace tools {
 namespace {
 
 //! Poses are found in the first of: direct image, glass image; of camera 1, of camera 2.
-bool startPose(const Rig& rig, const std::vector<Point3d>& object, const Moment& m, Sight& sight)
+bool startPose(const RigModel& rig, const std::vector<Point3d>& object, const Moment& m, Sight& sight)
 {
     for (bool glass : {false, true})
         for (int c = 0; c < (int)rig.cameras.size(); c++)
         {
             const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
-            const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : withWindow(rig.cameras[c], GlassWindow());
+            const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
             if (pixels.empty() || !refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec))
                 continue;
             if (c == 1)
             {
-                Rig back = rig;
+                RigModel back = rig;
                 back.R = rig.R.t();
                 back.T = -(rig.R.t() * rig.T);
                 poseInCamera(back, 1, sight.rvec, sight.tvec);
@@ -37,7 +37,7 @@ bool startPose(const Rig& rig, const std::vector<Point3d>& object, const Moment&
 }
 
 //! Gauss-Newton on the pose alone.
-ViewDerivatives atBestPose(const Rig& rig, const std::vector<Point3d>& object, Sight& sight)
+ViewDerivatives atBestPose(const RigModel& rig, const std::vector<Point3d>& object, Sight& sight)
 {
     const int ITERATIONS = 4;       // from a pose that one of the images alone fits best
     ViewDerivatives view = differentiateView(rig, object, sight.rvec, sight.tvec, sight.images);
@@ -65,7 +65,7 @@ MatrixXd rootOf(const MatrixXd& covariance)
 
 } // namespace
 
-Sight sightOf(const Rig& rig, const std::vector<Point3d>& object, const Moment& m)
+Sight sightOf(const RigModel& rig, const std::vector<Point3d>& object, const Moment& m)
 {
     Sight sight;
     if (!startPose(rig, object, m, sight))
@@ -107,7 +107,7 @@ double Misfit::calibrationRatio() const
     return directions ? std::sqrt(chiSquare / directions) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Misfit misfitOf(const Rig& rig, const Mat& covariance, double sigma, const std::vector<Point3d>& object,
+Misfit misfitOf(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<Point3d>& object,
                 const std::vector<Moment>& moments)
 {
     const MatrixXd H = rootOf(toEigen(covariance));

@@ -15,7 +15,7 @@ struct Sight
 };
 
 //! The start: the pose that one of the images tells. Throws Failure if none does.
-Sight sightOf(const Rig& rig, const std::vector<cv::Point3d>& objectPoints, const Moment& moment);
+Sight sightOf(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const Moment& moment);
 
 /** How far the pixels of moments are from a calibration that has not seen them, each board where it fits best, and how far
 they should be:
@@ -36,7 +36,7 @@ struct Misfit
 };
 
 //! Throws Failure if no pose of the target explains its points.
-Misfit misfitOf(const Rig& rig, const cv::Mat& covariance, double sigma, const std::vector<cv::Point3d>& objectPoints,
+Misfit misfitOf(const RigModel& rig, const cv::Mat& covariance, double sigma, const std::vector<cv::Point3d>& objectPoints,
                 const std::vector<Moment>& moments);
 
 } // namespace tools

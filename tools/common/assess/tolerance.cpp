@@ -38,7 +38,7 @@ struct Cause
 };
 
 //! One pane before both cameras lies to camera 2 as R turns it, and is thicker there by the way along the tilt.
-Wedge wedgeBefore(const Rig& rig, const Cause& cause, int camera, const Vec3d& tilt)
+Wedge wedgeBefore(const RigModel& rig, const Cause& cause, int camera, const Vec3d& tilt)
 {
     if (camera == cause.camera || camera == 0)
         return {tilt, 0.};
@@ -62,7 +62,7 @@ public:
     }
 
     //! Measured by another rig, from images bent by a wedge, minus true; NaN where not seen.
-    std::vector<Vec3d> displacements(const Rig& truth, const Rig& rig, const Cause& cause, const Vec3d& tilt) const
+    std::vector<Vec3d> displacements(const RigModel& truth, const RigModel& rig, const Cause& cause, const Vec3d& tilt) const
     {
         const Calibration calibration = calibrationOf(rig);
         std::vector<Vec3d> moved;
@@ -100,7 +100,7 @@ public:
         return result;
     }
 
-    static void bend(const Rig& truth, const Cause& cause, int camera, const std::vector<Point3d>& points,
+    static void bend(const RigModel& truth, const Cause& cause, int camera, const std::vector<Point3d>& points,
                      const Vec3d& tilt, std::vector<Point2d>& pixels)
     {
         if (cause.nudge || !cause.concerns(camera) || tilt == Vec3d())
@@ -154,7 +154,7 @@ RigData deformedData(const RigCalibration& c, const Cause& cause)
                 Moment& m = data.moments[c.fit.moments[k]];
                 std::vector<Point2d>& pixels = (glass ? m.glass : m.direct)[camera];
                 const Ptr<RefractiveCamera> in = c.fit.rig.cameras[camera];
-                const Ptr<RefractiveCamera> by = glass ? in : withWindow(in, GlassWindow());
+                const Ptr<RefractiveCamera> by = glass ? in : copyWithWindow(in, GlassWindow());
                 Vec3d rvec, tvec;
                 poseInCamera(c.fit, k, camera, rvec, tvec);
                 std::vector<Point2d> before, after;
@@ -187,9 +187,9 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
     return data;
 }
 
-Rig refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
+RigModel refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
 {
-    Rig start = c.fit.rig.clone();
+    RigModel start = c.fit.rig.clone();
     for (int k = 0; k < c.data.cameraCount; k++)
         if (cause.spoil && cause.concerns(k))
         {
@@ -197,7 +197,7 @@ Rig refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
             cause.spoil(window);
             start.cameras[k]->setWindow(window);
         }
-    return fitRig(bentData(c, cause, tilt), start, c.fit.moments, c.options.flags).rig;
+    return fitImages(bentData(c, cause, tilt), start, c.fit.moments, c.options.flags).rig;
 }
 
 double rmsOfAll(const std::vector<double>& values)

@@ -14,7 +14,7 @@ namespace {
 //! Pose in a camera, and its derivatives (6x6) by the pose in camera 1 and by the rig's R (rotation vector) and T.
 struct PoseInCamera
 {
-    PoseInCamera(const Rig& rig, int camera, const Vec3d& rvec1, const Vec3d& tvec1)
+    PoseInCamera(const RigModel& rig, int camera, const Vec3d& rvec1, const Vec3d& tvec1)
         : rvec(rvec1), tvec(tvec1), byPose(MatrixXd::Identity(6, 6)), byRig(MatrixXd::Zero(6, 6))
     {
         if (camera == 0)
@@ -32,12 +32,12 @@ struct PoseInCamera
     MatrixXd byPose, byRig;
 };
 
-Ptr<RefractiveCamera> cameraOf(const Rig& rig, int camera, bool glass)
+Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
 {
-    return glass ? rig.cameras[camera] : withWindow(rig.cameras[camera], GlassWindow());
+    return glass ? rig.cameras[camera] : copyWithWindow(rig.cameras[camera], GlassWindow());
 }
 
-int parameterCount(const Rig& rig)
+int parameterCount(const RigModel& rig)
 {
     const int cameras = (int)rig.cameras.size();
     return columnsOf(rig, cameras - 1).end + (cameras == 2 ? 6 : 0);
@@ -45,7 +45,7 @@ int parameterCount(const Rig& rig)
 
 } // namespace
 
-ViewDerivatives differentiateView(const Rig& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec,
+ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec,
                                   const Vec3d& tvec, const std::vector<ImageOfView>& images)
 {
     int rows = 0;
@@ -83,7 +83,7 @@ ViewDerivatives differentiateView(const Rig& rig, const std::vector<Point3d>& ob
     return view;
 }
 
-ImageOfView pointsInImage(const Rig& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
+ImageOfView pointsInImage(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
                           int camera, bool glass)
 {
     Vec3d rvecC = rvec, tvecC = tvec;

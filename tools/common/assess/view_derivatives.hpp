@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 #define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include <Eigen/Core>
 
 /* What one view of the target, taken or only planned, tells about a calibrated rig, to first order:
@@ -27,11 +27,11 @@ struct ViewDerivatives
 };
 
 //! Points without an image are an error of the caller's: see pointsInImage.
-ViewDerivatives differentiateView(const Rig& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+ViewDerivatives differentiateView(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
                                   const cv::Vec3d& tvec, const std::vector<ImageOfView>& images);
 
 //! The points that a camera sees of a board at a pose.
-ImageOfView pointsInImage(const Rig& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+ImageOfView pointsInImage(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
                           const cv::Vec3d& tvec, int camera, bool glass);
 
 //! An orthonormal basis of what no change of the pose can do: columns; its transpose times the residuals is free of the pose.

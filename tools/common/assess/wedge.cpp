@@ -1,5 +1,5 @@
 #include "assess/wedge.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include <cmath>
 
 using namespace cv;
@@ -23,7 +23,7 @@ std::vector<Point3d> traceWedge(const Ptr<RefractiveCamera>& camera, const std::
 {
     const GlassWindow window = camera->window();
     std::vector<Vec3d> origins, directions;
-    refractiveUnprojectPoints(pixels, origins, directions, withWindow(camera, GlassWindow()));
+    refractiveUnprojectPoints(pixels, origins, directions, copyWithWindow(camera, GlassWindow()));
     std::vector<double> index = window.index;
     index.insert(index.begin(), window.innerIndex);
     index.push_back(window.outerIndex);

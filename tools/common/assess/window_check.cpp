@@ -29,7 +29,7 @@ struct FreeNormal
     Eigen::Vector3d calibrated;
     Eigen::Matrix<double, 3, 2> basis;
 
-    FreeNormal(const Rig& rig, int c) : camera(c), column(columnsOf(rig, c).normal)
+    FreeNormal(const RigModel& rig, int c) : camera(c), column(columnsOf(rig, c).normal)
     {
         const Vec3d n = rig.cameras[c]->window().normal;
         calibrated << n[0], n[1], n[2];
@@ -151,15 +151,15 @@ private:
 
     const CheckBasis& basis_;
     const std::vector<Point3d>& object_;
-    Rig rig_;                   // the windows as they are now
+    RigModel rig_;                   // the windows as they are now
     std::vector<Sight> sights_;
     std::vector<FreeNormal> normals_;
 };
 
 } // namespace
 
-CheckResult checkWindows(const CheckBasis& basis, const std::vector<Point3d>& objectPoints,
-                         const std::vector<Moment>& moments, double falseAlarm)
+CheckResult checkTilts(const CheckBasis& basis, const std::vector<Point3d>& objectPoints,
+                       const std::vector<Moment>& moments, double falseAlarm)
 {
     CheckProblem problem(basis, objectPoints, moments);
     problem.solve();

@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_WINDOW_CHECK_HPP
 #define REFRACT_TOOLS_WINDOW_CHECK_HPP
 
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 
 /* Has a window moved since the calibration? From a few new images of the target:
 
@@ -16,7 +16,7 @@ namespace tools {
 //! What the test starts from.
 struct CheckBasis
 {
-    Rig rig;
+    RigModel rig;
     cv::Mat covariance;         //!< of its parameters, as Fit::covariance; empty: they are exact
     double sigma;               //!< of a pixel coordinate
     double freedom;             //!< degrees of freedom of sigma
@@ -40,8 +40,8 @@ struct CheckResult
 };
 
 //! Throws Failure if no moment has an image through a window, or a target's pose cannot be found.
-CheckResult checkWindows(const CheckBasis& basis, const std::vector<cv::Point3d>& objectPoints,
-                         const std::vector<Moment>& moments, double falseAlarm);
+CheckResult checkTilts(const CheckBasis& basis, const std::vector<cv::Point3d>& objectPoints,
+                       const std::vector<Moment>& moments, double falseAlarm);
 
 /** Probability that a tilt of this size, in the direction in which it shows least, is found.
 @param share of the covariance: 1/2 for twice as many images */

@@ -19,7 +19,7 @@ const double USUAL_FOCAL = 1.5;         // in image widths: tilts need no better
 std::set<std::string> stemsOf(const ViewSet& set, bool found)
 {
     std::set<std::string> stems;
-    for (const View& view : set.views)
+    for (const DetectedView& view : set.views)
         stems.insert(view.stem);
     for (size_t i = 0; !found && i < set.withoutTarget.size(); i++)
         stems.insert(stemOf(set.withoutTarget[i]));
@@ -46,7 +46,7 @@ std::string examples(const std::set<std::string>& stems)
     return text;
 }
 
-bool areOneImage(const View& a, const View& b)
+bool areOneImage(const DetectedView& a, const DetectedView& b)
 {
     for (size_t i = 0; i < a.points.size(); i++)
     {
@@ -60,11 +60,11 @@ bool areOneImage(const View& a, const View& b)
 
 void noticeDuplicates(const RigViewSets& sets, std::vector<std::string>& notices)
 {
-    struct Named { const View* view; std::string name; };
+    struct Named { const DetectedView* view; std::string name; };
     std::vector<Named> all;
     for (int c = 0; c < 2; c++)
         for (bool through : {false, true})
-            for (const View& view : (through ? sets.glass : sets.direct)[c].views)
+            for (const DetectedView& view : (through ? sets.glass : sets.direct)[c].views)
                 all.push_back({&view, "'" + view.path + "'"});
     for (size_t i = 0; i < all.size(); i++)
         for (size_t j = 0; j < i; j++)

@@ -2,7 +2,7 @@
 #define REFRACT_TOOLS_PINHOLE_RIG_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 
 namespace tools {
 

@@ -54,7 +54,7 @@ RigData pairViews(const Target& target, const RigViewSets& sets, bool unpaired)
                                      data.imageSize[c].width, data.imageSize[c].height, set.files[0].c_str(), set.imageSize.width,
                                      set.imageSize.height));
             data.imageSize[c] = set.imageSize;
-            for (const View& view : set.views)
+            for (const DetectedView& view : set.views)
             {
                 if (view.seenCount() < MIN_POINTS)
                     continue;

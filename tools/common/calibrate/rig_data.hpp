@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_RIG_DATA_HPP
 #define REFRACT_TOOLS_RIG_DATA_HPP
 
-#include "target/views.hpp"
+#include "target/detected_views.hpp"
 
 /* Which images belong together: what one or two cameras saw of a board at each of its poses. */
 namespace tools {

@@ -56,15 +56,15 @@ bool losesPairs(const RigData& data, const Fit& fit)
 
 /** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
 are then evidence of it. The fit with that value free knows which points are wrong. */
-Fit robustFit(const RigData& data, const Rig& start, int flags)
+Fit robustFit(const RigData& data, const RigModel& start, int flags)
 {
-    const Fit fit = fitRig(data, start, allMoments(data), flags | GLASS_ROBUST);
+    const Fit fit = fitImages(data, start, allMoments(data), flags | GLASS_ROBUST);
     if (!losesPairs(data, fit))
         return fit;
     for (int value : {GLASS_FREE_THICKNESS, GLASS_FREE_INDEX, GLASS_FREE_OUTER_INDEX})
         try
         {
-            const Fit freed = fitRig(data, start, allMoments(data), flags | value | GLASS_ROBUST);
+            const Fit freed = fitImages(data, start, allMoments(data), flags | value | GLASS_ROBUST);
             if (!losesPairs(data, freed))
                 return freed;
         }
@@ -91,7 +91,7 @@ std::string Dropped::sentence() const
                   image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
 }
 
-WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
+WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags)
 {
     Fit fit;
     try
@@ -117,12 +117,12 @@ WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags)
     return wrong;
 }
 
-WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, RigModel& start,
                                     std::vector<LensSource>& lensSources)
 {
     const int MOST_ROUNDS = 5;
     const RigData all = data;
-    start = startRig(all, options, lensSources);
+    start = startModel(all, options, lensSources);
     WrongPoints wrong;
     bool settled = false;
     for (int round = 0; round < MOST_ROUNDS && !settled; round++)
@@ -137,7 +137,7 @@ WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Ri
         wrong = found;
         data = rest;
         if (!settled)
-            start = startRig(data, options, lensSources);
+            start = startModel(data, options, lensSources);
     }
     return wrong;
 }

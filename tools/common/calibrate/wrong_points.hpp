@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_WRONG_POINTS_HPP
 #define REFRACT_TOOLS_WRONG_POINTS_HPP
 
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 
 /* Dirty glass: hidden, smeared or wrongly detected points, and images whose target was moved. They are found by a robust fit
 of everything (GLASS_ROBUST) and taken out of the data before the calibration itself, which then knows nothing of them. */
@@ -27,12 +27,12 @@ struct WrongPoints
 };
 
 //! Takes wrong points and images out of the data. Leaves all of them where the robust fit is not possible.
-WrongPoints dropWrongPoints(RigData& data, const Rig& start, int flags);
+WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags);
 
 /** The same where the start comes from the data too: wrong points are in its lens, and so in what seems wrong. They are looked
 for again in all the data, from the start that the others give, until the same ones are wrong.
-@param start, lensSources result: as of startRig from what is left */
-WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Rig& start,
+@param start, lensSources result: as of startModel from what is left */
+WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, RigModel& start,
                                     std::vector<LensSource>& lensSources);
 
 } // namespace tools

@@ -47,7 +47,7 @@ public:
             : std::vector<Point2d>{{middle.x, -0.5}, {middle.x, size.height - 0.5}};
         std::vector<Vec3d> origins, directions, innerOrigins, inner;
         refractiveUnprojectPoints(pixels, origins, directions, through_);
-        refractiveUnprojectPoints(pixels, innerOrigins, inner, withWindow(through_, GlassWindow()));
+        refractiveUnprojectPoints(pixels, innerOrigins, inner, copyWithWindow(through_, GlassWindow()));
         std::vector<Path> rays;
         for (size_t i = 0; i < pixels.size(); i++)
         {

@@ -56,7 +56,7 @@ double typicalLength(const std::vector<Residual>& residuals)
 Figure drawDisplacement(const RigCalibration& c, int camera)
 {
     const int COLUMNS = 20;
-    const Ptr<RefractiveCamera> through = c.fit.rig.cameras[camera], bare = withWindow(through, GlassWindow());
+    const Ptr<RefractiveCamera> through = c.fit.rig.cameras[camera], bare = copyWithWindow(through, GlassWindow());
     const Size size = c.data.imageSize[camera];
     const double z = workingDepth(c, camera)[1], step = (double)size.width / COLUMNS;
     std::vector<Point2d> from;

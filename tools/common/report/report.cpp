@@ -136,12 +136,12 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
 //! Parameters with their standard deviations, and their correlations as coloured cells.
 void setParameters(data& page, const Fit& fit, int flags)
 {
-    const std::vector<FreeParameter> window = freeWindowParameters(fit, flags);
-    std::vector<FreeParameter> all = window;
-    const std::vector<FreeParameter> rig = freeRigParameters(fit);
+    const std::vector<EstimatedParameter> window = estimatedWindowParameters(fit, flags);
+    std::vector<EstimatedParameter> all = window;
+    const std::vector<EstimatedParameter> rig = estimatedRigParameters(fit);
     all.insert(all.end(), rig.begin(), rig.end());
     data parameters{data::type::list}, correlations{data::type::list}, heads{data::type::list};
-    for (const FreeParameter& p : all)
+    for (const EstimatedParameter& p : all)
     {
         data entry;
         entry.set("name", p.name);
@@ -149,11 +149,11 @@ void setParameters(data& page, const Fit& fit, int flags)
         entry.set("std", format("%.2g", p.std));
         parameters << entry;
     }
-    for (const FreeParameter& p : window)
+    for (const EstimatedParameter& p : window)
     {
         data entry, cells{data::type::list};
         entry.set("name", p.name);
-        for (const FreeParameter& q : window)
+        for (const EstimatedParameter& q : window)
         {
             const double r = fit.covariance.at<double>(p.column, q.column) / (p.std * q.std);
             data cell;

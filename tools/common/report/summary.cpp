@@ -116,10 +116,10 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
                        [&](int k) { return estimateOr(window(k).outerIndex, deviation(k).outerIndex, "given"); }));
     bool hasOther = false;
     for (int k = 0; k < c.data.cameraCount; k++)
-        hasOther = hasOther || otherMinimum(c, k);
+        hasOther = hasOther || secondSolution(c, k);
     if (hasOther)
         rows.push_back(row(c, "second solution: normal; RMS, px", [&](int k) {
-            const std::optional<OtherMinimum> other = otherMinimum(c, k);
+            const std::optional<SecondSolution> other = secondSolution(c, k);
             return other ? format("(%.4f, %.4f, %.4f); %.4f", other->normal[0], other->normal[1], other->normal[2], other->rms)
                          : std::string("-");
         }));

@@ -41,10 +41,10 @@ Json estimates(const std::vector<double>& values, const std::vector<double>& std
     return list;
 }
 
-Json parameters(const std::vector<FreeParameter>& list)
+Json parameters(const std::vector<EstimatedParameter>& list)
 {
     Json result = Json::object();
-    for (const FreeParameter& p : list)
+    for (const EstimatedParameter& p : list)
         result[p.name] = estimate(p.value, p.std);
     return result;
 }
@@ -52,7 +52,7 @@ Json parameters(const std::vector<FreeParameter>& list)
 //! null: there is none.
 Json otherMinimumJson(const RigCalibration& c, int camera)
 {
-    const std::optional<OtherMinimum> other = otherMinimum(c, camera);
+    const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (!other)
         return nullptr;
     return {{"normal", listOf(other->normal)}, {"rms_px", other->rms}, {"standard_deviations_worse", other->excess},
@@ -197,7 +197,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
     for (int k = 0; k < c.data.cameraCount; k++)
         cameras.push_back(cameraJson(c, k));
     json["cameras"] = cameras;
-    json["rig"] = parameters(freeRigParameters(c.fit));
+    json["rig"] = parameters(estimatedRigParameters(c.fit));
     addAssessment(json, assessment);
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;

@@ -54,7 +54,7 @@ std::vector<Photo> photosOf(const RigViewSets& sets)
             const ViewSet& set = (glass ? sets.glass : sets.direct)[c];
             if (set.files.size() == 1 && std::filesystem::path(set.files[0]).extension() == ".vnl")
                 continue;
-            for (const View& view : set.views)
+            for (const DetectedView& view : set.views)
                 photos.push_back({view.path, view.stem, c, glass, view.points});
             for (const std::string& path : set.withoutTarget)
                 photos.push_back({path, stemOf(path), c, glass, {}});

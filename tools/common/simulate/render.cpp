@@ -66,7 +66,7 @@ private:
 };
 
 //! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.
-Mat traceTarget(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera)
+Mat traceTarget(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
     const Size size = camera->imageSize() + Size(2 * PAD, 2 * PAD);
     Mat pixels(size, CV_64FC2);
@@ -144,7 +144,7 @@ void vignette(Mat& levels, double loss)
 
 } // namespace
 
-Mat render(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
            const Exposure& exposure, uint64_t seed)
 {
     Mat levels = paintFine(Paint(target, exposure), traceTarget(target, pose, camera));
@@ -162,11 +162,11 @@ Mat render(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::Re
     return image;
 }
 
-Pose inSecondCamera(const Pose& pose, const Matx33d& R, const Vec3d& T)
+BoardPose inSecondCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)
 {
     Matx33d board;
     cv::Rodrigues(pose.rvec, board);
-    Pose second;
+    BoardPose second;
     cv::Rodrigues(R * board, second.rvec);
     second.tvec = R * pose.tvec + T;
     return second;

@@ -7,7 +7,7 @@
 namespace tools {
 
 //! Object -> camera.
-struct Pose
+struct BoardPose
 {
     cv::Vec3d rvec, tvec;
 };
@@ -25,11 +25,11 @@ struct Exposure
 the target is drawn there from its formula. Twice as many samples as pixels each way, each the mean of 8x8 points where
 it meets an edge; between pixels the target's coordinates are interpolated linearly, which is wrong by less than 1e-4
 pixels at any usual distortion. Blur at the finer resolution, then the mean over each pixel, then noise. */
-cv::Mat render(const Target& target, const Pose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+cv::Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
                const Exposure& exposure, uint64_t seed);
 
 //! Camera 2's pose of a target whose pose in camera 1 is known.
-Pose inSecondCamera(const Pose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
+BoardPose inSecondCamera(const BoardPose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
 
 } // namespace tools
 

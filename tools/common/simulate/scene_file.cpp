@@ -1,5 +1,5 @@
 #include "simulate/scene_file.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -68,7 +68,7 @@ Exposure readExposure(const FileNode& node)
     return e;
 }
 
-std::vector<Point2d> projectPoints(const std::vector<cv::Point3d>& points, const Pose& pose,
+std::vector<Point2d> projectPoints(const std::vector<cv::Point3d>& points, const BoardPose& pose,
                                    const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
     std::vector<Point2d> pixels;
@@ -90,11 +90,11 @@ public:
                           "with 0 <= least <= most < 90");
     }
 
-    Pose draw(const std::string& stem)
+    BoardPose draw(const std::string& stem)
     {
         for (int attempt = 0; attempt < 20000; ++attempt)
         {
-            const Pose pose = any();
+            const BoardPose pose = any();
             if (isSeen(pose))
                 return pose;
         }
@@ -104,7 +104,7 @@ public:
 
 private:
     //! Target turned by the roll and tilted about a random axis in its plane; its centre anywhere in camera 1's view.
-    Pose any()
+    BoardPose any()
     {
         const double degree = CV_PI / 180, axis = rng_.uniform(0., 2 * CV_PI);
         const double tilt = degree * rng_.uniform(tilt_[0], tilt_[1]), roll = degree * rng_.uniform(-roll_, roll_);
@@ -116,7 +116,7 @@ private:
         const double z = rng_.uniform(distance_[0], distance_[1]);
         const Vec3d centre(z * (rng_.uniform(0., (double)camera->imageSize().width) - K(0, 2)) / K(0, 0),
                            z * (rng_.uniform(0., (double)camera->imageSize().height) - K(1, 2)) / K(1, 1), z);
-        Pose pose;
+        BoardPose pose;
         cv::Rodrigues(tilted * rolled, pose.rvec);
         const Vec3d first(target_.objectPoints().front()), last(target_.objectPoints().back());
         pose.tvec = centre - tilted * rolled * (0.5 * (first + last));
@@ -124,21 +124,21 @@ private:
     }
 
     //! The corners first, as a target that is out of view is so by them: most draws end there.
-    bool isSeen(const Pose& pose) const
+    bool isSeen(const BoardPose& pose) const
     {
         const std::vector<cv::Point3d>& all = target_.objectPoints();
         const int n = target_.count(), columns = target_.size().width;
         return areSeen({all[0], all[columns - 1], all[n - columns], all[n - 1]}, pose) && areSeen(all, pose);
     }
 
-    bool areSeen(const std::vector<cv::Point3d>& points, const Pose& pose) const
+    bool areSeen(const std::vector<cv::Point3d>& points, const BoardPose& pose) const
     {
         for (size_t i = 0; i < rig_.cameras.size(); ++i)
         {
-            const Pose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
+            const BoardPose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
             const auto& camera = rig_.cameras[i].camera;
             for (const GlassWindow& window : {camera->window(), GlassWindow()})
-                for (const Point2d& p : projectPoints(points, here, withWindow(camera, window)))
+                for (const Point2d& p : projectPoints(points, here, copyWithWindow(camera, window)))
                     if (!(p.x >= margin_ && p.y >= margin_ && p.x <= camera->imageSize().width - 1 - margin_
                           && p.y <= camera->imageSize().height - 1 - margin_))
                         return false;
@@ -199,7 +199,7 @@ ImageSet readSet(const FileNode& node, const std::map<std::string, std::vector<N
 
 } // namespace
 
-std::vector<Point2d> projectTarget(const Target& target, const Pose& pose,
+std::vector<Point2d> projectTarget(const Target& target, const BoardPose& pose,
                                    const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
     return projectPoints(target.objectPoints(), pose, camera);

@@ -26,7 +26,7 @@ namespace tools {
 struct NamedPose
 {
     std::string stem;       //!< name of the poses and a number: pair1
-    Pose pose;              //!< object -> camera 1
+    BoardPose pose;         //!< object -> camera 1
 };
 
 struct ImageSet
@@ -49,7 +49,7 @@ struct Scene
 Scene readScene(const std::string& filename);
 
 //! Exact pixels of the target's points.
-std::vector<cv::Point2d> projectTarget(const Target& target, const Pose& pose,
+std::vector<cv::Point2d> projectTarget(const Target& target, const BoardPose& pose,
                                        const cv::Ptr<cv::refract::RefractiveCamera>& camera);
 
 } // namespace tools

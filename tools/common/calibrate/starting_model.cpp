@@ -1,4 +1,4 @@
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -176,14 +176,15 @@ double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const std::vec
 }
 
 //! R, T from single boards seen by both cameras (direct images first, any lens): the one that fits the others best.
-void startExtrinsics(const RigData& data, Rig& rig)
+void startExtrinsics(const RigData& data, RigModel& rig)
 {
-    const Rig bare{{withWindow(rig.cameras[0], GlassWindow()), withWindow(rig.cameras[1], GlassWindow())}, rig.R, rig.T};
+    const RigModel bare{{copyWithWindow(rig.cameras[0], GlassWindow()), copyWithWindow(rig.cameras[1], GlassWindow())},
+                        rig.R, rig.T};
     std::vector<BoardInBoth> boards;
     for (int through = 0; through < 2 && boards.empty(); through++)
         for (const Moment& m : data.moments)
         {
-            const Rig& r = through ? rig : bare;
+            const RigModel& r = through ? rig : bare;
             BoardInBoth b;
             if (solveView(data, r.cameras[0], through ? m.glass[0] : m.direct[0], b.R1, b.t1) &&
                 solveView(data, r.cameras[1], through ? m.glass[1] : m.direct[1], b.R2, b.t2))
@@ -209,15 +210,15 @@ void startExtrinsics(const RigData& data, Rig& rig)
 
 } // namespace
 
-Rig Rig::clone() const
+RigModel RigModel::clone() const
 {
-    Rig copy = *this;
+    RigModel copy = *this;
     for (Ptr<RefractiveCamera>& camera : copy.cameras)
         camera = camera->clone();
     return copy;
 }
 
-Ptr<RefractiveCamera> withWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)
+Ptr<RefractiveCamera> copyWithWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)
 {
     const Ptr<RefractiveCamera> copy = camera->clone();
     copy->setWindow(window);
@@ -251,9 +252,9 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<Point3d>& objectPoints,
     return camera;
 }
 
-Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources)
+RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources)
 {
-    Rig rig;
+    RigModel rig;
     lensSources.assign(data.cameraCount, LensSource());
     for (int c = 0; c < data.cameraCount; c++)
     {
@@ -262,8 +263,8 @@ Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSou
         if (!known.empty() && known != data.imageSize[c])
             throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", c ? "2" : "",
                                  known.width, known.height, data.imageSize[c].width, data.imageSize[c].height));
-        checkLens(data, withWindow(lens, GlassWindow()), c, lensSources[c]);
-        rig.cameras.push_back(withWindow(lens, options.window));
+        checkLens(data, copyWithWindow(lens, GlassWindow()), c, lensSources[c]);
+        rig.cameras.push_back(copyWithWindow(lens, options.window));
         rig.cameras.back()->setImageSize(data.imageSize[c]);
     }
     if (data.cameraCount == 2)

@@ -1,4 +1,4 @@
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<in
 }
 
 //! The cameras start at what is known of them: the prior's centre must not follow an earlier fit.
-void startAtKnown(Rig& rig)
+void startAtKnown(RigModel& rig)
 {
     for (size_t c = 0; c < rig.known.size(); c++)
     {
@@ -54,7 +54,7 @@ void startAtKnown(Rig& rig)
     }
 }
 
-std::vector<Mat> covariancesOf(const Rig& rig)
+std::vector<Mat> covariancesOf(const RigModel& rig)
 {
     std::vector<Mat> covariances;
     for (const KnownCamera& known : rig.known)
@@ -63,7 +63,7 @@ std::vector<Mat> covariancesOf(const Rig& rig)
 }
 
 //! How many numbers are known with a covariance.
-int countPriors(const Rig& rig, int flags)
+int countPriors(const RigModel& rig, int flags)
 {
     int count = 0;
     for (size_t c = 0; c < rig.known.size(); c++)
@@ -79,7 +79,7 @@ int countPriors(const Rig& rig, int flags)
 
 } // namespace
 
-Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags, int maxIterations)
+Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& moments, int flags, int maxIterations)
 {
     Fit fit;
     fit.rig = start.clone();
@@ -112,26 +112,26 @@ Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moment
     int points = 0;
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);
-    const size_t free = freeWindowParameters(fit, flags).size() + freeRigParameters(fit).size();
+    const size_t free = estimatedWindowParameters(fit, flags).size() + estimatedRigParameters(fit).size();
     fit.freedom = 2. * points + countPriors(fit.rig, flags) - (double)free - 6. * (double)moments.size();
     fit.sigma = fit.rms * std::sqrt(points / fit.freedom);
     return fit;
 }
 
-Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags)
+Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags)
 {
-    const Fit held = fitRig(data, start, usefulMoments(data, flags), flags);
+    const Fit held = fitImages(data, start, usefulMoments(data, flags), flags);
     const bool fromImages = std::any_of(lensSources.begin(), lensSources.end(),
                                         [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
     if (!fromImages || (flags & GLASS_FREE_INTRINSICS))
         return held;
     flags |= GLASS_FREE_INTRINSICS;
-    Fit fit = fitRig(data, held.rig, usefulMoments(data, flags), flags);
+    Fit fit = fitImages(data, held.rig, usefulMoments(data, flags), flags);
     fit.otherMinima = held.otherMinima;     // only looked for while the lens is held
     return fit;
 }
 
-void poseInCamera(const Rig& rig, int camera, Vec3d& rvec, Vec3d& tvec)
+void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
     if (camera == 0)
         return;
@@ -153,7 +153,7 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
     std::vector<Residual> residuals;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = withWindow(through, GlassWindow());
+        const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = copyWithWindow(through, GlassWindow());
         for (size_t k = 0; k < fit.moments.size(); k++)
         {
             Vec3d rvec, tvec;

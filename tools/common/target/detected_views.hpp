@@ -1,5 +1,5 @@
-#ifndef REFRACT_TOOLS_VIEWS_HPP
-#define REFRACT_TOOLS_VIEWS_HPP
+#ifndef REFRACT_TOOLS_DETECTED_VIEWS_HPP
+#define REFRACT_TOOLS_DETECTED_VIEWS_HPP
 
 #include "console/images.hpp"
 #include "target/target.hpp"
@@ -7,7 +7,7 @@
 namespace tools {
 
 //! One image in which the target was found.
-struct View
+struct DetectedView
 {
     std::string stem;                   //!< file name without folder and extension: pairs views of one moment
     std::string path;
@@ -18,12 +18,12 @@ struct View
 //! The views of one camera in one state (direct or through the window), in the order of their names.
 struct ViewSet
 {
-    std::vector<View> views;
+    std::vector<DetectedView> views;
     std::vector<std::string> withoutTarget;     //!< paths of images in which the target was not found
     std::vector<std::string> files;             //!< that were read
     cv::Size imageSize;
 
-    const View* find(const std::string& stem) const;    //!< null if there is none
+    const DetectedView* find(const std::string& stem) const;    //!< null if there is none
 };
 
 /** Finds the target in all images of a glob, or reads an mrcal corners.vnl (recognised by its extension .vnl).
@@ -38,4 +38,4 @@ std::string otherTargetText(const std::string& where, const Target& target, cv::
 
 } // namespace tools
 
-#endif // REFRACT_TOOLS_VIEWS_HPP
+#endif // REFRACT_TOOLS_DETECTED_VIEWS_HPP

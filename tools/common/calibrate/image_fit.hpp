@@ -1,11 +1,11 @@
-#ifndef REFRACT_TOOLS_CALIBRATE_RIG_HPP
-#define REFRACT_TOOLS_CALIBRATE_RIG_HPP
+#ifndef REFRACT_TOOLS_IMAGE_FIT_HPP
+#define REFRACT_TOOLS_IMAGE_FIT_HPP
 
 #include "calibrate/calib_file.hpp"
 #include "calibrate/rig_data.hpp"
 
 /* From views of a target to a calibrated rig of one or two cameras: the lens from the direct images and the start of R and
-T (rig_start.cpp), and the joint fit of windows, rig and board poses (calibrate_rig.cpp). Geometry is the library's. */
+T (starting_model.cpp), and the joint fit of windows, rig and board poses (image_fit.cpp). Geometry is the library's. */
 namespace tools {
 
 struct RigOptions
@@ -27,14 +27,14 @@ struct KnownCamera
 };
 
 //! Lenses, windows and their places: the start of a fit and its result.
-struct Rig
+struct RigModel
 {
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
     cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
     cv::Vec3d T;
     std::vector<KnownCamera> known = {};        //!< one per camera, or empty
 
-    Rig clone() const;
+    RigModel clone() const;
 };
 
 //! Where the lens of a camera came from.
@@ -48,7 +48,7 @@ struct LensSource
 //! The outcome of one joint fit.
 struct Fit
 {
-    Rig rig;
+    RigModel rig;
     std::vector<int> moments;                   //!< that took part, as indices into RigData::moments
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
     cv::Mat stdDeviations, covariance;
@@ -69,32 +69,32 @@ struct Residual
 };
 
 //! Same lens, other window.
-cv::Ptr<cv::refract::RefractiveCamera> withWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
-                                                  const cv::refract::GlassWindow& window);
+cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+                                                      const cv::refract::GlassWindow& window);
 
 //! cv::calibrateCamera on the seen points of all views that are not empty.
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<cv::Point3d>& objectPoints,
         const std::vector<std::vector<cv::Point2d>>& views, cv::Size imageSize, int coefficients, double& rms);
 
 //! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
-Rig startRig(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
+RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
 
 const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
 
 //! calibrateGlassRig on some of the moments.
-Fit fitRig(const RigData& data, const Rig& start, const std::vector<int>& moments, int flags,
-           int maxIterations = MAX_ITERATIONS);
+Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& moments, int flags,
+              int maxIterations = MAX_ITERATIONS);
 
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
 images are views too, each with its own pose. The windows are found first, with the lenses held.
 @param flags gets GLASS_FREE_INTRINSICS if so */
-Fit fitAll(const RigData& data, const Rig& start, const std::vector<LensSource>& lensSources, int& flags);
+Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags);
 
 //! All corners of the moments that took part.
 std::vector<Residual> residualsOf(const RigData& data, const Fit& fit);
 
 //! Board -> a camera of the rig, from board -> camera 1.
-void poseInCamera(const Rig& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
+void poseInCamera(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
 
 //! Board -> camera `camera` of the k-th moment of a fit.
 void poseInCamera(const Fit& fit, size_t k, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
@@ -107,16 +107,16 @@ struct ParameterColumns
     std::vector<cv::String> names;
 };
 ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int first = 0);
-ParameterColumns columnsOf(const Rig& rig, int camera);
+ParameterColumns columnsOf(const RigModel& rig, int camera);
 
 //! Two principal standard deviations of the normal of a camera, larger first.
-std::vector<double> normalStdDeg(const cv::Mat& covariance, const Rig& rig, int camera);
+std::vector<double> normalStdDeg(const cv::Mat& covariance, const RigModel& rig, int camera);
 
 //! As a file of it would be, without what the estimate is worth.
-Calibration calibrationOf(const Rig& rig);
+Calibration calibrationOf(const RigModel& rig);
 
 //! A number that was estimated.
-struct FreeParameter
+struct EstimatedParameter
 {
     std::string name;
     int column;                 //!< of Fit::covariance
@@ -125,14 +125,14 @@ struct FreeParameter
 };
 
 //! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags);
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags);
 
 //! Lens parameters and R (rotation vector), T that were free.
-std::vector<FreeParameter> freeRigParameters(const Fit& fit);
+std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit);
 
 //! One standard deviation of what was free in the window of a camera.
 WindowStd windowStd(const Fit& fit, int camera);
 
 } // namespace tools
 
-#endif // REFRACT_TOOLS_CALIBRATE_RIG_HPP
+#endif // REFRACT_TOOLS_IMAGE_FIT_HPP

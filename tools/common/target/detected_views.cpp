@@ -1,4 +1,4 @@
-#include "target/views.hpp"
+#include "target/detected_views.hpp"
 #include "console/progress.hpp"
 #include "target/corners_vnl.hpp"
 
@@ -10,14 +10,14 @@
 
 namespace tools {
 
-int View::seenCount() const
+int DetectedView::seenCount() const
 {
     return (int)std::count_if(points.begin(), points.end(), seen);
 }
 
-const View* ViewSet::find(const std::string& stem) const
+const DetectedView* ViewSet::find(const std::string& stem) const
 {
-    const auto found = std::find_if(views.begin(), views.end(), [&](const View& v) { return v.stem == stem; });
+    const auto found = std::find_if(views.begin(), views.end(), [&](const DetectedView& v) { return v.stem == stem; });
     return found == views.end() ? nullptr : &*found;
 }
 
@@ -160,7 +160,7 @@ ViewSet viewsOfVnl(const std::string& path, const Target& target, cv::Size image
 void requireDistinctStems(const ViewSet& set, const std::string& source)
 {
     std::set<std::string> stems;
-    for (const View& view : set.views)
+    for (const DetectedView& view : set.views)
         if (!stems.insert(view.stem).second)
             throw Failure("two images of '" + source + "' are called '" + view.stem
                           + "': each moment needs a name of its own, as the names pair views");

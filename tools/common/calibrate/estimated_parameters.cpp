@@ -1,4 +1,4 @@
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/image_fit.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -9,7 +9,7 @@ using namespace cv::refract;
 
 namespace tools {
 
-static void append(std::vector<FreeParameter>& list, const Fit& fit, const std::string& name, int column, double value,
+static void append(std::vector<EstimatedParameter>& list, const Fit& fit, const std::string& name, int column, double value,
                    bool isNormal = false)
 {
     const double std = fit.stdDeviations.at<double>(column);
@@ -36,7 +36,7 @@ ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
     return columns;
 }
 
-ParameterColumns columnsOf(const Rig& rig, int camera)
+ParameterColumns columnsOf(const RigModel& rig, int camera)
 {
     int first = 0;
     for (int c = 0; c < camera; c++)
@@ -44,7 +44,7 @@ ParameterColumns columnsOf(const Rig& rig, int camera)
     return columnsOf(*rig.cameras[camera], first);
 }
 
-std::vector<double> normalStdDeg(const Mat& covariance, const Rig& rig, int camera)
+std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
 {
     const int at = columnsOf(rig, camera).normal;
     // Rank 2: the third eigenvalue, along the normal itself, is zero.
@@ -72,7 +72,7 @@ WindowStd windowStd(const Fit& fit, int camera)
     return result;
 }
 
-Calibration calibrationOf(const Rig& rig)
+Calibration calibrationOf(const RigModel& rig)
 {
     Calibration calibration;
     for (const Ptr<RefractiveCamera>& camera : rig.cameras)
@@ -82,9 +82,9 @@ Calibration calibrationOf(const Rig& rig)
     return calibration;
 }
 
-std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags)
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags)
 {
-    std::vector<FreeParameter> list;
+    std::vector<EstimatedParameter> list;
     const bool shared = flags & GLASS_SHARED_WINDOW;
     for (int c = 0; c < (shared ? 1 : (int)fit.rig.cameras.size()); c++)
     {
@@ -105,9 +105,9 @@ std::vector<FreeParameter> freeWindowParameters(const Fit& fit, int flags)
     return list;
 }
 
-std::vector<FreeParameter> freeRigParameters(const Fit& fit)
+std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
 {
-    std::vector<FreeParameter> list;
+    std::vector<EstimatedParameter> list;
     int end = 0;
     for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
     {
