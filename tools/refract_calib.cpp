@@ -21,6 +21,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/misfit.hpp"
 #include "calibrate/data_checks.hpp"
+#include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"

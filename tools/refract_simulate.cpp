@@ -1,4 +1,4 @@
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"

@@ -2,6 +2,8 @@
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "assess/measurement.hpp"
 #include "assess/sight.hpp"
+#include "calibrate/image_fit.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "calibrate/wrong_points.hpp"
 #include "paper_rig.hpp"
 #include "simulate/render.hpp"

@@ -1,6 +1,7 @@
 // The stated uncertainty of points measured by one camera, against draws of calibration and pixels.
 #include "assess/measurement.hpp"
 #include "assess/point_error.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

@@ -1,5 +1,6 @@
 // Mistakes in what is given, told from images that do not fit.
 #include "assess/misfit.hpp"
+#include "calibrate/image_fit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

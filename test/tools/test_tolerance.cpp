@@ -1,5 +1,6 @@
 // What a wrong value does to measured points, against calibrations from observations that are wrong in that way.
 #include "assess/tolerance.hpp"
+#include "calibrate/image_fit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

@@ -1,3 +1,4 @@
+#include "calibrate/parameter_columns.hpp"
 #include "paper_rig.hpp"
 #include <Eigen/LU>
 

@@ -1,4 +1,5 @@
 #include "assess/window_check.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include "paper_rig.hpp"
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,7 @@
 #include "assess/advice.hpp"
 #include "assess/point_error.hpp"
 #include "assess/view_derivatives.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/QR>

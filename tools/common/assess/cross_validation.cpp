@@ -1,4 +1,5 @@
 #include "assess/cross_validation.hpp"
+#include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>

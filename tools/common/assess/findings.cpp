@@ -1,5 +1,7 @@
 #include "assess/findings.hpp"
 #include "assess/f_distribution.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,6 @@
 #include "assess/given_values.hpp"
+#include "calibrate/image_fit.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <cmath>
 

@@ -1,4 +1,5 @@
 #include "assess/misfit.hpp"
+#include "calibrate/image_fit.hpp"
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>

@@ -1,4 +1,5 @@
 #include "assess/rig_checks.hpp"
+#include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "console/progress.hpp"
 #include <algorithm>

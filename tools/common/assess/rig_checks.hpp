@@ -1,7 +1,8 @@
 #ifndef REFRACT_TOOLS_RIG_CHECKS_HPP
 #define REFRACT_TOOLS_RIG_CHECKS_HPP
 
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
+#include "calibrate/starting_model.hpp"
 #include <cmath>
 #include <limits>
 

@@ -2,6 +2,7 @@
 #define REFRACT_TOOLS_SIGHT_HPP
 
 #include "assess/view_derivatives.hpp"
+#include "calibrate/rig_data.hpp"
 
 /* New images of one moment against a calibration: the pixels, and the board's pose, which nobody knows. */
 namespace tools {

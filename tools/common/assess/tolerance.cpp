@@ -2,6 +2,7 @@
 #include "assess/measurement.hpp"
 #include "assess/point_error.hpp"
 #include "assess/wedge.hpp"
+#include "calibrate/image_fit.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>

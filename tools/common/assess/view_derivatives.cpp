@@ -1,4 +1,5 @@
 #include "assess/view_derivatives.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 #define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_model.hpp"
 #include <Eigen/Core>
 
 /* What one view of the target, taken or only planned, tells about a calibrated rig, to first order:

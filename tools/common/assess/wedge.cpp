@@ -1,5 +1,5 @@
 #include "assess/wedge.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_model.hpp"
 #include <cmath>
 
 using namespace cv;

@@ -1,6 +1,7 @@
 #include "assess/window_check.hpp"
 #include "assess/f_distribution.hpp"
 #include "assess/sight.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

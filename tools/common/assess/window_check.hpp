@@ -1,7 +1,8 @@
 #ifndef REFRACT_TOOLS_WINDOW_CHECK_HPP
 #define REFRACT_TOOLS_WINDOW_CHECK_HPP
 
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_data.hpp"
+#include "calibrate/rig_model.hpp"
 
 /* Has a window moved since the calibration? From a few new images of the target:
 

@@ -1,8 +1,7 @@
-#include "calibrate/image_fit.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
-#include <algorithm>
-#include <cmath>
 
 using namespace cv;
 using namespace cv::refract;
@@ -15,45 +14,6 @@ static void append(std::vector<EstimatedParameter>& list, const Fit& fit, const 
     const double std = fit.stdDeviations.at<double>(column);
     if (std > 0)
         list.push_back({name, column, value, std, isNormal});
-}
-
-ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
-{
-    ParameterColumns columns;
-    columns.names = camera.parameterNames();
-    columns.lensCount = camera.lensParameters().rows;
-    columns.layers = (int)camera.window().thickness.size();
-    const auto find = [&](const char* name)
-    { return first + int(std::find(columns.names.begin(), columns.names.end(), name) - columns.names.begin()); };
-    columns.lens = first;
-    columns.normal = find("normal[0]");
-    columns.distance = find("distance");
-    columns.thickness = find("thickness[0]");
-    columns.index = find("index[0]");
-    columns.innerIndex = find("innerIndex");
-    columns.outerIndex = find("outerIndex");
-    columns.end = first + (int)columns.names.size();
-    return columns;
-}
-
-ParameterColumns columnsOf(const RigModel& rig, int camera)
-{
-    int first = 0;
-    for (int c = 0; c < camera; c++)
-        first = columnsOf(*rig.cameras[c], first).end;
-    return columnsOf(*rig.cameras[camera], first);
-}
-
-std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
-{
-    const int at = columnsOf(rig, camera).normal;
-    // Rank 2: the third eigenvalue, along the normal itself, is zero.
-    Mat eigenvalues;
-    eigen(covariance(Rect(at, at, 3, 3)), eigenvalues);
-    std::vector<double> result;
-    for (int i = 0; i < 2; i++)
-        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i))) * 180. / CV_PI);
-    return result;
 }
 
 WindowStd windowStd(const Fit& fit, int camera)
@@ -70,16 +30,6 @@ WindowStd windowStd(const Fit& fit, int camera)
     }
     result.outerIndex = std(at.outerIndex);
     return result;
-}
-
-Calibration calibrationOf(const RigModel& rig)
-{
-    Calibration calibration;
-    for (const Ptr<RefractiveCamera>& camera : rig.cameras)
-        calibration.cameras.push_back({camera, WindowStd(), -1.});
-    calibration.R = rig.R;
-    calibration.T = rig.T;
-    return calibration;
 }
 
 std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags)

@@ -1,5 +1,5 @@
 #include "calibrate/image_fit.hpp"
-#include <opencv2/calib3d.hpp>
+#include "calibrate/estimated_parameters.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -129,50 +129,6 @@ Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<L
     Fit fit = fitImages(data, held.rig, usefulMoments(data, flags), flags);
     fit.otherMinima = held.otherMinima;     // only looked for while the lens is held
     return fit;
-}
-
-void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
-{
-    if (camera == 0)
-        return;
-    Matx33d R;
-    Rodrigues(rvec, R);
-    Rodrigues(rig.R * R, rvec);
-    tvec = rig.R * tvec + rig.T;
-}
-
-void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)
-{
-    rvec = fit.rvecs[k];
-    tvec = fit.tvecs[k];
-    poseInCamera(fit.rig, camera, rvec, tvec);
-}
-
-std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
-{
-    std::vector<Residual> residuals;
-    for (int c = 0; c < data.cameraCount; c++)
-    {
-        const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = copyWithWindow(through, GlassWindow());
-        for (size_t k = 0; k < fit.moments.size(); k++)
-        {
-            Vec3d rvec, tvec;
-            poseInCamera(fit, k, c, rvec, tvec);
-            for (bool glass : {true, false})
-            {
-                const Moment& m = data.moments[fit.moments[k]];
-                const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
-                if (pixels.empty())
-                    continue;
-                std::vector<Point2d> modelled;
-                refractiveProjectPoints(data.objectPoints, rvec, tvec, glass ? through : bare, modelled);
-                for (size_t i = 0; i < pixels.size(); i++)
-                    if (seen(pixels[i]))
-                        residuals.push_back({c, fit.moments[k], glass, pixels[i], pixels[i] - modelled[i]});
-            }
-        }
-    }
-    return residuals;
 }
 
 } // namespace tools

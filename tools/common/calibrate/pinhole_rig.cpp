@@ -1,4 +1,5 @@
 #include "calibrate/pinhole_rig.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "console/cli.hpp"
 #include <opencv2/calib3d.hpp>
 

@@ -2,7 +2,7 @@
 #define REFRACT_TOOLS_PINHOLE_RIG_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_data.hpp"
 
 namespace tools {
 

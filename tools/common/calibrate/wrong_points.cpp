@@ -1,4 +1,5 @@
 #include "calibrate/wrong_points.hpp"
+#include "calibrate/image_fit.hpp"
 
 using namespace cv;
 using namespace cv::refract;

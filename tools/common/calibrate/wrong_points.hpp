@@ -1,7 +1,7 @@
 #ifndef REFRACT_TOOLS_WRONG_POINTS_HPP
 #define REFRACT_TOOLS_WRONG_POINTS_HPP
 
-#include "calibrate/image_fit.hpp"
+#include "calibrate/starting_model.hpp"
 
 /* Dirty glass: hidden, smeared or wrongly detected points, and images whose target was moved. They are found by a robust fit
 of everything (GLASS_ROBUST) and taken out of the data before the calibration itself, which then knows nothing of them. */

@@ -1,3 +1,4 @@
+#include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/plot.hpp"

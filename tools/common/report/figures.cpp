@@ -1,4 +1,5 @@
 #include "report/figures.hpp"
+#include "calibrate/estimated_parameters.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"
 #include <algorithm>

@@ -1,4 +1,5 @@
 #include "report/report.hpp"
+#include "calibrate/estimated_parameters.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"

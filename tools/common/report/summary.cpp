@@ -1,4 +1,5 @@
 #include "report/summary.hpp"
+#include "calibrate/estimated_parameters.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "report/summary_json.hpp"
+#include "calibrate/estimated_parameters.hpp"
 #include "console/table.hpp"
 #include <nlohmann/json.hpp>
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "simulate/scene_file.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/rig_model.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <algorithm>

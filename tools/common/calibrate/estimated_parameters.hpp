@@ -1,0 +1,29 @@
+#ifndef REFRACT_TOOLS_ESTIMATED_PARAMETERS_HPP
+#define REFRACT_TOOLS_ESTIMATED_PARAMETERS_HPP
+
+#include "calibrate/fit.hpp"
+
+/* What a fit has estimated, by name and with its standard deviation. */
+namespace tools {
+
+//! A number that was estimated.
+struct EstimatedParameter
+{
+    std::string name;
+    int column;                 //!< of Fit::covariance
+    double value, std;
+    bool isNormal;
+};
+
+//! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags);
+
+//! Lens parameters and R (rotation vector), T that were free.
+std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit);
+
+//! One standard deviation of what was free in the window of a camera.
+WindowStd windowStd(const Fit& fit, int camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_ESTIMATED_PARAMETERS_HPP

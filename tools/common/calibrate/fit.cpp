@@ -1,0 +1,42 @@
+#include "calibrate/fit.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)
+{
+    rvec = fit.rvecs[k];
+    tvec = fit.tvecs[k];
+    poseInCamera(fit.rig, camera, rvec, tvec);
+}
+
+std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
+{
+    std::vector<Residual> residuals;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = copyWithWindow(through, GlassWindow());
+        for (size_t k = 0; k < fit.moments.size(); k++)
+        {
+            Vec3d rvec, tvec;
+            poseInCamera(fit, k, c, rvec, tvec);
+            for (bool glass : {true, false})
+            {
+                const Moment& m = data.moments[fit.moments[k]];
+                const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
+                if (pixels.empty())
+                    continue;
+                std::vector<Point2d> modelled;
+                refractiveProjectPoints(data.objectPoints, rvec, tvec, glass ? through : bare, modelled);
+                for (size_t i = 0; i < pixels.size(); i++)
+                    if (seen(pixels[i]))
+                        residuals.push_back({c, fit.moments[k], glass, pixels[i], pixels[i] - modelled[i]});
+            }
+        }
+    }
+    return residuals;
+}
+
+} // namespace tools

@@ -1,0 +1,49 @@
+#include "calibrate/parameter_columns.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
+{
+    ParameterColumns columns;
+    columns.names = camera.parameterNames();
+    columns.lensCount = camera.lensParameters().rows;
+    columns.layers = (int)camera.window().thickness.size();
+    const auto find = [&](const char* name)
+    { return first + int(std::find(columns.names.begin(), columns.names.end(), name) - columns.names.begin()); };
+    columns.lens = first;
+    columns.normal = find("normal[0]");
+    columns.distance = find("distance");
+    columns.thickness = find("thickness[0]");
+    columns.index = find("index[0]");
+    columns.innerIndex = find("innerIndex");
+    columns.outerIndex = find("outerIndex");
+    columns.end = first + (int)columns.names.size();
+    return columns;
+}
+
+ParameterColumns columnsOf(const RigModel& rig, int camera)
+{
+    int first = 0;
+    for (int c = 0; c < camera; c++)
+        first = columnsOf(*rig.cameras[c], first).end;
+    return columnsOf(*rig.cameras[camera], first);
+}
+
+std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
+{
+    const int at = columnsOf(rig, camera).normal;
+    // Rank 2: the third eigenvalue, along the normal itself, is zero.
+    Mat eigenvalues;
+    eigen(covariance(Rect(at, at, 3, 3)), eigenvalues);
+    std::vector<double> result;
+    for (int i = 0; i < 2; i++)
+        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i))) * 180. / CV_PI);
+    return result;
+}
+
+} // namespace tools

@@ -1,0 +1,23 @@
+#ifndef REFRACT_TOOLS_PARAMETER_COLUMNS_HPP
+#define REFRACT_TOOLS_PARAMETER_COLUMNS_HPP
+
+#include "calibrate/rig_model.hpp"
+
+namespace tools {
+
+//! Which column of Fit::covariance is what.
+struct ParameterColumns
+{
+    int lens, normal, distance, thickness, index, innerIndex, outerIndex, end;
+    int lensCount, layers;
+    std::vector<cv::String> names;
+};
+ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int first = 0);
+ParameterColumns columnsOf(const RigModel& rig, int camera);
+
+//! Two principal standard deviations of the normal of a camera, larger first.
+std::vector<double> normalStdDeg(const cv::Mat& covariance, const RigModel& rig, int camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_PARAMETER_COLUMNS_HPP

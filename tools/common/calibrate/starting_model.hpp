@@ -1,0 +1,33 @@
+#ifndef REFRACT_TOOLS_STARTING_MODEL_HPP
+#define REFRACT_TOOLS_STARTING_MODEL_HPP
+
+#include "calibrate/rig_data.hpp"
+#include "calibrate/rig_model.hpp"
+
+/* Where a fit starts: the lens from a file or from the direct images, the windows as given, R and T from single boards. */
+namespace tools {
+
+struct RigOptions
+{
+    cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
+    int flags = 0;                                          //!< GlassCalibrationFlags
+    int lensCoefficients = 5;                               //!< of the lens that the images determine
+    cv::Ptr<cv::refract::RefractiveCamera> known[2];        //!< lens from a file; null: from the images
+    cv::Mat knownCovariance[2];                             //!< of its lens parameters; empty where the file has none
+    double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
+};
+
+//! Where the lens of a camera came from.
+struct LensSource
+{
+    enum Kind { FROM_FILE, FROM_DIRECT, FROM_GLASS } kind = FROM_FILE;
+    int views = 0;
+    double rms = 0.;            //!< cv::calibrateCamera's
+};
+
+//! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
+RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_STARTING_MODEL_HPP
