@@ -1,21 +1,13 @@
 #ifndef REFRACT_TOOLS_MISFIT_HPP
 #define REFRACT_TOOLS_MISFIT_HPP
 
+#include "assess/given.hpp"
 #include "assess/rig_calibration.hpp"
 
 /* A calibration that cannot be right: its corners lie farther from where it puts them than corners are ever wrong, or all
 pairs contradict it. Something given is wrong then, and what it is can often be told: the likely mistakes are undone in turn,
 and the same images are fitted again. */
 namespace tools {
-
-//! What went into a calibration, as the user gave it.
-struct Given
-{
-    RigData data;               //!< all of it, wrong points too
-    RigOptions options;
-    double square;
-    std::vector<std::string> notices = {};      //!< what was noticed before any fit
-};
 
 //! Mistakes that explain images which do not fit, the likely ones first; empty if none of those that are known does.
 std::vector<std::string> explainMisfit(const Given& given);

@@ -1,0 +1,95 @@
+#include "assess/wrong_values.hpp"
+#include "assess/fit_quality.hpp"
+#include "calibrate/units.hpp"
+#include "console/table.hpp"
+
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double USUAL_INDEX = 1.5;
+
+//! One pane that shifts rays as the layers together do, at small angles.
+GlassWindow onePane(const GlassWindow& window)
+{
+    GlassWindow pane = window;
+    double thickness = 0., shift = 0.;
+    for (size_t i = 0; i < window.thickness.size(); i++)
+    {
+        thickness += window.thickness[i];
+        shift += window.thickness[i] * (1. - window.outerIndex / window.index[i]);
+    }
+    pane.thickness = {thickness};
+    pane.index = {window.outerIndex / (1. - shift / thickness)};
+    return pane;
+}
+
+} // namespace
+
+Explanation wrongScale(const Given& given)
+{
+    if (!hasPairs(given.data) || given.options.window.thickness.empty())
+        return {"", NO_FIT};
+    RigOptions options = given.options;
+    options.flags = (options.flags | GLASS_FREE_THICKNESS) & ~GLASS_FREE_INDEX;
+    const GlassWindow pane = onePane(given.options.window);
+    if (!(pane.index[0] > 1.))
+        return {"", NO_FIT};
+    double best = NO_FIT, ratio = 1.;
+    for (double start : {1., 0.1, 10., 0.01, 100., 1000.})
+    {
+        options.window = pane;
+        options.window.thickness[0] *= start;
+        RigModel rig;
+        const double px = medianErrorOfFit(given.data, options, &rig);
+        if (px >= 0.5 * best)
+            continue;
+        best = px;
+        ratio = rig.cameras[0]->window().thickness[0] / pane.thickness[0];
+    }
+    std::string sentence = format("--square=%.3g in place of %.4g%s", given.square / ratio, given.square,
+                                  isRatioOfUnits(ratio) ? " (a wrong unit?)" : "");
+    if (given.options.window.thickness.size() == 1)
+        sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0] * ratio, pane.thickness[0]);
+    else
+        sentence += format(", or each --thickness times %.3g", ratio);
+    return {sentence + ", as only their ratio shows", best};
+}
+
+Explanation wrongIndex(const Given& given)
+{
+    if (!hasPairs(given.data) || given.options.window.index.size() != 1)
+        return {"", NO_FIT};
+    RigOptions options = given.options;
+    options.flags = (options.flags | GLASS_FREE_INDEX) & ~GLASS_FREE_THICKNESS;
+    options.window.index[0] = USUAL_INDEX;
+    RigModel rig;
+    const double px = medianErrorOfFit(given.data, options, &rig);
+    const double index = px < NO_FIT ? rig.cameras[0]->window().index[0] : 1.;
+    return {format("--index=%.3g in place of %.4g", index, given.options.window.index[0]),
+            index > 1.2 && index < 2.5 ? px : NO_FIT};
+}
+
+Explanation otherMedium(const Given& given)
+{
+    RigOptions options = given.options;
+    GlassWindow& window = options.window;
+    const bool air = window.outerIndex == 1.;
+    window.outerIndex = air ? 1.333 : 1.;
+    if (window.outerIndex == window.innerIndex)
+        options.flags &= ~GLASS_FREE_DISTANCE;
+    else
+    {
+        options.flags |= GLASS_FREE_DISTANCE;
+        if (window.distance == 0.)
+            window.distance = given.square;
+    }
+    if (window.thickness.empty() && window.outerIndex == window.innerIndex)
+        return {"", NO_FIT};
+    return {format("--outer-index=%g in place of %g (the medium in which the board was)", window.outerIndex,
+                   given.options.window.outerIndex), medianErrorOfFit(given.data, options)};
+}
+
+} // namespace tools

@@ -1,0 +1,20 @@
+#ifndef REFRACT_TOOLS_WRONG_VALUES_HPP
+#define REFRACT_TOOLS_WRONG_VALUES_HPP
+
+#include "assess/explanation.hpp"
+#include "assess/given.hpp"
+
+/* Values given wrongly: each is set free, or to what is likely instead, and the same images are fitted again. */
+namespace tools {
+
+//! Square or thickness: pairs show the thickness in squares, only the ratio of the two.
+Explanation wrongScale(const Given& given);
+
+Explanation wrongIndex(const Given& given);
+
+//! Water taken for air, or air for water.
+Explanation otherMedium(const Given& given);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_WRONG_VALUES_HPP
