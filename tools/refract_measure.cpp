@@ -1,4 +1,6 @@
+#include "assess/consistency.hpp"
 #include "assess/measurement.hpp"
+#include "assess/target_lengths.hpp"
 #include "calibrate/units.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"

@@ -1,5 +1,6 @@
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
+#include "assess/eigen_matrix.hpp"
 #include "assess/measurement.hpp"
 #include "assess/sight.hpp"
 #include "calibrate/image_fit.hpp"

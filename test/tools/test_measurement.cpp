@@ -1,4 +1,5 @@
 // The stated uncertainty of points measured by one camera, against draws of calibration and pixels.
+#include "assess/consistency.hpp"
 #include "assess/measurement.hpp"
 #include "assess/point_error.hpp"
 #include "calibrate/parameter_columns.hpp"

@@ -1,3 +1,4 @@
+#include "assess/eigen_matrix.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"

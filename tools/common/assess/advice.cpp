@@ -1,4 +1,5 @@
 #include "assess/advice.hpp"
+#include "assess/eigen_matrix.hpp"
 #include "assess/point_error.hpp"
 #include "assess/view_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"

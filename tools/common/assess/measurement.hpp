@@ -36,15 +36,6 @@ Measurement measureStereo(const Calibration& calibration, const std::vector<cv::
 Measurement measureOnPlane(const Calibration& calibration, const std::vector<cv::Point2d>& pixels, const cv::Vec4d& plane,
                            double pixelSigma);
 
-/** Judges how well the two pixels of each point agree. Of the four coordinates three make the point; the fourth, which is
-about the distance of the partner from its epipolar curve over sqrt(2), is left over and must be small against the noise and
-the calibration's covariance. Where it is not, sigma gets the misfit; beyond a few standard deviations the status becomes
-INCONSISTENT, and far beyond (20 of them, and 2 px at least) the point NaN. */
-void judgePartners(const Calibration& calibration, double pixelSigma, Measurement& measurement);
-
-//! The same of a target's pose: one that leaves large residuals makes all its points INCONSISTENT and their sigma NaN.
-void judgePose(double pixelSigma, Measurement& measurement);
-
 /** The points of a target of known shape, from its pose to camera 1. Residuals larger than pixelSigma take its place, and are
 said in Measurement::noise. */
 Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<cv::Point2d>& pixels,
@@ -55,12 +46,6 @@ Calibration withoutWindows(const Calibration& calibration);
 
 //! Standard deviation of a pixel coordinate, from the calibration's residuals; NaN where unknown.
 double pixelSigmaOf(const Calibration& calibration);
-
-//! Distances between neighbouring points, measured minus true.
-std::vector<double> lengthErrors(const Target& target, const std::vector<cv::Point3d>& points);
-
-//! Distances between neighbouring points, measured over true.
-std::vector<double> lengthRatios(const Target& target, const std::vector<cv::Point3d>& points);
 
 } // namespace tools
 

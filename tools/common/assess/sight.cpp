@@ -1,4 +1,5 @@
 #include "assess/sight.hpp"
+#include "assess/eigen_matrix.hpp"
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <Eigen/Eigenvalues>

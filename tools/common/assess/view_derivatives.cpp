@@ -1,4 +1,5 @@
 #include "assess/view_derivatives.hpp"
+#include "assess/eigen_matrix.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/Cholesky>
@@ -113,22 +114,6 @@ MatrixXd covarianceWith(const MatrixXd& covariance, const MatrixXd& byParameters
     MatrixXd predicted = byParameters * CJt;
     predicted.diagonal().array() += sigma * sigma;
     return covariance - CJt * predicted.ldlt().solve(CJt.transpose());
-}
-
-MatrixXd toEigen(const Mat& matrix)
-{
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Mat whole = matrix.isContinuous() ? matrix : matrix.clone();
-    return Eigen::Map<const RowMajor>(whole.ptr<double>(), whole.rows, whole.cols);
-}
-
-Mat toMat(const MatrixXd& matrix)
-{
-    Mat result((int)matrix.rows(), (int)matrix.cols(), CV_64F);
-    for (int r = 0; r < result.rows; r++)
-        for (int c = 0; c < result.cols; c++)
-            result.at<double>(r, c) = matrix(r, c);
-    return result;
 }
 
 } // namespace tools

@@ -42,10 +42,6 @@ Eigen::MatrixXd basisWithoutPose(const Eigen::MatrixXd& byPose);
 @param sigma of a pixel coordinate. */
 Eigen::MatrixXd covarianceWith(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& byParameters, double sigma);
 
-//! The same numbers.
-Eigen::MatrixXd toEigen(const cv::Mat& matrix);
-cv::Mat toMat(const Eigen::MatrixXd& matrix);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_VIEW_DERIVATIVES_HPP

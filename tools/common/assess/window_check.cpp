@@ -1,4 +1,5 @@
 #include "assess/window_check.hpp"
+#include "assess/eigen_matrix.hpp"
 #include "assess/f_distribution.hpp"
 #include "assess/sight.hpp"
 #include "calibrate/parameter_columns.hpp"

@@ -1,0 +1,18 @@
+#include "assess/point_derivatives.hpp"
+#include "assess/eigen_matrix.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+PointDerivatives differentiatePoints(const Ptr<RefractiveCamera>& camera, const std::vector<Point3d>& points,
+                                     const Vec3d& rvec, const Vec3d& tvec)
+{
+    Mat ignored, jacobian;
+    refractiveProjectPoints(points, rvec, tvec, camera, ignored, noArray(), jacobian);
+    const Eigen::MatrixXd J = toEigen(jacobian);
+    return {J.leftCols(6), J.rightCols(J.cols() - 6)};
+}
+
+} // namespace tools
