@@ -1,0 +1,14 @@
+#ifndef REFRACT_TOOLS_CIRCLE_GRID_HPP
+#define REFRACT_TOOLS_CIRCLE_GRID_HPP
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace tools {
+
+//! The centres of dots, dark on light ground or the reverse; empty if the grid was not found.
+std::vector<cv::Point2d> detectCircleGrid(const cv::Mat& grey, cv::Size size, bool asymmetric);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CIRCLE_GRID_HPP
