@@ -1,0 +1,43 @@
+// A joint problem at the truth of a scene, with the module's inner types.
+#ifndef REFRACT_TEST_PROBLEM_SCENES_HPP
+#define REFRACT_TEST_PROBLEM_SCENES_HPP
+
+#include "rig_scenes.hpp"
+#include "calibrate/rig_problem.hpp"
+
+namespace scenes {
+
+inline cv::refract::Pose poseOf(const cv::Vec3d& rvec, const cv::Vec3d& tvec)
+{
+    cv::refract::Pose pose;
+    pose.rvec = rvec;
+    pose.tvec = tvec;
+    pose.found = true;
+    return pose;
+}
+
+//! @param paired with the direct images too
+inline std::unique_ptr<cv::refract::RigProblem> problemAt(const RigTruth& truth, const RigScene& scene, bool paired, int flags)
+{
+    using namespace cv::refract;
+    Rig rig;
+    RigViews views;
+    views.object = scene.object;
+    for (size_t c = 0; c < truth.cameras.size(); c++)
+    {
+        cv::Vec3d rvec;
+        cv::Rodrigues(truth.Rs[c], rvec);
+        rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
+        rig.owner.push_back((int)(std::find(truth.windows.begin(), truth.windows.end(), truth.windows[c]) - truth.windows.begin()));
+        rig.extrinsics.push_back(poseOf(rvec, truth.Ts[c]));
+        views.cameras.push_back({ paired ? scene.direct[c] : PixelViews(scene.object.size()), scene.refracted[c] });
+    }
+    std::vector<Pose> poses;
+    for (size_t view = 0; view < scene.object.size(); view++)
+        poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
+    return std::unique_ptr<RigProblem>(new RigProblem(rig, views, poses, {}, {}, flags));
+}
+
+} // namespace scenes
+
+#endif // REFRACT_TEST_PROBLEM_SCENES_HPP
