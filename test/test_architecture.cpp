@@ -1,4 +1,4 @@
-// The rooms of the module are those of doc/architecture.md, and no include climbs.
+// The rooms of the module and of the tools are those of doc/architecture.md, and no include climbs.
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -6,9 +6,12 @@
 #include <map>
 #include <regex>
 
+namespace fs = std::filesystem;
+
 namespace {
 
-const std::string ROOT = std::string(REFRACT_TEST_DIR) + "/..", SOURCES = ROOT + "/modules/refract/src";
+const std::string ROOT = std::string(REFRACT_TEST_DIR) + "/..";
+const std::string TREES[] = {"modules/refract/src", "tools/common"};
 
 std::string contentsOf(const std::string& path)
 {
@@ -26,73 +29,184 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
     return found;
 }
 
-//! Rooms from the ground up.
-std::vector<std::string> roomsOnThePage()
+std::string page()
 {
-    const std::string page = contentsOf(ROOT + "/doc/architecture.md");
-    return matches(page.substr(0, page.find("## ")), R"(\n\| `(\w+)/`)");
+    return contentsOf(ROOT + "/doc/architecture.md");
 }
 
-std::vector<std::string> sourcesOf(const std::string& room)
+//! The lines of its tables.
+std::vector<std::string> rowsOf(const std::string& text)
 {
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(SOURCES + "/" + room))
-        files.push_back(entry.path().string());
-    return files;
+    return matches(text, "\n(\\|[^\n]*)");
+}
+
+//! What the page says of a tree, under the heading that names it.
+std::string sectionOf(const std::string& tree)
+{
+    const std::string text = page();
+    const size_t begin = text.find(": `" + tree + "`\n");
+    REQUIRE(begin != std::string::npos);
+    return text.substr(begin, text.find("\n## ", begin) - begin);
+}
+
+//! Rooms of a tree from the ground up.
+std::vector<std::string> roomsOnThePage(const std::string& tree)
+{
+    return matches(sectionOf(tree), R"(\n\| `(\w+)/`)");
+}
+
+//! Paths below a folder, relative to it.
+std::vector<std::string> below(const std::string& folder, bool folders)
+{
+    std::vector<std::string> paths;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_directory() == folders)
+            paths.push_back(entry.path().lexically_relative(folder).generic_string());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+//! As a shell would match it: * is any part of a name.
+std::regex expressionOf(const std::string& wildcard)
+{
+    std::string expression;
+    for (char c : wildcard)
+        expression += c == '*' ? "[^/]*" : c == '.' ? "\\." : std::string(1, c);
+    return std::regex(expression);
+}
+
+bool isAnyOf(const std::vector<std::string>& paths, const std::string& wildcard)
+{
+    const std::regex expression = expressionOf(wildcard);
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& p) { return std::regex_match(p, expression); });
+}
+
+//! Every path that a table may name: from the root, from either tree; and the names of all files alone.
+std::vector<std::string> knownPaths()
+{
+    std::vector<std::string> paths;
+    for (const char* folder : {"modules", "tools", "test", "doc"})
+        for (const std::string& path : below(ROOT + "/" + folder, false))
+        {
+            const std::string whole = std::string(folder) + "/" + path;
+            paths.push_back(whole);
+            paths.push_back(fs::path(path).filename().string());
+            for (const std::string& tree : TREES)
+                if (whole.compare(0, tree.size() + 1, tree + "/") == 0)
+                    paths.push_back(whole.substr(tree.size() + 1));
+        }
+    return paths;
 }
 
 } // namespace
 
-TEST_CASE("The page of the house names every room, and no other", "[architecture]")
+TEST_CASE("The page of the house names every folder, and no other", "[architecture]")
 {
-    std::vector<std::string> folders;
-    for (const auto& entry : std::filesystem::directory_iterator(SOURCES))
-        if (entry.is_directory())
-            folders.push_back(entry.path().filename().string());
-    std::vector<std::string> named = roomsOnThePage();
-    std::sort(folders.begin(), folders.end());
-    std::sort(named.begin(), named.end());
-    CHECK(folders == named);
-    CHECK(folders.size() >= 10);
+    for (const std::string& tree : TREES)
+    {
+        std::vector<std::string> named = roomsOnThePage(tree);
+        std::sort(named.begin(), named.end());
+        CAPTURE(tree);
+        CHECK(below(ROOT + "/" + tree, true) == named);
+        CHECK(named.size() >= 6);
+    }
 }
 
 TEST_CASE("No include climbs from one room to a later one", "[architecture]")
 {
-    const std::vector<std::string> rooms = roomsOnThePage();
-    std::map<std::string, size_t> floor;
-    for (size_t i = 0; i < rooms.size(); i++)
-        floor[rooms[i]] = i;
-    int arrows = 0;
-    for (const std::string& room : rooms)
-        for (const std::string& file : sourcesOf(room))
-            for (const std::string& other : matches(contentsOf(file), R"(#include "(\w+)/)"))
+    for (const std::string& tree : TREES)
+    {
+        const std::vector<std::string> rooms = roomsOnThePage(tree);
+        std::map<std::string, size_t> floor;
+        for (size_t i = 0; i < rooms.size(); i++)
+            floor[rooms[i]] = i;
+        int arrows = 0;
+        for (const std::string& file : below(ROOT + "/" + tree, false))
+        {
+            const std::string room = file.substr(0, file.find('/'));
+            for (const std::string& other : matches(contentsOf(ROOT + "/" + tree + "/" + file), R"(#include "(\w+)/)"))
             {
-                if (!floor.count(other))        // opencv2/
+                if (!floor.count(other) || !floor.count(room))      // opencv2/; a file in no room, as precomp.hpp
                     continue;
-                CAPTURE(file, other);
+                CAPTURE(tree, file, other);
                 CHECK(floor[other] <= floor[room]);
                 arrows += other != room;
             }
-    CHECK(arrows > 30);
+        }
+        CHECK(arrows > 30);
+    }
 }
 
-TEST_CASE("Files that the page of the house names exist", "[architecture]")
+TEST_CASE("Inside the tools an include says the room", "[architecture]")
 {
-    for (const std::string& name : matches(contentsOf(ROOT + "/doc/architecture.md"), "`((?:\\w+/)+\\w[\\w.]*\\.\\w+)`"))
+    for (const std::string& file : below(ROOT + "/tools/common", false))
     {
-        CAPTURE(name);
-        if (name.find("NAME") == std::string::npos)
-            CHECK((std::filesystem::exists(SOURCES + "/" + name) || std::filesystem::exists(ROOT + "/" + name)));
+        CAPTURE(file);
+        CHECK(file.find('/') != std::string::npos);
+        CHECK(matches(contentsOf(ROOT + "/tools/common/" + file), "#include \"([^/\"]+)\"").empty());
     }
+}
+
+TEST_CASE("Files that the tables of the house name exist", "[architecture]")
+{
+    const std::vector<std::string> paths = knownPaths();
+    int count = 0;
+    for (const std::string& row : rowsOf(page()))
+        for (const std::string& name : matches(row, R"(`([\w*]+(?:/[\w*]+)*(?:\.[\w*]+)+)`)"))
+        {
+            if (name.find("NAME") != std::string::npos)
+                continue;
+            CAPTURE(row, name);
+            CHECK(isAnyOf(paths, name));
+            count++;
+        }
+    CHECK(count > 40);
+}
+
+TEST_CASE("Folders that the tables of the house name exist", "[architecture]")
+{
+    int count = 0;
+    for (const std::string& row : rowsOf(page()))
+        for (const std::string& folder : matches(row, R"(`([\w/]+)/`)"))
+        {
+            CAPTURE(row, folder);
+            CHECK((fs::is_directory(ROOT + "/" + folder) || fs::is_directory(ROOT + "/" + TREES[0] + "/" + folder) ||
+                   fs::is_directory(ROOT + "/" + TREES[1] + "/" + folder)));
+            count++;
+        }
+    CHECK(count > 16);
+}
+
+TEST_CASE("What a room is said to hold is in it, its extension left out", "[architecture]")
+{
+    std::vector<std::string> programs;
+    for (const std::string& file : below(ROOT + "/tools", false))
+        programs.push_back(file.substr(0, file.find('.')));
+    int count = 0;
+    for (const std::string& tree : TREES)
+        for (const std::string& row : rowsOf(sectionOf(tree)))
+            for (const std::string& room : matches(row, R"(^\| `(\w+)/`)"))
+            {
+                std::vector<std::string> stems = programs;      // who asks may be one
+                for (const std::string& file : below(ROOT + "/" + tree + "/" + room, false))
+                    stems.push_back(file.substr(0, file.find('.')));
+                for (const std::string& stem : matches(row, R"(`([\w*]+)`)"))
+                {
+                    CAPTURE(tree, row, stem);
+                    CHECK(isAnyOf(stems, stem));
+                    count++;
+                }
+            }
+    CHECK(count > 20);
 }
 
 TEST_CASE("Ceres stays where poses and calibrations are", "[architecture]")
 {
-    for (const std::string& room : roomsOnThePage())
-        for (const std::string& file : sourcesOf(room))
-        {
-            CAPTURE(file);
-            if (room != "pose" && room != "calibrate")
-                CHECK(contentsOf(file).find("#include <ceres") == std::string::npos);
-        }
+    for (const std::string& file : below(ROOT + "/" + TREES[0], false))
+    {
+        const std::string room = file.substr(0, file.find('/'));
+        CAPTURE(file);
+        if (room != "pose" && room != "calibrate")
+            CHECK(contentsOf(ROOT + "/" + TREES[0] + "/" + file).find("#include <ceres") == std::string::npos);
+    }
 }
