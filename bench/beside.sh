@@ -1,0 +1,48 @@
+#!/bin/sh
+# refract_bench of this checkout beside that of another commit: built apart, run in turns, each row's least time of all turns
+# and their ratio. On a shared machine the least is what the machine can do; a few turns more make it so.
+#
+# Usage: bench/beside.sh COMMIT [TURNS] [REFRACT_BENCH_OPTIONS...]       5 turns; for example bench/beside.sh HEAD~1 9 --points=100000
+set -eu
+cd "$(dirname "$0")/.."
+[ $# != 0 ] || { echo "usage: $0 COMMIT [TURNS] [REFRACT_BENCH_OPTIONS...]" >&2; exit 1; }
+commit=$1; shift
+turns=5
+case ${1:-} in [0-9]*) turns=$1; shift ;; esac
+
+launcher=""
+command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+build() {   # build SOURCE DIRECTORY
+  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher >"$2.log" 2>&1 || { cat "$2.log"; exit 1; }
+  cmake --build "$2" --target refract_bench
+}
+mkdir -p build
+other=$PWD/build/beside
+git worktree remove --force "$other" 2>/dev/null || rm -rf "$other"
+git worktree prune
+git worktree add --quiet --detach "$other" "$commit"
+trap 'git worktree remove --force "$other"; rm -rf "$results"' EXIT
+results=$(mktemp -d)
+build . build/release
+mkdir -p "$other/build"
+build "$other" "$other/build/release"
+
+for turn in $(seq "$turns"); do
+  build/release/bin/refract_bench "$@" >"$results/this.$turn" || true
+  "$other/build/release/bin/refract_bench" "$@" >"$results/other.$turn" || true
+done
+awk -v commit="$commit" '
+  match($0, /  +[0-9]+\.[0-9]+ /) {      # the first number of a row is our time
+    here = FILENAME ~ /this\.[0-9]*$/
+    ours = substr($0, RSTART, RLENGTH) + 0
+    key = substr($0, 1, 40); sub(/ +$/, "", key)
+    if (!(key in order)) { order[key] = ++rows; name[rows] = key }
+    if (!((key, here) in least) || ours < least[key, here]) least[key, here] = ours
+  }
+  END {
+    printf "%-40s %12s %12s %8s\n", "work, ns", "here", commit, "ratio"
+    for (i = 1; i <= rows; i++) {
+      k = name[i]
+      if (least[k, 0] > 0) printf "%-40s %12.2f %12.2f %8.3f\n", k, least[k, 1], least[k, 0], least[k, 1]/least[k, 0]
+    }
+  }' "$results"/this.* "$results"/other.*
