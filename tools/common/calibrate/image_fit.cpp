@@ -19,7 +19,8 @@ std::vector<int> usefulMoments(const RigData& data, int flags)
         const Moment& m = data.moments[i];
         // Without glass a moment says something about R and T if both cameras see it, and about free lenses always.
         const bool bothDirect = data.cameraCount == 2 && m.hasDirect(0) && m.hasDirect(1);
-        if (m.hasGlass() || bothDirect || (flags & GLASS_FREE_INTRINSICS))
+        const bool any = m.hasGlass() || m.hasDirect(0) || m.hasDirect(1);      // else all its images were left out
+        if (m.hasGlass() || bothDirect || (any && (flags & GLASS_FREE_INTRINSICS)))
             useful.push_back(i);
     }
     return useful;
