@@ -13,10 +13,10 @@ Boards::Boards(int views)
     std::uniform_real_distribution<double> angle(-0.4, 0.4), side(-30, 30), range(560, 660);
     std::normal_distribution<double> noise(0, 0.05);
     std::vector<Point3f> board;
-    for (int i = 0; i < CORNERS; ++i)
+    for (int i = 0; i < CORNERS; i++)
         board.push_back(Point3f(20.f*(i % 9 - 4), 20.f*(i/9 - 2.5f), 0));
     const Ptr<RefractiveCamera> bare = RefractiveCamera::create(scene.K, scene.D);
-    for (int view = 0; view < views; ++view)
+    for (int view = 0; view < views; view++)
     {
         const Vec3d rvec(angle(engine), angle(engine), angle(engine)), tvec(side(engine), side(engine), range(engine));
         std::vector<Point2f> through, without;

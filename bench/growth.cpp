@@ -30,7 +30,7 @@ struct Calls
     double nsPerPoint(void (Calls::*call)())
     {
         const int repeats = std::max(1, 1000/(int)pixels.size());   // asking the time takes its time
-        const Work work = [=] { for (int i = 0; i < repeats; ++i) (this->*call)(); };
+        const Work work = [=] { for (int i = 0; i < repeats; i++) (this->*call)(); };
         return medianSeconds(work, 3)/repeats/pixels.size()*1e9;
     }
 };
@@ -58,11 +58,11 @@ void growWithLayers()
 {
     std::printf("\n%10s%12s%12s   ns per point\n", "layers", "undistort", "project");
     Scene scene(FIVE, 1.333);
-    for (int layers = 1; layers <= 5; ++layers)
+    for (int layers = 1; layers <= 5; layers++)
     {
         scene.window.thickness.assign(layers, 20./layers);
         scene.window.index.clear();
-        for (int k = 0; k < layers; ++k)
+        for (int k = 0; k < layers; k++)
             scene.window.index.push_back(1.5437 - 0.02*k);
         scene.camera = RefractiveCamera::create(scene.K, scene.D, scene.window);
         Calls calls = callsOf(scene, 10000);
@@ -83,7 +83,7 @@ void growWithIncidence()
         const double theta = degrees*CV_PI/180;
         Calls calls = callsOf(scene, 10000);
         calls.camera = RefractiveCamera::createFisheye(scene.K, scene.D, window);
-        for (size_t i = 0; i < calls.points.size(); ++i)
+        for (size_t i = 0; i < calls.points.size(); i++)
         {
             const double azimuth = 2*CV_PI*(double)i/calls.points.size();
             calls.points[i] = Point3d(std::sin(theta)*std::cos(azimuth), std::sin(theta)*std::sin(azimuth),
@@ -91,7 +91,7 @@ void growWithIncidence()
         }
         refractiveProjectPoints(calls.points, ZERO, ZERO, bare, calls.pixels);
         const double unproject = calls.nsPerPoint(&Calls::unproject);
-        for (size_t i = 0; i < calls.points.size(); ++i)
+        for (size_t i = 0; i < calls.points.size(); i++)
             calls.points[i] = calls.origins[i] + calls.directions[i]*((500 - calls.origins[i].z)/calls.directions[i].z);
         const double project = calls.nsPerPoint(&Calls::project);
         std::printf("%10.1f%12.1f%12.1f\n", degrees, unproject, project);

@@ -18,7 +18,7 @@ void* __libc_memalign(size_t, size_t);
 void* malloc(size_t size) { ++allocationCount; return __libc_malloc(size); }
 int posix_memalign(void** p, size_t alignment, size_t size)
 {
-    ++allocationCount;
+    allocationCount++;
     *p = __libc_memalign(alignment, size);
     return *p ? 0 : 12;
 }
@@ -32,7 +32,7 @@ void pin(int processors)
 {
     cpu_set_t set;
     CPU_ZERO(&set);
-    for (int i = 0; i < processors; ++i)
+    for (int i = 0; i < processors; i++)
         CPU_SET(i, &set);
     sched_setaffinity(0, sizeof set, &set);
 }
@@ -55,7 +55,7 @@ static double seconds(const Work& work, clockid_t clock, double least = 2e-3)
     do
     {
         work();
-        ++runs;
+        runs++;
         total = now(clock) - start;
     } while (total < least);
     return total/runs;
@@ -71,7 +71,7 @@ double medianSeconds(const Work& work, int rounds)
 {
     std::vector<double> times;
     work();
-    for (int round = 0; round < rounds; ++round)
+    for (int round = 0; round < rounds; round++)
         times.push_back(seconds(work, CLOCK_THREAD_CPUTIME_ID));
     return median(times);
 }
@@ -96,9 +96,9 @@ Times measure(const Row& row, int rounds)
     for (const Work* work : works)      // first touch, tables, thread pools
         if (*work)
             (*work)();
-    for (int round = 0; round < rounds; ++round)
+    for (int round = 0; round < rounds; round++)
     {
-        for (int k = 0; k < 5; ++k)
+        for (int k = 0; k < 5; k++)
             times[k].push_back(seconds(*works[k], clock, k == MEMORY ? 0 : 2e-3));     // a copy that runs again is of the cache
         ratio.push_back(times[0].back()/times[1].back());
     }

@@ -63,13 +63,13 @@ struct Lens
         {
             const T target = std::sqrt(xd*xd + yd*yd);
             T theta = target;
-            for (int i = 0; i < 12; ++i)
+            for (int i = 0; i < 12; i++)
                 theta -= (bend(theta) - target)*2*h/(bend(theta + h) - bend(theta - h));
             const T scale = target > 0 ? std::sin(theta)/target : 1;
             return { xd*scale, yd*scale, std::cos(theta) };
         }
         T x = xd, y = yd;
-        for (int i = 0; i < 12; ++i)
+        for (int i = 0; i < 12; i++)
         {
             const Vec2<T> p = distort(x, y), a = distort(x + h, y), b = distort(x - h, y), c = distort(x, y + h),
                           d = distort(x, y - h);
@@ -101,7 +101,7 @@ struct Camera
     Ray<T> unproject(const Vec2<T>& pixel) const
     {
         Vec3<T> d = lens.unproject(pixel), point = { 0, 0, 0 };
-        for (size_t k = 0; k < height.size(); ++k)
+        for (size_t k = 0; k < height.size(); k++)
         {
             const T c = dot(normal, d), ratio = index[k]/index[k + 1];
             point = add(point, height[k]/c, d);
@@ -127,10 +127,10 @@ struct Camera
         const Vec3<T> radial = add(X, -U, normal);
         const T V = std::sqrt(dot(radial, radial));
         T t = V/U;
-        for (int i = 0; i < 60; ++i)
+        for (int i = 0; i < 60; i++)
         {
             T f = -V, slope = 0;
-            for (size_t k = 0; k < index.size(); ++k)
+            for (size_t k = 0; k < index.size(); k++)
             {
                 const T h = k < height.size() ? height[k] : outside, n = index[k];
                 const T root2 = n*n + (n*n - rarest*rarest)*t*t, root = std::sqrt(root2);

@@ -55,8 +55,8 @@ Row oneRow(const std::string& key, const std::string& work, const std::string& p
 {
     const int CALLS = 100;
     Row r = { key, work, peer, { 2, 2 }, CALLS, {}, {}, {}, {}, 0, "allocations", 0, {}, {}, {} };
-    r.ours = [=] { for (int i = 0; i < CALLS; ++i) ours(); };
-    r.peer = [=] { for (int i = 0; i < CALLS; ++i) theirs(); };
+    r.ours = [=] { for (int i = 0; i < CALLS; i++) ours(); };
+    r.peer = [=] { for (int i = 0; i < CALLS; i++) theirs(); };
     const auto count = [](const Work& calls) { const long before = allocations(); calls(); return (double)(allocations() - before); };
     r.error = [=] { return count(r.ours); };
     r.peerError = [=] { return count(r.peer); };

@@ -31,7 +31,7 @@ struct Pair
         // cv::triangulatePoints wants normalised points of pinhole cameras: given to it for nothing.
         Mat(2, count, CV_64F).copyTo(normal1);
         normal1.copyTo(normal2);
-        for (int i = 0; i < count; ++i)
+        for (int i = 0; i < count; i++)
         {
             const Point3d& X = points[i];
             const Vec3d Y = R*Vec3d(X) + T;
@@ -57,7 +57,7 @@ typedef std::shared_ptr<Pair> Data;
 Point toCamera2(const Point& X)
 {
     Point Y;
-    for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 3; r++)
         Y[r] = (long double)R(r, 0)*X[0] + (long double)R(r, 1)*X[1] + (long double)R(r, 2)*X[2] + T[r];
     return Y;
 }
@@ -76,20 +76,20 @@ long double distanceToOptimum(const reference::Camera<long double>& c1, const re
     Matx33d A;
     Vec3d g;
     std::array<long double, 4> J[3];
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; c++)
     {
         Point up = X, down = X;
         up[c] += h;
         down[c] -= h;
         const auto a = residual(up), b = residual(down);
-        for (int k = 0; k < 4; ++k)
+        for (int k = 0; k < 4; k++)
             J[c][k] = (a[k] - b[k])/(2*h);
     }
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 4; ++k)
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 4; k++)
         {
             g[r] += (double)(J[r][k]*e[k]);
-            for (int c = 0; c < 3; ++c)
+            for (int c = 0; c < 3; c++)
                 A(r, c) += (double)(J[r][k]*J[c][k]);
         }
     return norm(A.inv()*g);
@@ -113,7 +113,7 @@ double midpointError(const Data& d)
         const auto a = c1.unproject(exact(d->pixels1[i]));
         auto b = c2.unproject(exact(d->pixels2[i]));
         Point o = reference::add(b.origin, -1.L, Point{ T[0], T[1], T[2] }), o2, d2;
-        for (int r = 0; r < 3; ++r)
+        for (int r = 0; r < 3; r++)
         {
             o2[r] = R(0, r)*o[0] + R(1, r)*o[1] + R(2, r)*o[2];
             d2[r] = R(0, r)*b.direction[0] + R(1, r)*b.direction[1] + R(2, r)*b.direction[2];
@@ -124,7 +124,7 @@ double midpointError(const Data& d)
         const long double dd1 = dot(a.direction, a.direction), dd2 = dot(d2, d2), det = dd1*dd2 - c*c;
         const long double s = (e*dd2 - f*c)/det, t = (e*c - f*dd1)/det;
         const Point X = reference::add(a.origin, s, a.direction), Y = reference::add(o2, t, d2);
-        for (int r = 0; r < 3; ++r)
+        for (int r = 0; r < 3; r++)
             worst = std::max(worst, std::abs((X[r] + Y[r])/2 - (r == 0 ? d->points[i].x : r == 1 ? d->points[i].y
                                                                                                  : d->points[i].z)));
     }
@@ -151,12 +151,12 @@ double curveError(const Data& d)
     for (int i : sample((int)d->lines.size(), 100))
     {
         const auto ray = c1.unproject(exact(d->pixels1[i]));
-        for (int k = 0; k <= 100; ++k)
+        for (int k = 0; k <= 100; k++)
         {
             const long double z = 1/(1/300.L + k*(1/1500.L - 1/300.L)/100);
             const Pixel p = c2.project(toCamera2(reference::add(ray.origin, (z - ray.origin[2])/ray.direction[2], ray.direction)));
             double nearest = DBL_MAX;
-            for (size_t j = 1; j < d->lines[i].size(); ++j)
+            for (size_t j = 1; j < d->lines[i].size(); j++)
             {
                 const Point2d a = d->lines[i][j - 1], ab = d->lines[i][j] - a, ap = Point2d((double)p[0], (double)p[1]) - a;
                 const double t = std::min(1., std::max(0., ap.dot(ab)/ab.dot(ab)));

@@ -115,7 +115,7 @@ Row undistortRow(const Data& a, const std::string& key, const std::string& work)
     r.scalar = [=]
     {
         a->peerPixels.resize(n);
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             const auto ray = a->scalar.unproject({ a->points.pixels[i].x, a->points.pixels[i].y });
             const auto X = reference::add(ray.origin, (a->points.depths[i] - ray.origin[2])/ray.direction[2], ray.direction);
@@ -136,7 +136,7 @@ Row unprojectRow(const Data& a, const std::string& key, const std::string& work)
     r.ours = [=] { refractiveUnprojectPoints(a->points.pixels, a->origins, a->directions, a->scene.camera, a->status); };
     r.scalar = [=]
     {
-        for (size_t i = 0; i < a->points.pixels.size(); ++i)
+        for (size_t i = 0; i < a->points.pixels.size(); i++)
         {
             const auto ray = a->scalar.unproject({ a->points.pixels[i].x, a->points.pixels[i].y });
             a->origins[i] = Point3d(ray.origin[0], ray.origin[1], ray.origin[2]);
@@ -178,7 +178,7 @@ Row projectRow(const Data& a, const std::string& key, const std::string& work, d
     r.scalar = [=]
     {
         a->peerPixels.resize(n);
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             const Point3d& X = a->points.points[i];
             const auto p = a->scalar.project({ X.x, X.y, X.z });
@@ -202,13 +202,13 @@ double jacobianError(const Data& a)
     const long double step = 1e-4L;
     long double worst = 0;
     for (int i : sample((int)a->points.points.size(), 200))
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
         {
             Point ends[2] = { exact(a->points.points[i]), exact(a->points.points[i]) };
             ends[0][c] += step;
             ends[1][c] -= step;
             const Pixel p = a->exactly.project(ends[0]), q = a->exactly.project(ends[1]);
-            for (int k = 0; k < 2; ++k)
+            for (int k = 0; k < 2; k++)
                 worst = std::max(worst, std::abs((p[k] - q[k])/(2*step) - a->jacobian.at<double>(2*i + k, 3 + c)));
         }
     return (double)worst;

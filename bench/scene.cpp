@@ -27,14 +27,14 @@ Points::Points(const Scene& scene, int count, unsigned seed) : pixels(count), de
 {
     std::mt19937_64 engine(seed);
     std::uniform_real_distribution<double> x(0, WIDTH - 1), y(0, HEIGHT - 1), z(NEAREST, FARTHEST);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
     {
         pixels[i] = Point2d(x(engine), y(engine));
         depths[i] = z(engine);
     }
     std::vector<Point2d> ideal;
     refractiveUndistortPoints(pixels, ideal, scene.camera, depths);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
         points[i] = Point3d(ideal[i].x*depths[i], ideal[i].y*depths[i], depths[i]);
 }
 

@@ -32,7 +32,7 @@ struct Scene
         std::copy(D.begin(), D.end(), c.lens.k.begin());
         c.lens.tilt = tilt<T>(c.lens.k[12], c.lens.k[13]);
         // As the module, which has the normal in double.
-        for (int i = 0; i < 3; ++i)
+        for (int i = 0; i < 3; i++)
             c.normal[i] = window.normal[i];
         const T length = std::sqrt(reference::dot(c.normal, c.normal));
         for (T& n : c.normal)
@@ -54,7 +54,7 @@ private:
         const T cx = std::cos(tx), sx = std::sin(tx), cy = std::cos(ty), sy = std::sin(ty);
         const T R[3][3] = { { cy, sy*sx, -sy*cx }, { 0, cx, sx }, { sy, -cy*sx, cy*cx } };
         std::array<T, 9> H;
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
         {
             H[c] = R[2][2]*R[0][c] - R[0][2]*R[2][c];
             H[3 + c] = R[2][2]*R[1][c] - R[1][2]*R[2][c];

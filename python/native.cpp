@@ -81,9 +81,9 @@ static bool addFunctionsAndConstants(PyObject* module, PyMethodDef* methods, con
 {
     PyObject* const scope = PyUnicode_FromString(MODULESTR);
     bool ok = scope != NULL;
-    for (PyMethodDef* m = methods; ok && m->ml_name; ++m)
+    for (PyMethodDef* m = methods; ok && m->ml_name; m++)
         ok = addObject(module, m->ml_name, PyCFunction_NewEx(m, NULL, scope));
-    for (const ConstDef* c = constants; ok && c->name; ++c)
+    for (const ConstDef* c = constants; ok && c->name; c++)
         ok = addObject(module, c->name, PyLong_FromLongLong(c->val));
     Py_XDECREF(scope);
     return ok;

@@ -11,7 +11,7 @@ using namespace cv;
 static double distanceToLine(const std::vector<Point2f>& line, Point2d p)
 {
     double nearest = std::numeric_limits<double>::infinity();
-    for (size_t i = 1; i < line.size(); ++i)
+    for (size_t i = 1; i < line.size(); i++)
     {
         const Point2d a = line[i - 1], ab = Point2d(line[i]) - a;
         const double t = std::min(1., std::max(0., (p - a).dot(ab)/ab.dot(ab)));

@@ -24,12 +24,12 @@ static double lengthError(const std::vector<Point3d>& points, int cols, double s
 {
     double sum = 0;
     int count = 0;
-    for (size_t i = 1; i < points.size(); ++i)
+    for (size_t i = 1; i < points.size(); i++)
         if (i % cols)
         {
             const double error = norm(points[i] - points[i - 1]) - square;
             sum += error*error;
-            ++count;
+            count++;
         }
     return std::sqrt(sum/count);
 }

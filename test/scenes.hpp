@@ -87,7 +87,7 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
 inline std::vector<WindowKind> allWindows()
 {
     std::vector<WindowKind> kinds;
-    for (int k = 0; k < WINDOW_KINDS; ++k)
+    for (int k = 0; k < WINDOW_KINDS; k++)
         kinds.push_back((WindowKind)k);
     return kinds;
 }
@@ -162,7 +162,7 @@ inline double largestDifference(cv::InputArray a_, cv::InputArray b_)
     b_.getMat().clone().reshape(1, 1).convertTo(b, CV_64F);
     REQUIRE(a.total() == b.total());
     double largest = 0;
-    for (int i = 0; i < (int)a.total(); ++i)
+    for (int i = 0; i < (int)a.total(); i++)
     {
         const double x = a.at<double>(i), y = b.at<double>(i);
         if (std::isnan(x) && std::isnan(y))

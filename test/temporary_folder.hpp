@@ -23,7 +23,7 @@ public:
         std::filesystem::remove_all(path_, ignored);
     }
     const std::filesystem::path& path() const { return path_; }
-    std::string operator/(const std::string& file) const { return (path_ / file).string(); }
+    std::string operator/(const std::string& file) const { return (path_/file).string(); }
     //! Names of all files in it, to find half-written ones.
     size_t count() const
     {

@@ -69,7 +69,7 @@ Vec2d compare(const Model& m, double halfField, Random& random)
 {
     const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(m.name, m.intrinsics);
     std::vector<Vec3d> points, origins, directions;
-    for (int i = 0; i < 5000; ++i)
+    for (int i = 0; i < 5000; i++)
         points.push_back(random.logUniform(1, 1e4)*randomNormal(random, halfField));
     std::vector<Vec2d> ours, theirs = mrcalProject(m, points), again;
     std::vector<uchar> status;
@@ -80,7 +80,7 @@ Vec2d compare(const Model& m, double halfField, Random& random)
     const std::vector<Vec3d> bearings = mrcalUnproject(m, ours);
     refractiveProjectPoints(bearings, Vec3d(), Vec3d(), camera, again);
     double worst = 0;
-    for (size_t i = 0; i < ours.size(); ++i)
+    for (size_t i = 0; i < ours.size(); i++)
     {
         REQUIRE(status[i] == REFRACT_OK);
         REQUIRE(norm(origins[i]) == 0);
@@ -177,14 +177,14 @@ TEST_CASE("A pane in air leaves mrcal's bearing as it is", "[against_mrcal]")
     {
         const double field = FIELDS[i++];
         std::vector<Vec3d> bearings;
-        for (int k = 0; k < 3000; ++k)
+        for (int k = 0; k < 3000; k++)
             bearings.push_back(randomNormal(random, field));
         const std::vector<Vec2d> pixels = mrcalProject(m, bearings);
         const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(m.name, m.intrinsics, makeWindow(PANE_IN_AIR, random));
         std::vector<Vec3d> origins, directions;
         std::vector<uchar> status;
         refractiveUnprojectPoints(pixels, origins, directions, camera, status);
-        for (size_t k = 0; k < bearings.size(); ++k)
+        for (size_t k = 0; k < bearings.size(); k++)
         {
             CAPTURE(m.name, k);
             REQUIRE(status[k] == REFRACT_OK);
@@ -210,7 +210,7 @@ TEST_CASE("Refracted rays triangulate as with mrcal", "[against_mrcal]")
         Rodrigues(Vec3d(0.02, -0.3, 0.01), R);
         const Vec3d T = -(R*Vec3d(220, 5, -30));
         std::vector<Vec3d> points, origins1, directions1, origins2, directions2, found;
-        for (int i = 0; i < 300; ++i)
+        for (int i = 0; i < 300; i++)
             points.push_back(Vec3d(random.uniform(-80, 80), random.uniform(-80, 80), random.uniform(500, 900)));
         std::vector<Vec2d> pixels1, pixels2;
         std::vector<uchar> status1, status2, status;
@@ -220,7 +220,7 @@ TEST_CASE("Refracted rays triangulate as with mrcal", "[against_mrcal]")
         refractiveUnprojectPoints(pixels2, origins2, directions2, camera2);
         triangulateRefractive(camera1, camera2, R, T, pixels1, pixels2, found, status);
         int compared = 0;
-        for (size_t i = 0; i < points.size(); ++i)
+        for (size_t i = 0; i < points.size(); i++)
         {
             if (status1[i] != REFRACT_OK || status2[i] != REFRACT_OK)
                 continue;
@@ -231,9 +231,9 @@ TEST_CASE("Refracted rays triangulate as with mrcal", "[against_mrcal]")
             const mrcal_point3_t g = mrcal_triangulate_geometric(nullptr, nullptr, nullptr, (const mrcal_point3_t*)&directions1[i],
                                                                  (const mrcal_point3_t*)&v1, (const mrcal_point3_t*)&t01);
             double Rt01[12];
-            for (int k = 0; k < 9; ++k)
+            for (int k = 0; k < 9; k++)
                 Rt01[k] = R.t().val[k];
-            for (int k = 0; k < 3; ++k)
+            for (int k = 0; k < 3; k++)
                 Rt01[9 + k] = t01[k];
             const mrcal_point3_t l = mrcal_triangulate_lindstrom(nullptr, nullptr, nullptr, (const mrcal_point3_t*)&directions1[i],
                                                                  (const mrcal_point3_t*)&directions2[i], (const mrcal_point3_t*)Rt01);
@@ -241,7 +241,7 @@ TEST_CASE("Refracted rays triangulate as with mrcal", "[against_mrcal]")
             lindstrom = Vec3d(l.x, l.y, l.z) + origins1[i];
             worstGeometric = std::max(worstGeometric, norm(found[i] - geometric)/norm(points[i]));
             worstLindstrom = std::max(worstLindstrom, norm(found[i] - lindstrom)/norm(points[i]));
-            ++compared;
+            compared++;
         }
         CHECK(compared > 50);
     }

@@ -24,7 +24,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
 {
     const std::regex expression(pattern);
     std::vector<std::string> found;
-    for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it)
+    for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; it++)
         found.push_back((*it)[1]);
     return found;
 }

@@ -23,7 +23,7 @@ std::vector<Point3f> someObjects()
 {
     Random random;
     std::vector<Point3f> points;
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; i++)
         points.push_back(Point3f((float)random.uniform(-99, 99), (float)random.uniform(-99, 99), (float)random.uniform(400, 900)));
     points[7].y = (float)NaN;
     points[250].z = -5;
@@ -34,7 +34,7 @@ std::vector<Point2f> somePixels()
 {
     Random random;
     std::vector<Point2f> pixels;
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; i++)
         pixels.push_back(Point2f((float)random.uniform(0, 1280), (float)random.uniform(0, 960)));
     pixels[9].x = (float)NaN;
     return pixels;
@@ -130,7 +130,7 @@ TEST_CASE("Pixels in every type and shape, in every function", "[arrays]")
     {
         CAPTURE(form.name, typeToString(form.points.type()));
         const std::vector<Mat> out = run(form.points);
-        for (size_t k = 0; k < out.size(); ++k)
+        for (size_t k = 0; k < out.size(); k++)
         {
             CAPTURE(k);
             CHECK(out[k].depth() == form.points.depth());
@@ -281,8 +281,8 @@ TEST_CASE("Blocks cover every point once", "[arrays]")
         std::vector<uchar> visits(size);
         forEachBlock(size, [&](int begin, int n)
         {
-            for (int i = begin; i < begin + n; ++i)
-                ++visits[i];
+            for (int i = begin; i < begin + n; i++)
+                visits[i]++;
         });
         CAPTURE(size);
         CHECK(std::count(visits.begin(), visits.end(), 1) == size);

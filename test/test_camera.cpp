@@ -273,7 +273,7 @@ TEST_CASE("A camera is saved where a link leads, into a pipe, and not over a rea
     const TemporaryFolder folder;
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d::eye(), noArray(), someWindow());
     std::filesystem::create_symlink("real.yml", folder / "link.yml");
-    for (int i = 0; i < 2; ++i)         // it leads to nothing yet, then to a file
+    for (int i = 0; i < 2; i++)         // it leads to nothing yet, then to a file
     {
         camera->save(folder / "link.yml");
         CHECK(std::filesystem::is_symlink(folder / "link.yml"));
@@ -306,7 +306,7 @@ TEST_CASE("Two cameras in one file are read by name, camera1 by default", "[came
             fs << name << "{";
             RefractiveCamera::create(Matx33d(1000*number, 0, 640, 0, 1000*number, 480, 0, 0, 1), noArray())->write(fs);
             fs << "}";
-            ++number;
+            number++;
         }
     }
     CHECK(RefractiveCamera::read(file.path)->cameraMatrix().at<double>(0, 0) == 1000);
@@ -353,7 +353,7 @@ TEST_CASE("A file that is no camera is refused with its name", "[camera]")
     CHECK_THAT(thrown([] { RefractiveCamera::read("no/such/file.cameramodel"); }), Contains("no/such/file.cameramodel"));
     std::string random;
     Random source;
-    for (int i = 0; i < 4000; ++i)
+    for (int i = 0; i < 4000; i++)
         random += (char)source.below(256);
     const std::string model = "{ 'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [ 1, 1, 1, 1 ] }";
     struct Bad { std::string suffix, text; };
@@ -384,10 +384,10 @@ TEST_CASE("A file that nests without end is refused", "[camera]")
 {
     const std::string heads[] = { "%YAML:1.0\n---\na: ", "<?xml version=\"1.0\"?>\n<opencv_storage>\n", "{\"a\":" };
     const std::string levels[] = { "[", "<a>\n", "[" };
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; i++)
     {
         std::string text = heads[i];
-        for (int level = 0; level < 1000000; ++level)
+        for (int level = 0; level < 1000000; level++)
             text += levels[i];
         const TemporaryFile file(".yml", text);
         CHECK_THAT(thrown([&] { RefractiveCamera::read(file.path); }), Contains(file.path) && Contains("nest"));

@@ -13,7 +13,7 @@ namespace {
 double distanceTo(const Mat& line, const Vec2d& p)
 {
     double least = INF;
-    for (int i = 0; i < line.rows; ++i)
+    for (int i = 0; i < line.rows; i++)
     {
         const Vec2d a = line.at<Vec2d>(std::max(i - 1, 0)), b = line.at<Vec2d>(i), ab = b - a;
         const double length2 = ab.dot(ab), t = length2 > 0 ? std::min(1., std::max(0., (p - a).dot(ab)/length2)) : 0;
@@ -56,7 +56,7 @@ struct Rig
 std::vector<Vec2d> pixelsOf(const LensKind& lens, const Ptr<RefractiveCamera>& camera, int count, Random& random)
 {
     std::vector<Vec3d> points;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
         points.push_back(1000*randomNormal(random, std::min(25., lens.halfField)));
     std::vector<Vec2d> pixels;
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels);
@@ -73,7 +73,7 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
     double worst = 0, worstFine = 0;
     int partners = 0;
     for (WindowKind kind : allWindows())
-        for (size_t l = 0; l < allLenses().size(); ++l)
+        for (size_t l = 0; l < allLenses().size(); l++)
             for (int which : { 1, 2 })
             {
                 const LensKind &lens = allLenses()[l], &other = allLenses()[(l + 1)%allLenses().size()];
@@ -86,7 +86,7 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                 computeRefractiveEpilines(pixels, which, rig.camera1, rig.camera2, rig.R, rig.T, range, lines, 0.01, status);
                 computeRefractiveEpilines(pixels, which, rig.camera1, rig.camera2, rig.R, rig.T, range, fine, 1e-4);
                 REQUIRE(lines.size() == pixels.size());
-                for (int sample = 0; sample < 100; ++sample)
+                for (int sample = 0; sample < 100; sample++)
                 {
                     const double z = 400/random.uniform(range[1] == INF ? 1e-4 : 400./3000, 1);
                     std::vector<Vec3d> points;
@@ -94,7 +94,7 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                     std::vector<uchar> seen;
                     refractivePointsOnPlane(pixels, points, rig.camera(which), Vec4d(0, 0, 1, z));
                     rig.projectToOther(which, points, truth, seen);
-                    for (size_t i = 0; i < pixels.size(); ++i)
+                    for (size_t i = 0; i < pixels.size(); i++)
                     {
                         // The paper's lens has no end: a curve that runs out to 1e12 px is mostly rounding.
                         if (seen[i] != REFRACT_OK || endsFarOut(lines[i]))
@@ -106,7 +106,7 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                         REQUIRE(distanceTo(fine[i], truth[i]) <= 1.05e-4);
                         worst = std::max(worst, distance);
                         worstFine = std::max(worstFine, distanceTo(fine[i], truth[i]));
-                        ++partners;
+                        partners++;
                     }
                 }
             }
@@ -126,10 +126,10 @@ TEST_CASE("Every vertex is the image of a point on the ray, in order of growing 
         const std::vector<Vec2d> pixels = pixelsOf(lens, rig.camera(which), 30, random);
         std::vector<Mat> lines;
         computeRefractiveEpilines(pixels, which, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(300, 3000), lines);
-        for (size_t i = 0; i < pixels.size(); ++i)
+        for (size_t i = 0; i < pixels.size(); i++)
         {
             double before = 0;
-            for (int k = 0; k < lines[i].rows; ++k)
+            for (int k = 0; k < lines[i].rows; k++)
             {
                 // The vertex's own depth, by triangulation.
                 std::vector<Vec2d> here{ pixels[i] }, there{ lines[i].at<Vec2d>(k) };
@@ -170,7 +170,7 @@ TEST_CASE("The curve ends where the depth range ends", "[epilines]")
         std::vector<uchar> seen;
         refractivePointsOnPlane(pixels, points, rig.camera1, Vec4d(0, 0, 1, z));
         rig.projectToOther(1, points, image, seen);
-        for (size_t i = 0; i < pixels.size(); ++i)
+        for (size_t i = 0; i < pixels.size(); i++)
             CHECK(norm(lines[i].at<Vec2d>(z == 500 ? 0 : lines[i].rows - 1) - image[i]) < 1e-9);
     }
 }
@@ -190,10 +190,10 @@ TEST_CASE("No windows, no distortion: two vertices on cv::computeCorrespondEpili
         std::vector<Vec3d> straight;
         computeRefractiveEpilines(pixels, which, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(400, INF), lines);
         computeCorrespondEpilines(pixels, which, F, straight);
-        for (size_t i = 0; i < pixels.size(); ++i)
+        for (size_t i = 0; i < pixels.size(); i++)
         {
             REQUIRE(lines[i].rows == 2);
-            for (int k = 0; k < 2; ++k)
+            for (int k = 0; k < 2; k++)
             {
                 const Vec2d p = lines[i].at<Vec2d>(k);
                 REQUIRE(std::abs(straight[i].dot(Vec3d(p[0], p[1], 1))) < 1e-8);
@@ -215,11 +215,11 @@ TEST_CASE("Few vertices: near the least that the tolerance takes", "[epilines]")
         std::vector<Mat> lines, dense;
         computeRefractiveEpilines(pixels, 1, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(300, INF), lines, tolerance);
         computeRefractiveEpilines(pixels, 1, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(300, INF), dense, tolerance/1000);
-        for (size_t i = 0; i < pixels.size(); ++i)
+        for (size_t i = 0; i < pixels.size(); i++)
         {
             // Greedy: the longest chords of the dense curve that stay within the tolerance; no polyline on the curve needs fewer.
             int fewest = 1;
-            for (int begin = 0; begin < dense[i].rows - 1; ++fewest)
+            for (int begin = 0; begin < dense[i].rows - 1; fewest++)
             {
                 int end = begin + 1;
                 for (bool fits = true; fits && end < dense[i].rows - 1; )
@@ -227,7 +227,7 @@ TEST_CASE("Few vertices: near the least that the tolerance takes", "[epilines]")
                     Mat chord(2, 1, CV_64FC2);
                     chord.at<Vec2d>(0) = dense[i].at<Vec2d>(begin);
                     chord.at<Vec2d>(1) = dense[i].at<Vec2d>(end + 1);
-                    for (int k = begin; k <= end && fits; ++k)
+                    for (int k = begin; k <= end && fits; k++)
                         fits = distanceTo(chord, dense[i].at<Vec2d>(k)) <= tolerance;
                     end += fits;
                 }
@@ -262,7 +262,7 @@ TEST_CASE("Parts without an image are left out", "[epilines]")
                                       status);
             double first = INF, last = 0, worst = 0;
             int seenCount = 0;
-            for (int i = 0; i <= 4000; ++i)
+            for (int i = 0; i <= 4000; i++)
             {
                 const double z = near*std::pow(1e6/near, i/4000.);
                 std::vector<Vec2d> image;
@@ -270,7 +270,7 @@ TEST_CASE("Parts without an image are left out", "[epilines]")
                 refractiveProjectPoints(std::vector<Vec3d>{ z/ray[0][2]*ray[0] }, R, T, camera2, image, seen);
                 if (seen[0] != REFRACT_OK)
                     continue;
-                ++seenCount;
+                seenCount++;
                 first = std::min(first, z);
                 last = std::max(last, z);
                 worst = std::max(worst, distanceTo(lines[0], image[0]));
@@ -314,7 +314,7 @@ TEST_CASE("A point without partners gives an empty line and a status", "[epiline
                               RefractiveCamera::create(PLAIN_K, noArray()), Matx33d::eye(), Vec3d(0, 0, -100), Vec2d(200, 900), lines,
                               0.01, status);
     CHECK(status[0] == REFRACT_OK);
-    for (int i = 0; i < lines[0].rows; ++i)
+    for (int i = 0; i < lines[0].rows; i++)
         CHECK(norm(lines[0].at<Vec2d>(i) - Vec2d(640, 480)) < 1e-9);
 }
 
@@ -331,7 +331,7 @@ TEST_CASE("Both overloads of computeRefractiveEpilines agree, float32 as well", 
     computeRefractiveEpilines(pixels, 2, camera, camera, rvec, T, Vec2d(300, INF), b);
     computeRefractiveEpilines(pixels, 2, camera, camera, rvec, T, Vec2d(300, INF), c);
     REQUIRE(a.size() == 2);
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; i++)
     {
         CHECK(a[i].type() == CV_32FC2);
         CHECK(a[i].cols == 1);

@@ -65,27 +65,27 @@ TEST_CASE("Every level computes the same, and no more points than it is given", 
     const Layers layers(makeWindow(kind, random));
     const Stack stack = layers.stack();
     for (const Kernels* level : allLevels())
-        for (int n = 1; n <= MOST; ++n)
+        for (int n = 1; n <= MOST; n++)
         {
             CAPTURE(level->instructions, n);
             Array x, y, z, dx, dy, dz, tau, ox, oy, oz;
             for (Array* a : { &dx, &dy, &dz, &tau, &ox, &oy, &oz })
                 a->fill(-7);
-            for (int i = 0; i < n; ++i)
+            for (int i = 0; i < n; i++)
             {
                 const Vec3d X = 900*stack.normal[2]*layers.normal() + random.vector(150);
                 x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
             }
-            REQUIRE(level->layers.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(), NULL));
-            for (int i = 0; i < n; ++i)
+            REQUIRE(level->layer.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(), NULL));
+            for (int i = 0; i < n; i++)
             {
                 const double length = std::sqrt(dx[i]*dx[i] + dy[i]*dy[i] + dz[i]*dz[i]);
                 dx[i] /= length; dy[i] /= length; dz[i] /= length;
             }
-            REQUIRE(level->layers.traceOut(stack, n, dx.data(), dy.data(), dz.data(), tau.data(), ox.data(), oy.data(), oz.data()));
+            REQUIRE(level->layer.traceOut(stack, n, dx.data(), dy.data(), dz.data(), tau.data(), ox.data(), oy.data(), oz.data()));
             for (const Array* a : { &dx, &dy, &dz, &tau, &ox, &oy, &oz })
                 REQUIRE((*a)[n] == -7);
-            for (int i = 0; i < n; ++i)     // the ray meets its point
+            for (int i = 0; i < n; i++)     // the ray meets its point
             {
                 const Vec3d d(ox[i], oy[i], oz[i]), miss = (Vec3d(x[i], y[i], z[i]) - tau[i]*layers.normal()).cross(d);
                 REQUIRE(norm(miss) < 1e-11);
@@ -99,7 +99,7 @@ TEST_CASE("Angles, sines and cosines of every level against long double", "[kern
     {
         CAPTURE(level->instructions);
         long double worst = 0, worstBack = 0;
-        for (int i = 0; i <= 20000; ++i)
+        for (int i = 0; i <= 20000; i++)
         {
             const long double theta = 3.14159265358979323846264L*i/20001;
             const double X = (double)std::sin(theta), Y = 0, Z = (double)std::cos(theta);
@@ -121,17 +121,17 @@ TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[k
     Random random;
     const Layers layers(makeWindow(PANE_IN_AIR, random));
     for (const Kernels* level : allLevels())
-        for (int bad = 0; bad < 19; ++bad)
+        for (int bad = 0; bad < 19; bad++)
         {
             Array x, y, z, dx, dy, dz;
-            for (int i = 0; i < 19; ++i)
+            for (int i = 0; i < 19; i++)
             {
                 x[i] = 10*i; y[i] = 5; z[i] = i == bad ? -800 : 800;
             }
             CAPTURE(level->instructions, bad);
-            REQUIRE_FALSE(level->layers.solveIn(layers.stack(), 19, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(),
+            REQUIRE_FALSE(level->layer.solveIn(layers.stack(), 19, x.data(), y.data(), z.data(), NULL, dx.data(), dy.data(), dz.data(),
                                          NULL));
-            for (int i = 0; i < 19; ++i)
+            for (int i = 0; i < 19; i++)
                 REQUIRE(std::isnan(dx[i]) == (i == bad));
         }
 }
@@ -142,30 +142,30 @@ TEST_CASE("A chord is close where the cubic through its points stays within the 
     const double TOLERANCE = 0.01;
     int known = 0, close = 0;
     for (const Kernels* level : allLevels())
-        for (int n = 1; n <= 19; ++n)
-            for (int trial = 0; trial < 50; ++trial)
+        for (int n = 1; n <= 19; n++)
+            for (int trial = 0; trial < 50; trial++)
             {
                 // Segments along u of the curve v = a u + b u^2 + c u^3, u = t.
                 const double a = random.uniform(-1, 1), b = random.uniform(-0.03, 0.03), c = random.uniform(-2e-3, 2e-3);
                 const auto curve = [&](double t) { return t*(a + t*(b + t*c)); };
                 Array t, v, tMiddle, vMiddle, slack;
-                for (int i = 0; i <= n; ++i)
+                for (int i = 0; i <= n; i++)
                     t[i] = i == 0 ? -1. : t[i - 1] + random.uniform(0.5, 2);
-                for (int i = 0; i < n; ++i)
+                for (int i = 0; i < n; i++)
                     tMiddle[i] = 0.5*(t[i] + t[i + 1]);
                 tMiddle[n] = 0.5*(t[n] + tMiddle[n - 1]);
-                for (int i = 0; i <= n; ++i)
+                for (int i = 0; i <= n; i++)
                 {
                     v[i] = curve(t[i]);
                     vMiddle[i] = curve(tMiddle[i]);
                 }
                 slack[n] = -7;
-                const bool all = level->points.areClose(n, TOLERANCE, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(),
+                const bool all = level->point.areClose(n, TOLERANCE, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(),
                                                  vMiddle.data(), slack.data());
                 CAPTURE(level->instructions, n, trial);
                 REQUIRE(slack[n] == -7);
                 bool every = true;
-                for (int i = 0; i < n; ++i)
+                for (int i = 0; i < n; i++)
                 {
                     const double du = t[i + 1] - t[i], dv = v[i + 1] - v[i];
                     double farthest = 0;
@@ -188,10 +188,10 @@ TEST_CASE("A chord is close where the cubic through its points stays within the 
 TEST_CASE("Where the middle of a chord is out of sight it has no answer, where the next middle is it has one", "[kernels]")
 {
     for (const Kernels* level : allLevels())
-        for (int bad = 0; bad <= 19; ++bad)
+        for (int bad = 0; bad <= 19; bad++)
         {
             Array t, v, tMiddle, slack;
-            for (int i = 0; i < MOST; ++i)
+            for (int i = 0; i < MOST; i++)
             {
                 t[i] = i;
                 v[i] = 0;
@@ -200,9 +200,9 @@ TEST_CASE("Where the middle of a chord is out of sight it has no answer, where t
             Array vMiddle = v;
             vMiddle[bad] = NAN;
             CAPTURE(level->instructions, bad);
-            CHECK(level->points.areClose(19, 0.01, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(), vMiddle.data(),
+            CHECK(level->point.areClose(19, 0.01, t.data(), t.data(), v.data(), tMiddle.data(), tMiddle.data(), vMiddle.data(),
                                   slack.data()) == (bad == 19));
-            for (int i = 0; i < 19; ++i)
+            for (int i = 0; i < 19; i++)
                 REQUIRE(std::isnan(slack[i]) == (i == bad));
         }
 }
@@ -219,12 +219,12 @@ TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
             Array x, y, z, u, v, w, tau;
             x.fill(1); y.fill(2); z.fill(500);
             const auto clean = [](const std::function<void()>& call) { call(); return !upperHalvesInUse(); };
-            CHECK(clean([&] { level->points.transform(R, t, n, x.data(), y.data(), z.data()); }));
-            CHECK(clean([&] { level->layers.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
-            CHECK(clean([&] { level->layers.traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
-            CHECK(clean([&] { level->points.chordRoots(n, x.data(), y.data(), u.data()); }));
-            CHECK(clean([&] { level->points.areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(),
+            CHECK(clean([&] { level->point.transform(R, t, n, x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->layer.solveIn(stack, n, x.data(), y.data(), z.data(), NULL, u.data(), v.data(), w.data(), NULL); }));
+            CHECK(clean([&] { level->layer.traceOut(stack, n, u.data(), v.data(), w.data(), tau.data(), x.data(), y.data(), z.data()); }));
+            CHECK(clean([&] { level->point.chordRoots(n, x.data(), y.data(), u.data()); }));
+            CHECK(clean([&] { level->point.areClose(n, 1, x.data(), y.data(), z.data(), u.data(), v.data(), w.data(),
                                               tau.data()); }));
-            CHECK(clean([&] { level->points.pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
+            CHECK(clean([&] { level->point.pinhole(R, R + 6, n, x.data(), y.data(), z.data(), u.data(), v.data()); }));
         }
 }

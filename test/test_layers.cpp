@@ -53,7 +53,7 @@ bool traceSurfaces(const GlassWindow& window, Vec3d direction, Vec3d& point, Vec
 {
     point = Vec3d();
     double medium = window.innerIndex, height = window.distance;
-    for (size_t k = 0; k <= window.thickness.size(); ++k)
+    for (size_t k = 0; k <= window.thickness.size(); k++)
     {
         const double next = k < window.index.size() ? window.index[k] : window.outerIndex;
         const double c = window.normal.dot(direction), ratio = medium/next, square = 1 - ratio*ratio*(1 - c*c);
@@ -110,7 +110,7 @@ TEST_CASE("traceOut agrees with Snell's law surface by surface", "[layers]")
     CAPTURE(name(kind), seed());
     Random random(kind);
     int seen = 0, reflected = 0;
-    for (int i = 0; i < 3000; ++i)
+    for (int i = 0; i < 3000; i++)
     {
         const GlassWindow window = makeWindow(kind, random);
         const Vec3d w = directionAt(window.normal, random.uniform(0, 88)*CV_PI/180, random);
@@ -118,7 +118,7 @@ TEST_CASE("traceOut agrees with Snell's law surface by surface", "[layers]")
         Vec3d point, direction;
         if (!traceSurfaces(window, w, point, direction))
         {
-            ++reflected;
+            reflected++;
             REQUIRE(ray.status == REFRACT_TOTAL_REFLECTION);
             continue;
         }
@@ -127,7 +127,7 @@ TEST_CASE("traceOut agrees with Snell's law surface by surface", "[layers]")
         if (sine > 0.9999)
             continue;
         const double cosine = std::sqrt(1 - sine*sine);
-        ++seen;
+        seen++;
         REQUIRE(ray.status == REFRACT_OK);
         REQUIRE(norm(ray.direction - direction) < 1e-14/cosine);
         REQUIRE(std::abs(norm(ray.direction) - 1) < 1e-14/cosine);
@@ -144,7 +144,7 @@ TEST_CASE("solveIn returns the direction that traceOut came from", "[layers]")
     const WindowKind kind = GENERATE(from_range(allWindows()));
     CAPTURE(name(kind), seed());
     Random random(kind);
-    for (int i = 0; i < 5000; ++i)
+    for (int i = 0; i < 5000; i++)
     {
         const GlassWindow window = makeWindow(kind, random, 60);
         const double largest = std::min(1., smallestIndex(window)/window.innerIndex);
@@ -172,7 +172,7 @@ TEST_CASE("Infinitely far points keep or refract their direction by Snell's law 
     const WindowKind kind = GENERATE(from_range(allWindows()));
     CAPTURE(name(kind), seed());
     Random random(kind);
-    for (int i = 0; i < 300; ++i)
+    for (int i = 0; i < 300; i++)
     {
         const GlassWindow window = makeWindow(kind, random);
         const double largest = std::min(1., smallestIndex(window)/window.outerIndex);
@@ -356,7 +356,7 @@ TEST_CASE("Derivatives of solveIn against central differences of several steps",
                                      DOUBLE_GLAZING_IN_WATER);
     CAPTURE(name(kind), seed());
     Random random(kind);
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 40; i++)
     {
         // All media a little denser: the same light paths, and room for the differences above index 1.
         GlassWindow window = makeWindow(kind, random);
@@ -379,7 +379,7 @@ TEST_CASE("Derivatives of solveIn against central differences of several steps",
         REQUIRE(solveIn(layers, X, 1, sameDirection) == REFRACT_OK);
         REQUIRE(norm(unit(direction) - unit(sameDirection)) < 1e-15);
 
-        for (int c = 0; c < 3 + count; ++c)
+        for (int c = 0; c < 3 + count; c++)
         {
             const bool isPoint = c < 3;
             const Vec3d column = isPoint ? Vec3d(dX[c], dX[3 + c], dX[6 + c])
@@ -391,7 +391,7 @@ TEST_CASE("Derivatives of solveIn against central differences of several steps",
             {
                 Vec3d Xs[2] = { X, X };
                 std::vector<double> ps[2] = { p, p };
-                for (int k = 0; k < 2; ++k)
+                for (int k = 0; k < 2; k++)
                     (isPoint ? Xs[k][c] : ps[k][c - 3]) += k ? -step : step;
                 const Vec3d numeric = (unitDirection(ps[0], Xs[0]) - unitDirection(ps[1], Xs[1]))/(2*step);
                 best = std::min(best, norm(numeric - analytic));

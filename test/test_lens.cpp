@@ -34,7 +34,7 @@ TEST_CASE("Direction to pixel and back", "[lens]")
     const Ptr<Lens> lens = makeLens(kind);
     Random random;
     double worstPixel = 0, worstDirection = 0;
-    for (int i = 0; i < 20000; ++i)
+    for (int i = 0; i < 20000; i++)
     {
         const Vec3d d = randomDirection(kind, random);
         Vec2d pixel, again;
@@ -73,7 +73,7 @@ TEST_CASE("Any pixel gives its direction or says that it has none", "[lens]")
     const Ptr<Lens> lens = makeLens(kind);
     Random random;
     double worst = 0;
-    for (int i = 0; i < 20000; ++i)
+    for (int i = 0; i < 20000; i++)
     {
         const double size = random.logUniform(10, 1e5);
         const Vec2d pixel(kind.K(0, 2) + random.uniform(-size, size), kind.K(1, 2) + random.uniform(-size, size));
@@ -106,7 +106,7 @@ TEST_CASE("A direction with an image is the only one with that image", "[lens]")
         const Ptr<Lens> lens = makeLens(kind);
         Random random;
         int inside = 0, outside = 0;
-        for (int i = 0; i < 20000; ++i)
+        for (int i = 0; i < 20000; i++)
         {
             const Vec3d d = randomNormal(random, 89);
             Vec2d pixel;
@@ -114,10 +114,10 @@ TEST_CASE("A direction with an image is the only one with that image", "[lens]")
             REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL));
             if (status != REFRACT_OK)
             {
-                ++outside;
+                outside++;
                 continue;
             }
-            ++inside;
+            inside++;
             Vec3d back;
             CAPTURE(d, pixel);
             REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK);
@@ -197,13 +197,13 @@ TEST_CASE("Lens derivatives against central differences of several steps", "[len
     const std::vector<double> p = lens->parameters();
     const int count = (int)p.size();
     Random random;
-    for (int i = 0; i < 100; ++i)
+    for (int i = 0; i < 100; i++)
     {
         const Vec3d d = i == 0 ? Vec3d(0, 0, 2) : random.uniform(0.5, 2)*randomNormal(random, 0.9*kind.halfField);
         Vec2d pixel;
         std::vector<double> dDirection(6), dParameters(2*count);
         REQUIRE(lens->projectJacobian(d, pixel, dDirection.data(), dParameters.data()) == REFRACT_OK);
-        for (int c = 0; c < 3 + count; ++c)
+        for (int c = 0; c < 3 + count; c++)
         {
             const bool isDirection = c < 3;
             const Vec2d analytic = isDirection ? Vec2d(dDirection[c], dDirection[3 + c])
@@ -212,7 +212,7 @@ TEST_CASE("Lens derivatives against central differences of several steps", "[len
             for (double step : { 1e-3, 1e-4, 1e-5, 1e-6, 1e-7 })
             {
                 Vec2d ends[2];
-                for (int k = 0; k < 2; ++k)
+                for (int k = 0; k < 2; k++)
                 {
                     Vec3d ds = d;
                     std::vector<double> ps = p;

@@ -22,8 +22,8 @@ Deviation deviation(const Ptr<RefractiveCamera>& camera, const Vec4d& plane, con
     std::vector<Vec3d> points;
     std::vector<Vec2d> raw;
     const Matx33d toCamera = R.t()*newK.inv();
-    for (int y = 0; y < SIZE.height; ++y)
-        for (int x = 0; x < SIZE.width; ++x)
+    for (int y = 0; y < SIZE.height; y++)
+        for (int x = 0; x < SIZE.width; x++)
         {
             const Vec3d d = toCamera*Vec3d(x, y, 1);
             const double along = plane[3]/d.dot(Vec3d(plane[0], plane[1], plane[2]));
@@ -31,14 +31,14 @@ Deviation deviation(const Ptr<RefractiveCamera>& camera, const Vec4d& plane, con
         }
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, raw, status);
     Deviation result = { 0, 0 };
-    for (int i = 0; i < SIZE.area(); ++i)
+    for (int i = 0; i < SIZE.area(); i++)
     {
         const Vec2f p = map.at<Vec2f>(i/SIZE.width, i % SIZE.width);
         const bool answer = status.at<uchar>(i) == REFRACT_OK;
         if (answer == (p == Vec2f(-1, -1)))
             result.unlike++;
         else if (answer)
-            for (int k = 0; k < 2; ++k)
+            for (int k = 0; k < 2; k++)
             {
                 const double exact = raw[i][k], rounding = std::abs((float)exact - exact);
                 result.largest = std::max(result.largest, std::abs(p[k] - exact) - rounding);

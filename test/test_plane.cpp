@@ -19,7 +19,7 @@ TEST_CASE("Points of a plane are found again", "[plane]")
         const Vec3d n = randomNormal(random, 40)*random.uniform(0.1, 10);
         const double d = n.dot(Vec3d(0, 0, random.uniform(500, 1500)));
         std::vector<Vec3d> points, found;
-        for (int i = 0; i < 300; ++i)
+        for (int i = 0; i < 300; i++)
         {
             const Vec3d w = randomNormal(random, std::min(35., 0.9*lens.halfField));
             points.push_back(d/n.dot(w)*w);
@@ -29,11 +29,11 @@ TEST_CASE("Points of a plane are found again", "[plane]")
         refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, seen);
         refractivePointsOnPlane(pixels, found, camera, Vec4d(n[0], n[1], n[2], d), status);
         int count = 0;
-        for (size_t i = 0; i < points.size(); ++i)
+        for (size_t i = 0; i < points.size(); i++)
         {
             if (seen[i] != REFRACT_OK)
                 continue;
-            ++count;
+            count++;
             REQUIRE(status[i] == REFRACT_OK);
             const double error = norm(found[i] - points[i])/norm(points[i]);
             worst = std::max(worst, error);

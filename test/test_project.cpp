@@ -32,7 +32,7 @@ TEST_CASE("Without window: cv::projectPoints, every number of coefficients", "[p
     const Vec3d rvec = random.vector(1), tvec = random.vector(100);
     Matx33d R;
     Rodrigues(rvec, R);
-    for (int i = 0; i < 5000; ++i)
+    for (int i = 0; i < 5000; i++)
         points.push_back(R.t()*(random.logUniform(10, 1e5)*randomNormal(random, std::min(80., kind.halfField)) - tvec));
     std::vector<Vec2d> ours, theirs;
     refractiveProjectPoints(points, rvec, tvec, makeCamera(kind, GlassWindow()), ours);
@@ -127,7 +127,7 @@ TEST_CASE("One bad point has its status and leaves the others alone", "[project]
             refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status, jacobian);
         else
             refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status);
-        for (size_t i = 0; i < points.size(); ++i)
+        for (size_t i = 0; i < points.size(); i++)
         {
             CAPTURE(i, cases[i].X, withJacobian);
             CHECK((int)status[i] == (int)cases[i].status);
@@ -168,11 +168,11 @@ TEST_CASE("Bad pixels have their status", "[project]")
     refractiveUnprojectPoints(pixels, origins, directions, camera, status);
     const uchar expected[] = { REFRACT_OK, REFRACT_NOT_FINITE, REFRACT_NOT_FINITE, REFRACT_OUTSIDE_LENS_MODEL,
                                REFRACT_TOTAL_REFLECTION };
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
     {
         CAPTURE(i);
         CHECK((int)status[i] == (int)expected[i]);
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
         {
             CHECK(std::isfinite(origins[i][c]) == (expected[i] == REFRACT_OK));
             CHECK(std::isfinite(directions[i][c]) == (expected[i] == REFRACT_OK));
@@ -191,12 +191,12 @@ TEST_CASE("The origin lies on the axis, the direction is unit and goes into the 
     const GlassWindow window = makeWindow(kind, random);
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), window);
     std::vector<Vec2d> pixels;
-    for (int i = 0; i < 1000; ++i)
+    for (int i = 0; i < 1000; i++)
         pixels.push_back(Vec2d(random.uniform(0, 1280), random.uniform(0, 960)));
     std::vector<Vec3d> origins, directions;
     std::vector<uchar> status;
     refractiveUnprojectPoints(pixels, origins, directions, camera, status);
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
     {
         if (status[i] != REFRACT_OK)
         {
@@ -295,7 +295,7 @@ TEST_CASE("The jacobian against central differences of several steps", "[project
             return out[0];
         };
         const int columns = kind == NO_WINDOW ? 6 + lensCount : J.cols;
-        for (int c = 0; c < columns; ++c)
+        for (int c = 0; c < columns; c++)
         {
             const Vec2d analytic(J.at<double>(0, c), J.at<double>(1, c));
             double best = INF;
@@ -306,7 +306,7 @@ TEST_CASE("The jacobian against central differences of several steps", "[project
         }
         // The normal's three columns have no part along it: its length means nothing.
         if (kind != NO_WINDOW)
-            for (int r = 0; r < 2; ++r)
+            for (int r = 0; r < 2; r++)
             {
                 const Vec3d row(J.ptr<double>(r) + 6 + lensCount);
                 CHECK(std::abs(row.dot(window.normal)) < 1e-11*(1 + norm(row)));
@@ -318,7 +318,7 @@ TEST_CASE("A transformed object is the object in camera coordinates", "[project]
 {
     CAPTURE(seed());
     Random random;
-    for (int i = 0; i < 200; ++i)
+    for (int i = 0; i < 200; i++)
     {
         // Also at and near the half turn, where a rotation vector is hardest.
         const Vec3d rvec = i == 0 ? Vec3d() : i == 1 ? Vec3d(0, CV_PI, 0) : i == 2 ? Vec3d(0, 0, CV_PI - 1e-9)

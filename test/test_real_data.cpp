@@ -92,7 +92,7 @@ double heldOutRms(const Boards& boards, const Ptr<RefractiveCamera>& camera)
 {
     double sum = 0;
     size_t count = 0;
-    for (size_t i = 0; i < boards.object.size(); ++i)
+    for (size_t i = 0; i < boards.object.size(); i++)
     {
         Vec3d rvec, tvec;
         std::vector<double> error;
@@ -196,11 +196,11 @@ TEST_CASE("ouc_laser3d: distance of a board in water, its air twin as truth", "[
     if (!load("ouc_laser3d/pair_airwater/points.json", data))
         return;
     Matx33d K;
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 9; i++)
         K.val[i] = data["K"][i/3][i%3];
     const Object object = objectOf(data["object_points_mm"]);
     std::map<int, Pixels> image;
-    for (int i = 1; i <= 4; ++i)
+    for (int i = 1; i <= 4; i++)
         image[i] = pixelsOf(data["image_points"]["cc_rect" + std::to_string(i) + ".png"]);
 
     // (water, air) images of the pair to learn from, then of the pair to test on
@@ -245,13 +245,13 @@ TankCamera tankCamera(const json& data, int number)
 {
     const json& c = data["cams"][std::to_string(number)];
     TankCamera camera;
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 9; i++)
         camera.K.val[i] = c["K_nominal"][i/3][i%3];
     camera.nominalNormal = Vec3d(c["normal_cam"][0], c["normal_cam"][1], c["normal_cam"][2]);
     camera.nominalDistance = c["d0_mm"];
     camera.pixels.assign(data["object_points_mm"].size(), Point2d(scenes::NaN, scenes::NaN));
     const Pixels seen = pixelsOf(c["image_points"]);
-    for (size_t i = 0; i < seen.size(); ++i)
+    for (size_t i = 0; i < seen.size(); i++)
         camera.pixels[c["point_index"][i].get<size_t>()] = seen[i];
     return camera;
 }
@@ -281,7 +281,7 @@ Placed fitPinhole(const TankCamera& tank, const Object& object, int flags)
 {
     std::vector<std::vector<Point3f>> objects(1);
     std::vector<std::vector<Point2f>> images(1);
-    for (size_t i = 0; i < object.size(); ++i)
+    for (size_t i = 0; i < object.size(); i++)
         if (!std::isnan(tank.pixels[i].x))
         {
             objects[0].emplace_back(object[i]);
@@ -312,13 +312,13 @@ double dotError(const Placed& a, const Placed& b, const TankCamera& tankA, const
     triangulateRefractive(a.camera, b.camera, R, T, tankA.pixels, tankB.pixels, points, status);
     double sum = 0;
     int count = 0, seenByBoth = 0;
-    for (size_t i = 0; i < object.size(); ++i)
+    for (size_t i = 0; i < object.size(); i++)
     {
         seenByBoth += !std::isnan(tankA.pixels[i].x) && !std::isnan(tankB.pixels[i].x);
         if (status[i] != REFRACT_OK)
             continue;
         sum += norm(Ra.t()*(Vec3d(points[i]) - a.tvec) - Vec3d(object[i]), NORM_L2SQR);
-        ++count;
+        count++;
     }
     CHECK(count == seenByBoth);
     return std::sqrt(sum/count);

@@ -86,7 +86,7 @@ TEST_CASE("Projection equals the 60-digit references", "[reference]")
             const double error = norm(result.pixel - vec2(p["pixel"]));
             CHECK(error < 1e-9);
             worst = std::max(worst, error);
-            ++points;
+            points++;
         }
     }
     CHECK(points > 400);
@@ -135,7 +135,7 @@ TEST_CASE("What no light connects has the status of total reflection", "[referen
             const Projected result = projectPoint(camera, vec3(X));
             CHECK(result.status == REFRACT_TOTAL_REFLECTION);
             CHECK((std::isnan(result.pixel[0]) && std::isnan(result.pixel[1])));
-            ++unseen;
+            unseen++;
         }
         for (const json& pixel : c["unseeing"])
         {
@@ -145,7 +145,7 @@ TEST_CASE("What no light connects has the status of total reflection", "[referen
             CHECK(status[0] == REFRACT_TOTAL_REFLECTION);
             CHECK(std::isnan(origin[0][0]));
             CHECK(std::isnan(direction[0][2]));
-            ++unseeing;
+            unseeing++;
         }
     }
     CHECK(unseen > 10);
@@ -174,7 +174,7 @@ TEST_CASE("Jacobians equal the 60-digit references", "[reference]")
         const bool none = c["window"]["name"] == "no window";
         REQUIRE(jacobian.rows == 2);
         REQUIRE(jacobian.cols == (int)posed["jacobian"][0].size());
-        for (int column = 0; column < jacobian.cols - (none ? 2 : 0); ++column)
+        for (int column = 0; column < jacobian.cols - (none ? 2 : 0); column++)
         {
             const Vec2d expected(posed["jacobian"][0][column], posed["jacobian"][1][column]);
             const Vec2d computed(jacobian.at<double>(0, column), jacobian.at<double>(1, column));

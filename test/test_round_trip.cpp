@@ -48,7 +48,7 @@ Pixels somePixels(const LensKind& lens, const GlassWindow& window, int count, Ra
     const double ratio = window.innerIndex/smallestIndex(window), most = largestAngle(window);
     std::vector<Vec3d> directions;
     Pixels result;
-    for (int i = 0; i < 20*count && (int)directions.size() < count; ++i)
+    for (int i = 0; i < 20*count && (int)directions.size() < count; i++)
     {
         const double angle = random.uniform(0, most), azimuth = random.uniform(0, 2*CV_PI);
         const Vec3d w = std::cos(angle)*n + std::sin(angle)*(std::cos(azimuth)*across + std::sin(azimuth)*third);
@@ -73,7 +73,7 @@ std::string roundTrip(const Ptr<RefractiveCamera>& camera, const Pixels& pixels,
     refractiveUnprojectPoints(pixels.pixel, origins, directions, camera, status);
     std::vector<Vec3d> points, known;
     std::vector<size_t> source;
-    for (size_t i = 0; i < pixels.pixel.size(); ++i)
+    for (size_t i = 0; i < pixels.pixel.size(); i++)
     {
         const bool reflected = pixels.sine[i] > 1;
         if (status[i] != (reflected ? REFRACT_TOTAL_REFLECTION : REFRACT_OK))
@@ -89,7 +89,7 @@ std::string roundTrip(const Ptr<RefractiveCamera>& camera, const Pixels& pixels,
     }
     std::vector<Vec2d> back;
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, back, statusBack);
-    for (size_t k = 0; k < points.size(); ++k)
+    for (size_t k = 0; k < points.size(); k++)
     {
         const size_t i = source[k];
         const double error = norm(back[k] - pixels.pixel[i]);
@@ -102,7 +102,7 @@ std::string roundTrip(const Ptr<RefractiveCamera>& camera, const Pixels& pixels,
 
     // The ray of a projected point passes the point.
     refractiveUnprojectPoints(back, origins, directions, camera, status);
-    for (size_t k = 0; k < points.size(); ++k)
+    for (size_t k = 0; k < points.size(); k++)
     {
         const Vec3d offset = points[k] - origins[k];
         worst.miss = std::max(worst.miss, norm(offset.cross(directions[k]))/norm(offset));
@@ -122,7 +122,7 @@ TEST_CASE("A million round trips up to 89.9 degrees, in every window and lens", 
     for (WindowKind kind : allWindows())
     {
         Worst worst;
-        for (int scene = 0; scene < 1400; ++scene)
+        for (int scene = 0; scene < 1400; scene++)
         {
             const LensKind& lens = allLenses()[scene % allLenses().size()];
             const GlassWindow window = makeWindow(kind, random, 60);

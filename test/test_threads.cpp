@@ -29,7 +29,7 @@ Answers ask(const Ptr<RefractiveCamera>& camera, const std::vector<Vec2d>& pixel
     Answers a;
     refractiveUnprojectPoints(pixels, a.origins, a.directions, camera, a.rayStatus);
     std::vector<Vec3d> points;
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
         points.push_back(a.origins[i] + 700*a.directions[i]);
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, a.pixels, a.pixelStatus);
     return a;
@@ -41,7 +41,7 @@ std::vector<Vec2d> somePixels(const LensKind& kind)
 {
     Random random;
     std::vector<Vec2d> pixels;
-    for (int i = 0; i < 100; ++i)
+    for (int i = 0; i < 100; i++)
         pixels.push_back(Vec2d(kind.K(0, 2) + random.uniform(-200, 200), kind.K(1, 2) + random.uniform(-200, 200)));
     return pixels;
 }
@@ -60,7 +60,7 @@ TEST_CASE("Many threads ask one camera while others change clones of it", "[came
     std::atomic<int> wrong(0);
     const auto work = [&](bool changes)
     {
-        for (int round = 0; round < 200; ++round)
+        for (int round = 0; round < 200; round++)
         {
             if (changes)
             {
@@ -76,7 +76,7 @@ TEST_CASE("Many threads ask one camera while others change clones of it", "[came
         }
     };
     std::vector<std::thread> threads;
-    for (int i = 0; i < 8; ++i)
+    for (int i = 0; i < 8; i++)
         threads.emplace_back(work, i % 4 == 3);
     for (std::thread& thread : threads)
         thread.join();
@@ -94,14 +94,14 @@ TEST_CASE("A camera's first use by two threads at once gives what one thread get
 
     // The moment in which a second thread would come too early is a microsecond long: one round in some 20000 hits it.
     int wrong = 0;
-    for (int round = 0; round < 10000; ++round)
+    for (int round = 0; round < 10000; round++)
     {
         const Ptr<RefractiveCamera> camera = makeCamera(kind, window);
         Answers answers[2];
         std::atomic<int> ready(0);
         const auto work = [&](int who)
         {
-            ++ready;
+            ready++;
             while (ready < 2)           // both at the same moment
                 std::this_thread::yield();
             answers[who] = ask(camera, pixels);

@@ -29,13 +29,13 @@ Scene makeScene(const LensKind& lens1, const LensKind& lens2, const GlassWindow&
     Rodrigues(Vec3d(0, -0.3, 0) + random.vector(0.05), s.R);
     s.T = -(s.R*(Vec3d(220, 0, -30) + random.vector(20)));
     std::vector<Vec3d> all;
-    for (int i = 0; i < 2*count; ++i)
+    for (int i = 0; i < 2*count; i++)
         all.push_back(Vec3d(random.uniform(-80, 80), random.uniform(-80, 80), random.uniform(500, 900)));
     std::vector<Vec2d> p1, p2;
     std::vector<uchar> st1, st2;
     refractiveProjectPoints(all, Vec3d(), Vec3d(), s.camera1, p1, st1);
     refractiveProjectPoints(all, s.R, s.T, s.camera2, p2, st2);
-    for (size_t i = 0; i < all.size() && (int)s.points.size() < count; ++i)
+    for (size_t i = 0; i < all.size() && (int)s.points.size() < count; i++)
         // The paper's lens has no end; far beyond any image its pixels are rounding only.
         if (st1[i] == REFRACT_OK && st2[i] == REFRACT_OK && norm(p1[i]) < 1e5 && norm(p2[i]) < 1e5)
         {
@@ -72,7 +72,7 @@ TEST_CASE("Perfect data gives the true point, every window and lens, both flags"
     Random random;
     double worst[2] = { 0, 0 };
     for (WindowKind kind : allWindows())
-        for (size_t l = 0; l < allLenses().size(); ++l)
+        for (size_t l = 0; l < allLenses().size(); l++)
         {
             const LensKind &lens1 = allLenses()[l], &lens2 = allLenses()[(l + 3)%allLenses().size()];
             const Scene s = makeScene(lens1, lens2, makeWindow(kind, random, 15), makeWindow(kind, random, 15), 100, random);
@@ -81,7 +81,7 @@ TEST_CASE("Perfect data gives the true point, every window and lens, both flags"
                 std::vector<Vec3d> found;
                 std::vector<uchar> status;
                 triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, found, status, flags);
-                for (size_t i = 0; i < s.points.size(); ++i)
+                for (size_t i = 0; i < s.points.size(); i++)
                 {
                     CAPTURE(name(kind), lens1.name, lens2.name, flags, i, s.points[i], s.pixels1[i], s.pixels2[i]);
                     REQUIRE(status[i] == REFRACT_OK);
@@ -102,9 +102,9 @@ TEST_CASE("No windows: cv::triangulatePoints on perfect data", "[triangulate]")
     const LensKind& lens = allLenses()[0];
     const Scene s = makeScene(lens, lens, GlassWindow(), GlassWindow(), 200, random);
     Matx34d P1 = Matx34d::eye(), P2;
-    for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 3; r++)
     {
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
             P2(r, c) = s.R(r, c);
         P2(r, 3) = s.T[r];
     }
@@ -112,7 +112,7 @@ TEST_CASE("No windows: cv::triangulatePoints on perfect data", "[triangulate]")
     triangulatePoints(lens.K*P1, lens.K*P2, s.pixels1, s.pixels2, homogeneous);
     std::vector<Vec3d> ours;
     triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, ours);
-    for (int i = 0; i < homogeneous.cols; ++i)
+    for (int i = 0; i < homogeneous.cols; i++)
     {
         const Vec4d h(homogeneous.at<double>(0, i), homogeneous.at<double>(1, i), homogeneous.at<double>(2, i),
                       homogeneous.at<double>(3, i));
@@ -131,7 +131,7 @@ TEST_CASE("With noise the optimal point has the least reprojection error", "[tri
     triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, optimal, status);
     triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, midpoint, noArray(), TRIANGULATE_MIDPOINT);
     int better = 0;
-    for (size_t i = 0; i < s.points.size(); ++i)
+    for (size_t i = 0; i < s.points.size(); i++)
     {
         if (status[i] == REFRACT_OUTSIDE_LENS_MODEL)    // noise may carry a pixel there
             continue;
@@ -140,7 +140,7 @@ TEST_CASE("With noise the optimal point has the least reprojection error", "[tri
         better += least < cost(s, midpoint[i], i)*(1 - 1e-6);
         REQUIRE(least <= cost(s, midpoint[i], i)*(1 + 1e-12));
         for (double step : { 1e-1, 1e-3 })
-            for (int c = 0; c < 3; ++c)
+            for (int c = 0; c < 3; c++)
                 for (int sign : { -1, 1 })
                 {
                     Vec3d X = optimal[i];
@@ -174,11 +174,11 @@ TEST_CASE("Rays that do not meet say why", "[triangulate]")
         std::vector<Vec3d> out;
         std::vector<uchar> status;
         triangulateRefractive(camera, camera, Matx33d::eye(), Vec3d(-100, 0, 0), pixels1, pixels2, out, status, flags);
-        for (size_t i = 0; i < pixels1.size(); ++i)
+        for (size_t i = 0; i < pixels1.size(); i++)
         {
             CAPTURE(i, flags);
             CHECK((int)status[i] == (int)cases[i].status);
-            for (int c = 0; c < 3; ++c)
+            for (int c = 0; c < 3; c++)
                 CHECK(std::isfinite(out[i][c]) == (cases[i].status == REFRACT_OK));
         }
     }
@@ -238,7 +238,7 @@ TEST_CASE("The predicted covariance is that of many noisy measurements", "[trian
     for (const Vec3d& X : found)
     {
         Vec3d e = axes*(X - truth.points[0]);
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
             e[c] /= std::sqrt(variances[c]);
         sampled += e*e.t()*(1./count);
     }
@@ -300,12 +300,12 @@ TEST_CASE("The calibration's covariance is carried to the point", "[triangulate]
         CAPTURE(m.which, m.parameter);
         CHECK(norm(C - expected) < 1e-5*norm(expected));
     }
-    for (int axis = 0; axis < 3; ++axis)        // T, then the rotation vector
+    for (int axis = 0; axis < 3; axis++)        // T, then the rotation vector
     {
         std::vector<Vec3d> ends[2], turned[2];
         Vec3d rvec;
         Rodrigues(s.R, rvec);
-        for (int k = 0; k < 2; ++k)
+        for (int k = 0; k < 2; k++)
         {
             Vec3d T = s.T, r = rvec;
             T[axis] += k ? -1e-3 : 1e-3;
@@ -330,7 +330,7 @@ TEST_CASE("A point without answer has no covariance", "[triangulate]")
     Mat points, status, C;
     triangulateRefractive(camera, camera, Matx33d::eye(), Vec3d(-100, 0, 0), std::vector<Vec2d>{ { 640, 480 }, { 640, 480 } },
                           std::vector<Vec2d>{ { 640, 480 }, { 600, 480 } }, points, status, 0, 0.1, noArray(), C);
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 9; i++)
     {
         CHECK(std::isnan(C.at<double>(0, i)));
         CHECK(std::isfinite(C.at<double>(1, i)));

@@ -22,7 +22,7 @@ Seen somePoints(const Ptr<RefractiveCamera>& camera, const LensKind& lens, doubl
 {
     const double near = 400, far = 2000;
     std::vector<Vec3d> points;
-    for (int i = 0; i < 500; ++i)
+    for (int i = 0; i < 500; i++)
     {
         const Vec3d d = randomNormal(random, std::min(degrees, 0.9*lens.halfField));
         points.push_back(random.uniform(near, far)/d[2]*d);
@@ -31,7 +31,7 @@ Seen somePoints(const Ptr<RefractiveCamera>& camera, const LensKind& lens, doubl
     std::vector<uchar> status;
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, status);
     Seen seen;
-    for (size_t i = 0; i < points.size(); ++i)
+    for (size_t i = 0; i < points.size(); i++)
         if (status[i] == REFRACT_OK)
         {
             seen.points.push_back(points[i]);
@@ -66,13 +66,13 @@ TEST_CASE("Undistorted points are the pinhole images of the scene points", "[und
         refractiveUndistortPoints(seen.pixels, plain, camera, seen.depths, noArray(), noArray(), status);
         refractiveUndistortPoints(seen.pixels, rectified, camera, seen.depths, R, P);
         Matx34d P34 = Matx34d::zeros();
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
                 P34(r, c) = P(r, c);
         P34(0, 3) = -12345;     // a baseline of stereoRectify's: not part of the correction
         refractiveUndistortPoints(seen.pixels, byVector, camera, seen.depths, rvec, P34);
         CHECK(largestDifference(rectified, byVector) < 1e-9);
-        for (size_t i = 0; i < seen.points.size(); ++i)
+        for (size_t i = 0; i < seen.points.size(); i++)
         {
             const Vec3d X = seen.points[i], Y = P*(R*X);
             REQUIRE(status[i] == REFRACT_OK);
@@ -95,7 +95,7 @@ TEST_CASE("Without window and depth only the lens is undone: converged cv::undis
     Random random;
     std::vector<Vec2d> pixels;
     std::vector<Vec3d> points;
-    for (int i = 0; i < 300; ++i)
+    for (int i = 0; i < 300; i++)
         points.push_back(randomNormal(random, std::min(30., kind.halfField)));
     refractiveProjectPoints(points, Vec3d(), Vec3d(), makeCamera(kind, GlassWindow()), pixels);
     std::vector<Vec2d> ours, theirs;
@@ -177,7 +177,7 @@ TEST_CASE("Depths with no point have a status", "[undistort]")
     CHECK(status[2] == REFRACT_BEHIND_WINDOW);
     CHECK((status[3] == REFRACT_NO_INTERSECTION || status[3] == REFRACT_BEHIND_WINDOW));
     CHECK(status[4] == REFRACT_OK);
-    for (int i = 1; i < 4; ++i)
+    for (int i = 1; i < 4; i++)
         CHECK((std::isnan(out[i][0]) && std::isnan(out[i][1])));
 
     const Vec3d halfTurn(0, CV_PI, 0);

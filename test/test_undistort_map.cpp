@@ -35,8 +35,8 @@ TEST_CASE("The map is the raw image of what each new pixel sees on the plane", "
     CAPTURE(plane);
     std::vector<Vec3d> points;
     std::vector<Vec2d> raw;
-    for (int y = 0; y < SIZE.height; ++y)
-        for (int x = 0; x < SIZE.width; ++x)
+    for (int y = 0; y < SIZE.height; y++)
+        for (int x = 0; x < SIZE.width; x++)
         {
             const Vec3d d = R.t()*(newK.inv()*Vec3d(x, y, 1));
             points.push_back(plane[3]/d.dot(Vec3d(plane[0], plane[1], plane[2]))*d);
@@ -51,8 +51,8 @@ TEST_CASE("The map is the raw image of what each new pixel sees on the plane", "
     for (const Vec3d& X : points)
         depths.push_back(X[2]);
     refractiveUndistortPoints(raw, back, K, D, pane(), depths, R, newK);
-    for (int y = 0, i = 0; y < SIZE.height; ++y)
-        for (int x = 0; x < SIZE.width; ++x, ++i)
+    for (int y = 0, i = 0; y < SIZE.height; y++)
+        for (int x = 0; x < SIZE.width; x++, i++)
             REQUIRE(norm(back[i] - Vec2d(x, y)) < 1e-8);
 }
 
@@ -124,8 +124,8 @@ TEST_CASE("Pixels with no answer map to (-1, -1)", "[undistort_map]")
     const auto countNone = [](const Mat& map)
     {
         int none = 0;
-        for (int y = 0; y < map.rows; ++y)
-            for (int x = 0; x < map.cols; ++x)
+        for (int y = 0; y < map.rows; y++)
+            for (int x = 0; x < map.cols; x++)
             {
                 const Vec2f p = map.at<Vec2f>(y, x);
                 REQUIRE((std::isfinite(p[0]) && std::isfinite(p[1])));
@@ -153,13 +153,13 @@ TEST_CASE("cv::remap with the map shows the plane as the pinhole would", "[undis
     const double depth = 500;
     const auto shade = [](const Vec3d& X) { return (float)(128 + 60*std::sin(X[0]/25) + 60*std::cos(X[1]/30)); };
     std::vector<Vec2d> grid;
-    for (int y = 0; y < SIZE.height; ++y)
-        for (int x = 0; x < SIZE.width; ++x)
+    for (int y = 0; y < SIZE.height; y++)
+        for (int x = 0; x < SIZE.width; x++)
             grid.push_back(Vec2d(x, y));
     std::vector<Vec3d> seen;
     refractivePointsOnPlane(grid, seen, K, D, pane(), Vec4d(0, 0, 1, depth));
     Mat raw(SIZE, CV_32F), expected(SIZE, CV_32F), corrected;
-    for (size_t i = 0; i < grid.size(); ++i)
+    for (size_t i = 0; i < grid.size(); i++)
     {
         raw.at<float>((int)i/SIZE.width, (int)i%SIZE.width) = shade(seen[i]);
         expected.at<float>((int)i/SIZE.width, (int)i%SIZE.width) = shade(depth*(newK.inv()*Vec3d(grid[i][0], grid[i][1], 1)));

@@ -144,7 +144,7 @@ bool anyMoved(const CheckResult& result)
 int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, double freedom)
 {
     for (int n = 2; n <= 10000; n++)
-        if (powerOf(window, count, freedom, o.falseAlarm, o.detect, 1. / n) >= CERTAIN)
+        if (powerOf(window, count, freedom, o.falseAlarm, o.detect, 1./n) >= CERTAIN)
             return n;
     return 0;
 }
@@ -168,7 +168,7 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis
         const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
-                      "cannot be said; ", window.camera + 1, o.detect, 100. * power) + more + "ask for a larger --detect";
+                      "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
     }
     return "";
 }
@@ -201,7 +201,7 @@ void print(const CheckResult& result, const Options& o, const CheckBasis& basis)
     for (const WindowCheck& w : result.windows)
         table.add({format("window of camera %d", w.camera + 1), format("%.4f", w.tiltDeg),
                    format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
-                   format("%.1f %%", 100. * powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)),
+                   format("%.1f %%", 100.*powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)),
                    w.moved ? "moved" : "no sign of it"});
     table.print(std::cout);
     std::cout << format("\nNoise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.\n",

@@ -50,11 +50,11 @@ std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& 
 double distanceTo(const Curve& curve, const Point2d& p)
 {
     double smallest = std::numeric_limits<double>::infinity();
-    for (size_t i = 1; i < curve.size(); ++i)
+    for (size_t i = 1; i < curve.size(); i++)
     {
         const Point2d side = curve[i] - curve[i - 1];
-        const double at = std::min(1., std::max(0., (p - curve[i - 1]).dot(side) / side.dot(side)));
-        smallest = std::min(smallest, cv::norm(p - curve[i - 1] - at * side));
+        const double at = std::min(1., std::max(0., (p - curve[i - 1]).dot(side)/side.dot(side)));
+        smallest = std::min(smallest, cv::norm(p - curve[i - 1] - at*side));
     }
     return smallest;
 }
@@ -63,16 +63,16 @@ void addRow(Table& table, const std::string& name, const std::vector<Curve>& cur
 {
     double squares = 0, largest = 0;
     int count = 0;
-    for (size_t i = 0; i < partners.size(); ++i)
+    for (size_t i = 0; i < partners.size(); i++)
     {
         const double distance = distanceTo(curves[i], partners[i]);
         if (!std::isfinite(distance))
             continue;
-        squares += distance * distance;
+        squares += distance*distance;
         largest = std::max(largest, distance);
-        ++count;
+        count++;
     }
-    table.add({name, std::to_string(count), format("%.3f", std::sqrt(squares / count)), format("%.3f", largest)});
+    table.add({name, std::to_string(count), format("%.3f", std::sqrt(squares/count)), format("%.3f", largest)});
 }
 
 //! Near and far end of the scene in the frame of camera 1.
@@ -99,7 +99,7 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
                 far = std::max(far, p.z);
             }
     if (far > 0)
-        return cv::Vec2d(0.92 * near, 1.08 * far);
+        return cv::Vec2d(0.92*near, 1.08*far);
     return cv::Vec2d(cv::norm(rig.T), std::numeric_limits<double>::infinity());
 }
 
@@ -125,7 +125,7 @@ std::vector<Point2d> detectIn(const cv::Mat& image, const std::string& path, con
 cv::Mat ground(const cv::Mat& grey)
 {
     cv::Mat colour;
-    cv::cvtColor(grey * 0.75, colour, cv::COLOR_GRAY2BGR);
+    cv::cvtColor(grey*0.75, colour, cv::COLOR_GRAY2BGR);
     return colour;
 }
 
@@ -134,13 +134,13 @@ cv::Mat draw(const cv::Mat& image1, const cv::Mat& image2, const std::vector<Poi
 {
     const int n = (int)points.size();
     cv::Mat left = ground(image1), right = ground(image2);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
     {
         drawRing(left, points[i], colourOf(i, n));
-        drawCurve(right, ignored[i], colourOf(i, n) * 0.8, 7.);
+        drawCurve(right, ignored[i], colourOf(i, n)*0.8, 7.);
         drawCurve(right, curves[i], colourOf(i, n));
     }
-    for (size_t i = 0; i < partners.size(); ++i)
+    for (size_t i = 0; i < partners.size(); i++)
         drawRing(right, partners[i], colourOf((int)i, n));
     drawCaption(left, "image 1: points", cv::Point(12, 26));
     drawCaption(right, "image 2: solid through the windows, dashed windows ignored", cv::Point(12, 26));

@@ -63,7 +63,7 @@ std::string listed(const std::vector<std::string>& names)
 {
     const size_t most = 8;
     std::string text;
-    for (size_t i = 0; i < std::min(most, names.size()); ++i)
+    for (size_t i = 0; i < std::min(most, names.size()); i++)
         text += (i ? ", '" : "'") + names[i] + "'";
     return names.size() > most ? text + format(" and %d more", (int)(names.size() - most)) : text;
 }
@@ -164,7 +164,7 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
     std::vector<std::string> names;
     int points = 0, all = 0, nowhere = 0;
     double worst = 0;
-    for (size_t i = 0; i < results.size(); ++i)
+    for (size_t i = 0; i < results.size(); i++)
     {
         const Measurement& m = results[i];
         all += (int)m.points.size();
@@ -172,7 +172,7 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
             continue;
         names.push_back(sights[i].stem);
         points += m.inconsistent();
-        for (size_t k = 0; k < m.points.size(); ++k)
+        for (size_t k = 0; k < m.points.size(); k++)
             nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
         worst = std::max(worst, m.worstMisfit);
     }
@@ -182,7 +182,7 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
     const std::string left = pairs ? "the two pixels of a point miss each other by up to %.3g px"
                                    : "the pose leaves residuals of up to %.3g px per coordinate";
     return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
-        + format(left.c_str(), pairs ? std::sqrt(2.) * worst : worst) + " (" + listed(names) + "; status 9"
+        + format(left.c_str(), pairs ? std::sqrt(2.)*worst : worst) + " (" + listed(names) + "; status 9"
         + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere)
            : pairs ? ", large sx, sy, sz" : ", no sx, sy, sz")
         + "). "
@@ -199,7 +199,7 @@ bool mostContradict(const std::vector<Measurement>& results)
         all += m.seenPoints();
         wrong += m.inconsistent();
     }
-    return 2 * wrong > all;
+    return 2*wrong > all;
 }
 
 //! What lengths say that are far from the target's, or empty.
@@ -212,12 +212,12 @@ std::string wrongLengths(const Target& target, const std::vector<Measurement>& r
         for (const double ratio : lengthRatios(target, m.points))
         {
             sum += ratio;
-            ++count;
+            count++;
         }
-    if (!count || std::abs(sum / count - 1) <= FAR_OFF)
+    if (!count || std::abs(sum/count - 1) <= FAR_OFF)
         return "";
     return format("the distances between neighbouring points are on average %.3g times those of the target: is --square=%g "
-                  "right, in the unit of the calibration, and are images and calibration of the same cameras?", sum / count,
+                  "right, in the unit of the calibration, and are images and calibration of the same cameras?", sum/count,
                   target.square());
 }
 
@@ -227,8 +227,8 @@ void sayNoisier(const Options& options, const Calibration& calibration, const st
     const double sigma = pixelSigma(options, calibration), few = 3.;
     std::vector<std::string> names;
     double worst = 0;
-    for (size_t i = 0; i < results.size(); ++i)
-        if (!results[i].inconsistent() && results[i].noise > few * sigma)
+    for (size_t i = 0; i < results.size(); i++)
+        if (!results[i].inconsistent() && results[i].noise > few*sigma)
         {
             names.push_back(sights[i].stem);
             worst = std::max(worst, results[i].noise);
@@ -266,8 +266,8 @@ std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measuremen
     std::ostringstream csv;
     csv.precision(12);
     csv << "image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\n";
-    for (size_t k = 0; k < sights.size(); ++k)
-        for (size_t i = 0; i < sights[k].pixels1.size(); ++i)
+    for (size_t k = 0; k < sights.size(); k++)
+        for (size_t i = 0; i < sights[k].pixels1.size(); i++)
         {
             const Measurement& m = measurements[k];
             const cv::Point2d second = m.pixels2.empty() ? cv::Point2d(nan, nan) : m.pixels2[i];
@@ -289,12 +289,12 @@ std::vector<std::string> rowOf(const std::string& name, const Target& target, co
     {
         for (const double error : lengthErrors(target, m.points))
         {
-            squares += error * error;
+            squares += error*error;
             sum += error;
             largest = std::max(largest, std::abs(error));
-            ++lengths;
+            lengths++;
         }
-        for (size_t i = 0; i < m.points.size(); ++i)
+        for (size_t i = 0; i < m.points.size(); i++)
             if (m.points[i].z == m.points[i].z)
             {
                 near = std::min(near, m.points[i].z);
@@ -305,9 +305,9 @@ std::vector<std::string> rowOf(const std::string& name, const Target& target, co
         points += (int)m.points.size();
     }
     std::vector<std::string> row = {name, format("%d of %d", answers, points), format("%.1f ... %.1f", near, far),
-                                    std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma / answers)};
+                                    std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma/answers)};
     if (lengthsMeasured)
-        row.insert(row.end(), {format("%.4f", std::sqrt(squares / lengths)), format("%+.4f", sum / lengths),
+        row.insert(row.end(), {format("%.4f", std::sqrt(squares/lengths)), format("%+.4f", sum/lengths),
                                format("%.4f", largest)});
     return row;
 }
@@ -335,7 +335,7 @@ void printTable(const Options& options, const Calibration& calibration, const st
     if (options.compare)
         table.add(rowOf("glass ignored", target, measureAll(options, withoutWindows(calibration), target, sights),
                         lengthsMeasured));
-    for (size_t i = 0; i < others.size(); ++i)
+    for (size_t i = 0; i < others.size(); i++)
         table.add(rowOf(stemOf(options.compareWith[i]), target, measureAll(options, others[i], target, sights), lengthsMeasured));
     const bool alone = !options.compare && options.compareWith.empty();
     table.add(rowOf(alone ? "measured" : "with the window", target, results, lengthsMeasured));

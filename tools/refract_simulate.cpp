@@ -51,7 +51,7 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
 {
     std::vector<Job> jobs;
     for (const ImageSet& set : scene.sets)
-        for (int camera = 0; camera < (int)scene.cameras.cameras.size(); ++camera)
+        for (int camera = 0; camera < (int)scene.cameras.cameras.size(); camera++)
             for (const NamedPose& pose : set.poses)
             {
                 const std::string folder = set.name + (scene.cameras.stereo() ? std::to_string(camera + 1) : "");
@@ -87,7 +87,7 @@ void writeTruth(const std::string& path, const Scene& scene, const Target& targe
     fs << "}";
     if (scene.cameras.stereo())
     {
-        for (int i = 0; i < 2; ++i)
+        for (int i = 0; i < 2; i++)
         {
             fs << "camera" + std::to_string(i + 1) << "{";
             scene.cameras.cameras[i].camera->write(fs);
@@ -114,11 +114,11 @@ void renderAll(const std::string& folder, const Scene& scene, const Target& targ
                const std::vector<int>& parameters, bool quiet)
 {
     Progress progress("rendering", (int)jobs.size(), quiet);
-    for (size_t i = 0; i < jobs.size(); ++i)
+    for (size_t i = 0; i < jobs.size(); i++)
     {
         progress.at(jobs[i].path);
         const cv::Mat image = render(target, poseOf(scene, jobs[i]), cameraOf(scene, jobs[i]), scene.exposure,
-                                     scene.seed * 1000003 + i + 1);
+                                     scene.seed*1000003 + i + 1);
         writeImage(folder + "/" + jobs[i].path, image, parameters);
         progress.step();
     }

@@ -58,7 +58,7 @@ std::map<std::string, std::string> listImages(const Options& options)
     for (const std::string& source : options.sources)
         for (const std::string& path : expandGlob(source))
         {
-            const std::string output = (fs::path(options.folder) / fs::path(path).filename()).string();
+            const std::string output = (fs::path(options.folder)/fs::path(path).filename()).string();
             if (inputOf.count(output) && inputOf[output] != path)
                 throw Failure("'" + path + "' and '" + inputOf[output] + "' have the same name: correct them one by one");
             inputOf[output] = path;

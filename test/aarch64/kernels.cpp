@@ -22,7 +22,7 @@ struct Points
 
 void print(const std::string& name, const Array& values)
 {
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; i++)
         std::printf("%s[%d] %.17g\n", name.c_str(), i, values[i]);
 }
 
@@ -49,7 +49,7 @@ Medium medium(double height, double index, bool isScene)
 Points scene(const Kernels& kernels)
 {
     std::array<float, 3*N> interleaved;
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; i++)
     {
         interleaved[3*i] = 17.f*i - 165;
         interleaved[3*i + 1] = 13.f*((5*i) % N) - 124;
@@ -62,7 +62,7 @@ Points scene(const Kernels& kernels)
 
 void normalize(Points& directions)
 {
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; i++)
     {
         double &x = directions.x[i], &y = directions.y[i], &z = directions.z[i];
         const double length = std::sqrt(x*x + y*y + z*z);
@@ -95,7 +95,7 @@ Points throughWindow(const Kernels& kernels, const Points& points)
         const std::string name = "behind" + std::to_string(missing);
         print(name, kernels.layers.solveIn(stack, N, behind.x.data(), behind.y.data(), behind.z.data(), nullptr,
                                     outer.x.data(), outer.y.data(), outer.z.data(), nullptr));
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < N; i++)
             print(name + "[" + std::to_string(i) + "]", !std::isnan(outer.x[i]));
     }
     return inner;

@@ -38,7 +38,7 @@ template<typename Point>
 void fill(std::vector<Point>& points, const Mat& m)
 {
     points.resize(m.rows);
-    for (int i = 0; i < m.rows; ++i)
+    for (int i = 0; i < m.rows; i++)
         points[i] = m.at<Point>(i);
 }
 
@@ -67,7 +67,7 @@ void Input::layOut(Bytes& bytes, const Mat& plain)
     case 5: m.mats.assign(2, plain); array_ = cv::_InputArray(m.mats); return;
     case 6: if (plain.total() > 1 && plain.total() % 2 == 0 && plain.isContinuous())
             {
-                const int sizes[] = {2, (int)plain.total() / 2, 1};
+                const int sizes[] = {2, (int)plain.total()/2, 1};
                 m.mat = Mat(3, sizes, plain.type(), plain.data).clone();
             }
             break;
@@ -79,8 +79,8 @@ void Input::layOut(Bytes& bytes, const Mat& plain)
 Input Input::items(Bytes& bytes, int count, int channels, const std::function<double(int)>& number)
 {
     Mat m(count, 1, CV_64FC(channels));
-    for (int i = 0; i < count; ++i)
-        for (int c = 0; c < channels; ++c)
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < channels; c++)
             m.ptr<double>(i)[c] = number(c);
     m = withType(bytes, m);
     if (count > 0)
@@ -91,7 +91,7 @@ Input Input::items(Bytes& bytes, int count, int channels, const std::function<do
         case 2: m = m.reshape(1, count); break;
         case 3: m = m.reshape(1, 1); break;
         case 4: m = Mat(m.reshape(1, count).t()); break;
-        case 5: m = m.reshape(1, count * channels); break;
+        case 5: m = m.reshape(1, count*channels); break;
         }
     Input result;
     result.layOut(bytes, m);
@@ -101,8 +101,8 @@ Input Input::items(Bytes& bytes, int count, int channels, const std::function<do
 Input Input::matrix(Bytes& bytes, int rows, int columns, const std::function<double(int, int)>& number)
 {
     Mat m(rows, columns, CV_64F);
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
+    for (int row = 0; row < rows; row++)
+        for (int column = 0; column < columns; column++)
             m.at<double>(row, column) = number(row, column);
     m = withType(bytes, m);
     if (bytes.rarely() && !m.empty())
@@ -155,7 +155,7 @@ GlassWindow windowOf(Bytes& bytes)
         window.normal = cv::Vec3d(bytes.number(), bytes.number(), bytes.number());
     window.distance = bytes.about(0, 200);
     const double thickness = bytes.about(0, 40), index = bytes.about(1, 2);
-    for (int i = 0; i < layers; ++i)
+    for (int i = 0; i < layers; i++)
     {
         window.thickness.push_back(layers > 8 ? thickness : bytes.about(0, 40));
         window.index.push_back(layers > 8 ? index : bytes.about(1, 2));
@@ -188,10 +188,10 @@ Input intrinsicsOf(Bytes& bytes, bool skew)
 {
     const double f = bytes.about(300, 3000), aspect = bytes.about(0.9, 1.1), cx = bytes.about(0, 1500), cy = bytes.about(0, 1000);
     const double alpha = skew ? bytes.about(-5, 5) : bytes.rarely() ? bytes.number() : 0.;
-    const double K[] = {f, alpha, cx, 0, f * aspect, cy, 0, 0, 1};
+    const double K[] = {f, alpha, cx, 0, f*aspect, cy, 0, 0, 1};
     const int broken = bytes.rarely() ? bytes.below(9) : -1;
     const double instead = broken < 0 ? 0. : bytes.number();
-    return Input::matrix(bytes, 3, 3, [&](int r, int c) { return 3 * r + c == broken ? instead : K[3 * r + c]; });
+    return Input::matrix(bytes, 3, 3, [&](int r, int c) { return 3*r + c == broken ? instead : K[3*r + c]; });
 }
 
 } // namespace
@@ -257,7 +257,7 @@ Input rotation(Bytes& bytes, double size)
         cv::Rodrigues(rvec, R);
     const int broken = bytes.rarely() ? bytes.below(9) : -1;
     const double instead = broken < 0 ? 0. : bytes.number();
-    return Input::matrix(bytes, 3, 3, [&](int r, int c) { return 3 * r + c == broken ? instead : R(r, c); });
+    return Input::matrix(bytes, 3, 3, [&](int r, int c) { return 3*r + c == broken ? instead : R(r, c); });
 }
 
 Input translation(Bytes& bytes, double size, double z)

@@ -16,7 +16,7 @@ class Bytes
 public:
     Bytes(const uint8_t* data, size_t size) : at_(data), end_(data + size) {}
 
-    int below(int n) { return n > 256 ? (byte() + 256 * byte()) % n : byte() % n; }
+    int below(int n) { return n > 256 ? (byte() + 256*byte()) % n : byte() % n; }
     bool maybe() { return byte() % 2 == 1; }
     //! One byte in 16: what a sensible caller would not do.
     bool rarely() { return byte() >= 240; }
@@ -29,9 +29,9 @@ public:
                                          1.7e308, 0.5, 2., 3., 90., 255., 65536., 2147483648., 1e18};
         const int kind = byte();
         if (kind < 128)
-            return special[kind % (sizeof(special) / sizeof(*special))];
+            return special[kind % (sizeof(special)/sizeof(*special))];
         uint64_t bits = 0;
-        for (int i = 0; i < 8; ++i)
+        for (int i = 0; i < 8; i++)
             bits = bits << 8 | (uint64_t)byte();
         double value;
         std::memcpy(&value, &bits, sizeof(value));
@@ -43,8 +43,8 @@ public:
     {
         if (rarely())
             return number();
-        const int steps = at_ == end_ ? 32768 : byte() + 256 * byte();
-        return low + (high - low) * steps / 65535.;
+        const int steps = at_ == end_ ? 32768 : byte() + 256*byte();
+        return low + (high - low)*steps/65535.;
     }
 
     std::string rest()

@@ -109,7 +109,7 @@ void tryRig(Bytes& bytes)
     std::vector<std::vector<Mat>> through, direct;
     const bool pairs = bytes.maybe();
     std::vector<int> windows;
-    for (size_t c = 0; c < scene.cameras.size(); ++c)
+    for (size_t c = 0; c < scene.cameras.size(); c++)
     {
         through.push_back(arraysOf(bytes, scene.refracted[c]));
         if (pairs)
@@ -121,8 +121,8 @@ void tryRig(Bytes& bytes)
     if (bytes.maybe())
     {
         flags |= GLASS_USE_POSES;
-        for (size_t v = 0; v < objects.size(); ++v)
-            poseCovariances.push_back(bytes.maybe() ? Mat(Mat::eye(6, 6, CV_64F) * bytes.about(0, 1e-2)) : Mat());
+        for (size_t v = 0; v < objects.size(); v++)
+            poseCovariances.push_back(bytes.maybe() ? Mat(Mat::eye(6, 6, CV_64F)*bytes.about(0, 1e-2)) : Mat());
     }
     if (bytes.rarely())
         scene.cameras[0].release();

@@ -56,9 +56,9 @@ public:
         for (size_t at = one.find("\n  "); at != std::string::npos; at = one.find("\n  ", at))
             one.erase(at + 1, 2);
         for (const char* image : {"a", "b"})
-            for (int i = 0; i < 9; ++i)
-                vnl += cv::format("%s.png %d %d\n", image, 8 + 5 * (i % 3), 6 + 4 * (i / 3));
-        for (int i = 0; i < 3; ++i)
+            for (int i = 0; i < 9; i++)
+                vnl += cv::format("%s.png %d %d\n", image, 8 + 5*(i % 3), 6 + 4*(i/3));
+        for (int i = 0; i < 3; i++)
             points += cv::format("%d,%d\n", 8 + i, 9);
         files_ = {{"pair.yml", pair}, {"one.yml", head + one}, {"rig.yml", pair + RENDERING}, {"corners.vnl", vnl},
                   {"points.txt", points}};
@@ -92,7 +92,7 @@ private:
             const auto found = times_.find(entry.path().filename().string());
             if (found == times_.end() || !entry.is_regular_file() || entry.last_write_time() != found->second)
                 return false;
-            ++count;
+            count++;
         }
         return count == files_.size();
     }

@@ -36,7 +36,7 @@ void tryEpilines(Bytes& bytes)
         computeRefractiveEpilines(points, image, camera1, camera2, pose.R, pose.T, depths, lines, tolerance, status);
     }
     promise(lines.size() == status.total(), "one line and one status for each point");
-    for (size_t i = 0; i < lines.size(); ++i)
+    for (size_t i = 0; i < lines.size(); i++)
     {
         promise(lines[i].empty() == (status.at<uchar>((int)i) != REFRACT_OK), "status 0: the line is not empty");
         promise(lines[i].empty() || countNaN(lines[i], 0, lines[i].rows) == 0, "a line holds no NaN");
@@ -82,7 +82,7 @@ void tryCovariance(Bytes& bytes)
                           bytes.about(0.01, 1.), calibration, covariance);
     checkAnswer(points3D.mat(), status.mat());
     const cv::Mat s = status.mat(), C = covariance.mat();
-    for (int i = 0; i < (int)s.total() && !C.empty(); ++i)
+    for (int i = 0; i < (int)s.total() && !C.empty(); i++)
         if (s.at<uchar>(i) != REFRACT_OK)
             promise(allNaN(C, i), "the covariance of no answer is NaN");
 }

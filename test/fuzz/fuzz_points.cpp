@@ -28,9 +28,9 @@ void tryJacobian(Bytes& bytes)
     refractiveProjectPoints(points, rvec, tvec, cameraOf(bytes), imagePoints, status, jacobian);
     checkAnswer(imagePoints.mat(), status.mat());
     const cv::Mat J = jacobian.mat(), s = status.mat();
-    for (int i = 0; i < (int)s.total() && 2 * i + 1 < J.rows; ++i)
+    for (int i = 0; i < (int)s.total() && 2*i + 1 < J.rows; i++)
         if (s.at<uchar>(i) != REFRACT_OK)
-            promise(allNaN(J, 2 * i) && allNaN(J, 2 * i + 1), "derivatives are NaN where status is not 0");
+            promise(allNaN(J, 2*i) && allNaN(J, 2*i + 1), "derivatives are NaN where status is not 0");
 }
 
 void tryUnproject(Bytes& bytes)
@@ -47,7 +47,7 @@ void tryUnproject(Bytes& bytes)
     const cv::Mat s = status.mat(), d = directions.mat();
     checkAnswer(origins.mat(), s);
     checkAnswer(d, s);
-    for (int i = 0; i < (int)s.total() && !d.empty(); ++i)
+    for (int i = 0; i < (int)s.total() && !d.empty(); i++)
         if (s.at<uchar>(i) == REFRACT_OK)
             promise(std::abs(cv::norm(d.row(i)) - 1) < (d.depth() == CV_32F ? 1e-5 : 1e-9), "directions have unit length");
 }

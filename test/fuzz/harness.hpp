@@ -41,7 +41,7 @@ inline int countNaN(const cv::Mat& answer, int begin, int end)
 
 inline bool allNaN(const cv::Mat& answer, int i)
 {
-    return countNaN(answer, i, i + 1) == answer.cols * answer.channels();
+    return countNaN(answer, i, i + 1) == answer.cols*answer.channels();
 }
 
 /* An answer holds no NaN where its status is 0, else it is NaN in every coordinate. What is beyond the range of its type is
@@ -51,7 +51,7 @@ inline void checkAnswer(const cv::Mat& answer, const cv::Mat& status)
     if (answer.empty() || status.empty())
         return;
     promise(answer.rows == (int)status.total(), "one status for each item of the answer");
-    for (int i = 0; i < answer.rows; ++i)
+    for (int i = 0; i < answer.rows; i++)
         if (status.at<uchar>(i) == cv::refract::REFRACT_OK)
             promise(countNaN(answer, i, i + 1) == 0, "status 0: no NaN");
         else

@@ -12,7 +12,7 @@ class Scratch : public TemporaryFolder
 public:
     std::string write(const std::string& name, const std::string& content) const
     {
-        const std::string path = *this / name;
+        const std::string path = *this/name;
         std::ofstream(path, std::ios::binary) << content;
         return path;
     }

@@ -30,7 +30,7 @@ inline std::vector<cv::Point3d> board(int columns, int rows, double square = 39.
     std::vector<cv::Point3d> points;
     for (int row = 0; row < rows; row++)
         for (int column = 0; column < columns; column++)
-            points.emplace_back(square * (column - 0.5 * (columns - 1)), square * (row - 0.5 * (rows - 1)), 0);
+            points.emplace_back(square*(column - 0.5*(columns - 1)), square*(row - 0.5*(rows - 1)), 0);
     return points;
 }
 

@@ -30,7 +30,7 @@ protected:
     void makePoints(int count)
     {
         const int columns = cvRound(std::sqrt((double)count));
-        for (int i = 0; i < count; ++i)
+        for (int i = 0; i < count; i++)
             points.push_back(Point3d(160.*(i % columns)/columns - 80, 160.*(i/columns)/columns - 80, 600));
         refractiveProjectPoints(points, Vec3d(), Vec3d(), camera1, pixels1);
         refractiveProjectPoints(points, rvec, tvec, camera2, pixels2);

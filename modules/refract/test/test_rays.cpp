@@ -12,7 +12,7 @@ TEST(Refract_Project, without_window_is_a_pinhole)
 {
     std::vector<Point2d> pixels;
     refractiveProjectPoints(scenePoints(), Vec3d(), Vec3d(), K1(), noArray(), GlassWindow(), pixels);
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
     {
         const Point3d X = scenePoints()[i];
         EXPECT_NEAR(K1()(0, 0)*X.x/X.z + K1()(0, 2), pixels[i].x, 1e-9);
@@ -46,7 +46,7 @@ TEST(Refract_Project, both_overloads_and_both_depths_agree)
     refractiveProjectPoints(Mat(scenePoints()), R(), T(), camera2(), second);
     const std::vector<Point2d> third = project(scenePoints(), camera2(), R(), T());
     ASSERT_EQ(first.size(), second.size());
-    for (size_t i = 0; i < first.size(); ++i)
+    for (size_t i = 0; i < first.size(); i++)
     {
         EXPECT_EQ(first[i], third[i]);
         EXPECT_EQ(Point2f(first[i]), second[i]);
@@ -61,7 +61,7 @@ TEST(Refract_Project, says_why_a_point_has_no_image)
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera1(), pixels, status);
     EXPECT_EQ(std::vector<uchar>({ REFRACT_OK, REFRACT_BEHIND_WINDOW, REFRACT_NOT_FINITE }), status);
     EXPECT_FALSE(cvIsNaN(pixels[0].x) || cvIsNaN(pixels[0].y));
-    for (int i = 1; i < 3; ++i)
+    for (int i = 1; i < 3; i++)
         EXPECT_TRUE(cvIsNaN(pixels[i].x) && cvIsNaN(pixels[i].y));
 
     refractiveProjectPoints(std::vector<Point3d>(), Vec3d(), Vec3d(), camera1(), pixels, status);
@@ -84,7 +84,7 @@ TEST(Refract_Project, jacobian_is_the_difference_quotient)
     ASSERT_EQ(Size(6 + 8 + 8, 2), jacobian.size());
 
     const double step = 1e-4;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; k++)
     {
         const Vec3d d(k == 0 ? step : 0, k == 1 ? step : 0, k == 2 ? step : 0);
         std::vector<Point2d> plus, minus;
@@ -105,7 +105,7 @@ TEST(Refract_Unproject, ray_passes_through_the_point)
     refractiveUnprojectPoints(pixels, origins2, directions2, K1(), D1(), window1());
     EXPECT_EQ(origins, origins2);
     EXPECT_EQ(directions, directions2);
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
     {
         const Vec3d o(origins[i]), d(directions[i]), X(scenePoints()[i]);
         EXPECT_NEAR(1, cv::norm(d), 1e-14);

@@ -38,7 +38,7 @@ inline Vec3d T() { return Vec3d(-180, 2, 25); }
 inline std::vector<Point3d> board()
 {
     std::vector<Point3d> points;
-    for (int i = 0; i < 30; ++i)
+    for (int i = 0; i < 30; i++)
         points.push_back(Point3d(39*(i % 6) - 97.5, 39*(i/6) - 78., 0));
     return points;
 }
@@ -47,7 +47,7 @@ inline std::vector<Point3d> board()
 inline std::vector<Point3d> scenePoints()
 {
     std::vector<Point3d> points = board();
-    for (size_t i = 0; i < points.size(); ++i)
+    for (size_t i = 0; i < points.size(); i++)
         points[i] = Point3d(0.8*points[i].x, 0.8*points[i].y, 600 + 5.*(i % 9) - 20);
     return points;
 }
@@ -66,7 +66,7 @@ inline std::vector<Point2d> project(const std::vector<Point3d>& points, const Pt
 inline PixelViews views(const Ptr<RefractiveCamera>& camera, bool second = false)
 {
     PixelViews result;
-    for (int i = 0; i < 5; ++i)
+    for (int i = 0; i < 5; i++)
     {
         const Matx33d r = rotation(0.3 - 0.15*i, 0.25*(i % 3) - 0.2);
         const Vec3d t(10*(i % 2), 8*i - 15, 590 + 10*i);

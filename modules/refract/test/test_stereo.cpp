@@ -11,7 +11,7 @@ using namespace scene;
 double distanceToLine(const std::vector<Point2d>& line, const Point2d& p)
 {
     double nearest = INF;
-    for (size_t i = 1; i < line.size(); ++i)
+    for (size_t i = 1; i < line.size(); i++)
     {
         const Point2d a = line[i - 1], ab = line[i] - a;
         const double t = std::min(1., std::max(0., (p - a).dot(ab)/ab.dot(ab)));
@@ -31,7 +31,7 @@ TEST(Refract_Epilines, partner_lies_on_the_line)
                               same);
     EXPECT_EQ(lines, same);
     ASSERT_EQ(pixels1.size(), lines.size());
-    for (size_t i = 0; i < lines.size(); ++i)
+    for (size_t i = 0; i < lines.size(); i++)
     {
         EXPECT_LT(distanceToLine(lines[i], pixels2[i]), 0.0105);
         EXPECT_LT(distanceToLine(back[i], pixels1[i]), 0.0105);
@@ -63,7 +63,7 @@ TEST(Refract_Triangulate, finds_the_points)
     triangulateRefractive(camera1(), camera2(), R(), T(), pixels1, pixels2, optimal);
     triangulateRefractive(K1(), D1(), window1(), K2(), D2(), window2(), R(), T(), pixels1, pixels2, midpoint, noArray(),
                           TRIANGULATE_MIDPOINT);
-    for (size_t i = 0; i < optimal.size(); ++i)
+    for (size_t i = 0; i < optimal.size(); i++)
     {
         EXPECT_NEAR(0, cv::norm(optimal[i] - scenePoints()[i]), 1e-6);
         EXPECT_NEAR(0, cv::norm(midpoint[i] - scenePoints()[i]), 1e-6);
@@ -79,7 +79,7 @@ TEST(Refract_Triangulate, covariance_is_the_spread)
     const double sigma = 0.1;
     RNG& rng = theRNG();
     std::vector<Point2d> pixels1, pixels2;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
     {
         pixels1.push_back(pixel1 + Point2d(rng.gaussian(sigma), rng.gaussian(sigma)));
         pixels2.push_back(pixel2 + Point2d(rng.gaussian(sigma), rng.gaussian(sigma)));

@@ -18,7 +18,7 @@ TEST(Refract_UndistortPoints, finds_the_pinhole_image)
     std::vector<Point2d> normalized, pixels;
     refractiveUndistortPoints(raw, normalized, camera1(), depth);
     refractiveUndistortPoints(raw, pixels, K1(), D1(), window1(), depth, Vec3d(), K2());
-    for (size_t i = 0; i < raw.size(); ++i)
+    for (size_t i = 0; i < raw.size(); i++)
     {
         const Point3d X = scenePoints()[i];
         EXPECT_NEAR(X.x/X.z, normalized[i].x, 1e-12);
@@ -40,7 +40,7 @@ TEST(Refract_UndistortPoints, refuses_what_is_no_depth)
     std::vector<double> depths(raw.size(), 600.);
     depths[3] = 10;                         // inside the window
     refractiveUndistortPoints(raw, points, camera1(), depths, noArray(), noArray(), status);
-    for (size_t i = 0; i < raw.size(); ++i)
+    for (size_t i = 0; i < raw.size(); i++)
     {
         EXPECT_EQ(i == 3, status[i] != REFRACT_OK);
         EXPECT_EQ(i == 3, cvIsNaN(points[i].x) != 0);
@@ -92,7 +92,7 @@ TEST(Refract_PointsOnPlane, finds_the_points)
     refractivePointsOnPlane(raw, points, camera1(), Vec4d(0.2, -0.1, 1, 600));
     refractivePointsOnPlane(raw, points2, K1(), D1(), window1(), Vec4d(0.2, -0.1, 1, 600));
     EXPECT_EQ(points, points2);
-    for (size_t i = 0; i < points.size(); ++i)
+    for (size_t i = 0; i < points.size(); i++)
         EXPECT_NEAR(0, cv::norm(points[i] - plane[i]), 1e-8);
 }
 

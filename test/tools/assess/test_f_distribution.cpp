@@ -8,7 +8,7 @@ TEST_CASE("The tail of F agrees with its tables", "[f_distribution]")
     CHECK(upperTailF(1, 10, 4.1028) == Approx(0.05).epsilon(1e-4));
     CHECK(upperTailF(2, 20, 2.8661) == Approx(0.05).epsilon(1e-4));
     CHECK(upperTailF(5, 30, 2.9791) == Approx(0.01).epsilon(1e-3));
-    CHECK(upperTailF(1, 1e8, 9.2103 / 2) == Approx(0.01).epsilon(1e-4));       // chi-square
+    CHECK(upperTailF(1, 1e8, 9.2103/2) == Approx(0.01).epsilon(1e-4));       // chi-square
     CHECK(upperTailF(500, 2000, 1.) == Approx(0.5).epsilon(0.05));
     CHECK(upperTailF(3, 10, 0.) == 1.);
     CHECK(upperTailF(600, 1e8, 1e6) == 0.);
@@ -30,9 +30,9 @@ TEST_CASE("The tail of the noncentral F agrees with a simulation", "[f_distribut
         for (int k = 0; k < v; k++)
             chi += std::pow(random.normal(1), 2);
         const double a = random.normal(1) + std::sqrt(lambda), b = random.normal(1);
-        above += 0.5 * (a * a + b * b) > x * chi / v;
+        above += 0.5*(a*a + b*b) > x*chi/v;
     }
-    CHECK(upperTailNoncentralF2(v, lambda, x) == Approx((double)above / trials).margin(0.01));
+    CHECK(upperTailNoncentralF2(v, lambda, x) == Approx((double)above/trials).margin(0.01));
     CHECK(upperTailNoncentralF2(v, 0., x) == Approx(upperTailF(1, v, x)));
     CHECK(upperTailNoncentralF2(1e8, 1e4, x) == Approx(1.));
 }

@@ -75,7 +75,7 @@ RigModel trueRig(const Setup& setup)
     if (setup.shared())
     {
         second = rig.cameras[0]->window();
-        second.normal = rig.R * second.normal;
+        second.normal = rig.R*second.normal;
         second.distance += second.normal.dot(rig.T);
         if (second.distance < 20.)
         {
@@ -93,7 +93,7 @@ void displaceSome(std::vector<Point2d>& pixels, double part, scenes::Random& ran
 {
     for (Point2d& p : pixels)
         if (random.uniform(0, 1) < part)
-            p += random.uniform(3, 20) * Point2d(std::cos(random.uniform(0, 7)), std::sin(random.uniform(0, 7)));
+            p += random.uniform(3, 20)*Point2d(std::cos(random.uniform(0, 7)), std::sin(random.uniform(0, 7)));
 }
 
 const Target& renderedBoard()
@@ -125,8 +125,8 @@ BoardPose randomPose(const std::vector<Point3d>& object, scenes::Random& random)
     const double z = random.uniform(500, 900);
     Matx33d R;
     Rodrigues(pose.rvec, R);
-    const Vec3d middle = 0.5 * (Vec3d(object.front()) + Vec3d(object.back()));
-    pose.tvec = Vec3d(random.uniform(-0.12, 0.12) * z, random.uniform(-0.1, 0.1) * z, z) - R * middle;
+    const Vec3d middle = 0.5*(Vec3d(object.front()) + Vec3d(object.back()));
+    pose.tvec = Vec3d(random.uniform(-0.12, 0.12)*z, random.uniform(-0.1, 0.1)*z, z) - R*middle;
     return pose;
 }
 
@@ -275,15 +275,15 @@ struct Ratio
     {
         if (!(deviation > 0.))
             return;
-        errors += error * error;
-        stated += deviation * deviation;
-        each.push_back(std::abs(error) / deviation);
+        errors += error*error;
+        stated += deviation*deviation;
+        each.push_back(std::abs(error)/deviation);
         count++;
     }
-    double value() const { return std::sqrt(errors / stated); }
+    double value() const { return std::sqrt(errors/stated); }
     double within(double sigmas) const
     {
-        return (double)std::count_if(each.begin(), each.end(), [=](double e) { return e < sigmas; }) / (double)each.size();
+        return (double)std::count_if(each.begin(), each.end(), [=](double e) { return e < sigmas; })/(double)each.size();
     }
 };
 
@@ -341,7 +341,7 @@ void comparePoints(const Fit& fit, const RigModel& truth, Honesty& honesty)
     for (double z : {550., 700., 850.})
         for (double x : {-0.1, 0., 0.1})
             for (double y : {-0.08, 0.08})
-                points.emplace_back(x * z, y * z, z);
+                points.emplace_back(x*z, y*z, z);
     std::vector<Point2d> pixels1, pixels2;
     refractiveProjectPoints(points, Vec3d(), Vec3d(), truth.cameras[0], pixels1);
     const double none = 1e-9;
@@ -375,7 +375,7 @@ Honesty honestyOf(const Setup& setup, int trials, unsigned salt)
         {
             const Fit fit = calibrate(images, setup, truth, random);
             if (fit.freedom > 0 && !setup.rendered)     // known poses: the priors' residuals are no pixels
-                honesty.ratios["noise"].add(fit.sigma - SIGMA, SIGMA / std::sqrt(2. * fit.freedom));
+                honesty.ratios["noise"].add(fit.sigma - SIGMA, SIGMA/std::sqrt(2.*fit.freedom));
             compare(fit, truth, honesty);
             comparePoints(fit, truth, honesty);
         }
@@ -393,7 +393,7 @@ void print(const Setup& setup, const Honesty& honesty)
     std::cout << "[numbers] error over stated, " << setup.name() << " (" << honesty.trials << " trials, " << honesty.refused
               << " refused):";
     for (const auto& entry : honesty.ratios)
-        std::cout << ' ' << entry.first << format(" %.2f (%.0f%%)", entry.second.value(), 100 * entry.second.within(1.96));
+        std::cout << ' ' << entry.first << format(" %.2f (%.0f%%)", entry.second.value(), 100*entry.second.within(1.96));
     std::cout << std::endl;
     if (honesty.refused)
         std::cout << "    " << honesty.why << std::endl;
@@ -463,7 +463,7 @@ TEST_CASE("A sealed rig's windows are not tilted the other way, and the second b
         {
             const int at = columnsOf(fit.rig, c).normal;
             const double sigma = std::sqrt(trace(fit.covariance(Rect(at, at, 3, 3)))[0]);
-            CHECK(norm(fit.rig.cameras[c]->window().normal - truth.cameras[c]->window().normal) < 4. * sigma);
+            CHECK(norm(fit.rig.cameras[c]->window().normal - truth.cameras[c]->window().normal) < 4.*sigma);
         }
         const Vec3d other(fit.otherMinima.ptr<double>());
         CHECK(norm(other - fit.rig.cameras[0]->window().normal) > 0.2);
@@ -499,7 +499,7 @@ TEST_CASE("Boards that took no part are as far off as stated, and the check sees
         for (int i = 0; i < 5; i++)
             fresh.push_back(look(truth, object, randomPose(object, random), true, true, setup, random));     // pairs: they tell most
         stated.add(misfitOf(fit.rig, fit.covariance, fit.sigma, object, fresh));
-        tooSure.add(misfitOf(fit.rig, Mat(0.04 * fit.covariance), fit.sigma, object, fresh));
+        tooSure.add(misfitOf(fit.rig, Mat(0.04*fit.covariance), fit.sigma, object, fresh));
     }
     std::cout << "[numbers] held-out boards, error over stated: " << stated.calibrationRatio() << "; +- five times too small: "
               << tooSure.calibrationRatio() << std::endl;
@@ -521,11 +521,11 @@ double lengthVariance(const Fit& fit, const Point3d& a, const Point3d& b)
     {
         const ViewDerivatives view = differentiateView(fit.rig, points, Vec3d(), Vec3d(), {{0, true, {i}}, {1, true, {i}}});
         const Eigen::MatrixXd B = view.byPose.rightCols(3);        // the pose is the identity: by its T is by the point
-        const Eigen::MatrixXd dX = (B.transpose() * B).inverse() * B.transpose() * view.byParameters;
-        const Eigen::RowVectorXd part = Eigen::RowVector3d(along[0], along[1], along[2]) * dX;
+        const Eigen::MatrixXd dX = (B.transpose()*B).inverse()*B.transpose()*view.byParameters;
+        const Eigen::RowVectorXd part = Eigen::RowVector3d(along[0], along[1], along[2])*dX;
         byParameters = i == 0 ? Eigen::RowVectorXd(part) : Eigen::RowVectorXd(byParameters - part);
     }
-    return byParameters * toEigen(fit.covariance) * byParameters.transpose();
+    return byParameters*toEigen(fit.covariance)*byParameters.transpose();
 }
 
 //! Two cameras before a wall or each behind its port, in water; few views from afar, some corners wrong.
@@ -543,7 +543,7 @@ struct SealedRig
         truth.T = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
         GlassWindow window(Vec3d(random.normal(0.1), random.normal(0.1), 1), 12, 1.49, random.uniform(120, 300), 1.333);
         truth.cameras[0]->setWindow(window);
-        window.normal = truth.R * window.normal;
+        window.normal = truth.R*window.normal;
         window.distance += window.normal.dot(truth.T);
         if (!shared)
             window.normal = normalize(Vec3d(random.normal(0.1), random.normal(0.1), 1));
@@ -562,8 +562,8 @@ struct SealedRig
         for (int i = 0; i < views; i++)
         {
             const double z = random.uniform(1000, 3000);
-            Moment m = observe(truth, data.objectPoints, random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1) * z,
-                               random.uniform(-0.08, 0.08) * z, z), false, 0.3, random);
+            Moment m = observe(truth, data.objectPoints, random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1)*z,
+                               random.uniform(-0.08, 0.08)*z, z), false, 0.3, random);
             m.stem = "view" + std::to_string(i);
             for (int c = 0; c < 2; c++)
             {
@@ -620,7 +620,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
         }
     }
     std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << trials << " answer; 95 % intervals of a length hold "
-              << 100 * lengths.within(1.96) << " %, error over stated " << lengths.value() << std::endl;
+              << 100*lengths.within(1.96) << " %, error over stated " << lengths.value() << std::endl;
     for (const auto& refusal : refusals)
         std::cout << "    " << refusal.second << " x " << refusal.first << std::endl;
     CHECK(answers > 0);

@@ -19,12 +19,12 @@ Calibration uncertain(const RigModel& rig)
     Calibration c = calibrationOf(rig);
     const ParameterColumns at = columnsOf(rig, 0);
     c.covariance = Mat::zeros(at.end, at.end, CV_64F);
-    c.covariance.at<double>(at.lens, at.lens) = c.covariance.at<double>(at.lens + 1, at.lens + 1) = FOCAL * FOCAL;
-    c.covariance.at<double>(at.thickness, at.thickness) = THICKNESS * THICKNESS;
+    c.covariance.at<double>(at.lens, at.lens) = c.covariance.at<double>(at.lens + 1, at.lens + 1) = FOCAL*FOCAL;
+    c.covariance.at<double>(at.thickness, at.thickness) = THICKNESS*THICKNESS;
     const Vec3d n = rig.cameras[0]->window().normal;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            c.covariance.at<double>(at.normal + i, at.normal + j) = TILT * TILT * ((i == j) - n[i] * n[j]);
+            c.covariance.at<double>(at.normal + i, at.normal + j) = TILT*TILT*((i == j) - n[i]*n[j]);
     return c;
 }
 
@@ -60,7 +60,7 @@ void checkSpread(const RigModel& rig, const std::vector<Point2d>& pixels, unsign
         for (size_t i = 0; i < pixels.size(); i++)
         {
             const Vec3d d = m.points[i] - stated.points[i];
-            squares[i] += d.mul(d) * (1. / trials);
+            squares[i] += d.mul(d)*(1./trials);
         }
     }
     for (size_t i = 0; i < pixels.size(); i++)
@@ -107,7 +107,7 @@ Measurement seenByTwo(const Calibration& calibration, double noise, Point2d off,
     Rodrigues(rvec, rotation);
     std::vector<Point3d> points;
     for (const Point3d& p : object)
-        points.push_back(Point3d(rotation * Vec3d(p) + tvec));
+        points.push_back(Point3d(rotation*Vec3d(p) + tvec));
     std::vector<Point2d> pixels[2];
     Vec3d rig;
     Rodrigues(calibration.R, rig);
@@ -137,7 +137,7 @@ TEST_CASE("Partners that agree within the noise keep their uncertainty", "[measu
             const Vec3d n = c.cameras[1].camera->window().normal;
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++)
-                    c.covariance.at<double>(at.normal + i, at.normal + j) = 0.01 * 0.01 * ((i == j) - n[i] * n[j]);
+                    c.covariance.at<double>(at.normal + i, at.normal + j) = 0.01*0.01*((i == j) - n[i]*n[j]);
         }
         scenes::Random random(3040);
         int flagged = 0, inflated = 0, all = 0;
@@ -156,11 +156,11 @@ TEST_CASE("Partners that agree within the noise keep their uncertainty", "[measu
             judgePartners(c, PIXEL, m);
             flagged += m.inconsistent();
             for (size_t i = 0; i < m.points.size(); i++, all++)
-                inflated += m.sigma[i][2] > 1.001 * before.sigma[i][2];
+                inflated += m.sigma[i][2] > 1.001*before.sigma[i][2];
         }
         CAPTURE(calibrationIsUncertain, flagged, inflated, all);
         CHECK(flagged <= 1);
-        CHECK(inflated < 0.02 * all);
+        CHECK(inflated < 0.02*all);
     }
 }
 
@@ -184,8 +184,8 @@ TEST_CASE("A partner off its curve has the uncertainty of its misfit, a far one 
         CHECK(norm(m.sigma[8] - clean.sigma[8]) < 1e-9);
         if (k.off > 0 && k.answer)
         {
-            CHECK(m.sigma[7][2] > 0.4 * k.off / PIXEL * clean.sigma[7][2]);
-            CHECK(norm(Vec3d(m.points[7] - truth[7])) < 3 * norm(m.sigma[7]));
+            CHECK(m.sigma[7][2] > 0.4*k.off/PIXEL*clean.sigma[7][2]);
+            CHECK(norm(Vec3d(m.points[7] - truth[7])) < 3*norm(m.sigma[7]));
         }
     }
     // Without a stated noise only what is gross can be told.
@@ -204,18 +204,18 @@ TEST_CASE("Images noisier than the calibration's make all their points less cert
     for (int trial = 0; trial < 100; trial++)
     {
         std::vector<Point3d> truth;
-        Measurement m = seenByTwo(c, 3 * PIXEL, {}, random, &truth);
+        Measurement m = seenByTwo(c, 3*PIXEL, {}, random, &truth);
         judgePartners(c, PIXEL, m);
         flagged += m.inconsistent();
-        noticed += std::abs(m.noise - 3 * PIXEL) < 1.5 * PIXEL;
+        noticed += std::abs(m.noise - 3*PIXEL) < 1.5*PIXEL;
         for (size_t i = 0; i < truth.size(); i++)
             for (int k = 0; k < 3 && m.points[i].x == m.points[i].x; k++, count++)
-                squares += std::pow((Vec3d(m.points[i])[k] - Vec3d(truth[i])[k]) / m.sigma[i][k], 2);
+                squares += std::pow((Vec3d(m.points[i])[k] - Vec3d(truth[i])[k])/m.sigma[i][k], 2);
     }
     CAPTURE(flagged, noticed);
     CHECK(flagged < 30);        // of 3000
     CHECK(noticed > 85);
-    CHECK(std::sqrt(squares / count) == Approx(1.).epsilon(0.15));
+    CHECK(std::sqrt(squares/count) == Approx(1.).epsilon(0.15));
 }
 
 TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[measurement]")
@@ -236,7 +236,7 @@ TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[m
     CHECK(m.noise == Approx(10).epsilon(0.3));
     for (size_t i = 0; i < pixels.size(); i++)
         for (int k = 0; k < 3; k++)
-            CHECK(m.sigma[i][k] == Approx(m.noise / PIXEL * exact.sigma[i][k]).epsilon(0.3));
+            CHECK(m.sigma[i][k] == Approx(m.noise/PIXEL*exact.sigma[i][k]).epsilon(0.3));
     CHECK(m.inconsistent() == 0);
     judgePose(PIXEL, m);
     CHECK(m.inconsistent() == 30);
@@ -255,11 +255,11 @@ TEST_CASE("The error map grows with the range and knows what two cameras do not 
         CHECK(map.worst() >= map.median());
         CHECK(map.worst() == map.worstOfPixels());          // the calibration is exact
         last = map.median();
-        CHECK(mapErrors(one, z, 0.1, 9).median() == Approx(std::sqrt(2.) * 0.1 * z / 2438.).epsilon(0.15));
+        CHECK(mapErrors(one, z, 0.1, 9).median() == Approx(std::sqrt(2.)*0.1*z/2438.).epsilon(0.15));
     }
     CHECK_FALSE(mapErrors(two, 5000., 0.1, 9).median() < last);
     CHECK_FALSE(mapErrors(two, 60., 0.1, 9).seen());        // inside the glass
     const ErrorMap sure = mapErrors(one, 600., 0.1, 9), unsure = mapErrors(uncertain(paperRig(1)), 600., 0.1, 9);
-    CHECK(unsure.worst() > 1.5 * sure.worst());
+    CHECK(unsure.worst() > 1.5*sure.worst());
     CHECK(unsure.worstOfPixels() == Approx(sure.worst()));
 }

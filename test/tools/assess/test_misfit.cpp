@@ -34,7 +34,7 @@ Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
         {
             std::vector<Point3d> later = given.data.objectPoints;
             for (Point3d& X : later)
-                X.y += outermostRows * given.square;
+                X.y += outermostRows*given.square;
             given.data.moments.back().glass[0] = observe(rig, later, rvec, tvec, false, 0.1, random).glass[0];
         }
     }

@@ -54,7 +54,7 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
     {
         const RigCalibration nudged = calibrated(rig, shift);
         const Ptr<RefractiveCamera> is = rig.cameras[0], found = nudged.fit.rig.cameras[0];
-        turned = std::max(turned, std::acos(is->window().normal.dot(found->window().normal)) * 180. / CV_PI);
+        turned = std::max(turned, std::acos(is->window().normal.dot(found->window().normal))*180./CV_PI);
         std::vector<Point2d> pixels{{0, 0}, {640, 512}, {1279, 0}, {0, 1023}, {1279, 1023}};
         std::vector<Point3d> right, wrong;
         refractivePointsOnPlane(pixels, right, is, Vec4d(0, 0, 1, workingDepth(still, 0)[2]));
@@ -63,8 +63,8 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
             worst = std::max(worst, norm(wrong[i] - right[i]));
     }
     CHECK(turned > 0.5);
-    CHECK(worst < 1.05 * nudge.worst);
-    CHECK(worst > 0.8 * nudge.worst);
+    CHECK(worst < 1.05*nudge.worst);
+    CHECK(worst > 0.8*nudge.worst);
 
     RigCalibration glassOnly = still;
     for (Moment& m : glassOnly.data.moments)
@@ -81,7 +81,7 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     right.data.imageSize[0] = right.data.imageSize[1] = Size(1280, 1024);
     std::vector<Point3d> bent = right.data.objectPoints;        // as seen: 0.1 mm from corner to middle
     for (Point3d& X : bent)
-        X.z = 0.1 * (1. - (X.x * X.x + X.y * X.y) / (97.5 * 97.5 + 78. * 78.));
+        X.z = 0.1*(1. - (X.x*X.x + X.y*X.y)/(97.5*97.5 + 78.*78.));
     RigData ofBent = right.data;
     scenes::Random random(1020);
     for (int i = 0; i < 8; i++)
@@ -121,6 +121,6 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
         worst = std::max(worst, norm(point[0] - X));
     }
     CAPTURE(worst, bow.rms, bow.worst, bow.lengths);
-    CHECK(worst > 0.5 * bow.rms);
-    CHECK(worst < 1.2 * bow.worst);
+    CHECK(worst > 0.5*bow.rms);
+    CHECK(worst < 1.2*bow.worst);
 }

@@ -73,9 +73,9 @@ TEST_CASE("Derivatives of a view of two cameras agree with differences", "[view_
         const double h = outer ? 1e-6 : column >= end && column < end + 3 ? 1e-6 : 1e-5;
         // 1 is the least a medium can have, so that one is differenced to one side.
         const Eigen::VectorXd below = outer ? d.predicted : predicted(moved(rig, column, -h), rvec, tvec);
-        const Eigen::VectorXd slope = (predicted(moved(rig, column, h), rvec, tvec) - below) / (outer ? h : 2 * h);
+        const Eigen::VectorXd slope = (predicted(moved(rig, column, h), rvec, tvec) - below)/(outer ? h : 2*h);
         CAPTURE(column);
-        CHECK((slope - d.byParameters.col(column)).norm() <= 2e-5 * d.byParameters.col(column).norm() + 1e-5 * outer + 1e-6);
+        CHECK((slope - d.byParameters.col(column)).norm() <= 2e-5*d.byParameters.col(column).norm() + 1e-5*outer + 1e-6);
     }
     for (int k = 0; k < 6; k++)
     {
@@ -83,14 +83,14 @@ TEST_CASE("Derivatives of a view of two cameras agree with differences", "[view_
         Vec3d r1 = rvec, r2 = rvec, t1 = tvec, t2 = tvec;
         (k < 3 ? r1 : t1)[k % 3] += h;
         (k < 3 ? r2 : t2)[k % 3] -= h;
-        const Eigen::VectorXd slope = (predicted(rig, r1, t1) - predicted(rig, r2, t2)) / (2 * h);
+        const Eigen::VectorXd slope = (predicted(rig, r1, t1) - predicted(rig, r2, t2))/(2*h);
         CAPTURE(k);
-        CHECK((slope - d.byPose.col(k)).norm() < 1e-5 * d.byPose.col(k).norm());
+        CHECK((slope - d.byPose.col(k)).norm() < 1e-5*d.byPose.col(k).norm());
     }
     const MatrixXd Q = basisWithoutPose(d.byPose);
     CHECK(Q.cols() == d.byPose.rows() - 6);
-    CHECK((Q.transpose() * d.byPose).norm() < 1e-9 * d.byPose.norm());
-    CHECK((Q.transpose() * Q - MatrixXd::Identity(Q.cols(), Q.cols())).norm() < 1e-10);
+    CHECK((Q.transpose()*d.byPose).norm() < 1e-9*d.byPose.norm());
+    CHECK((Q.transpose()*Q - MatrixXd::Identity(Q.cols(), Q.cols())).norm() < 1e-10);
 }
 
 TEST_CASE("A view added to a covariance is what the information of both gives", "[view_derivatives]")
@@ -103,8 +103,8 @@ TEST_CASE("A view added to a covariance is what the information of both gives", 
             m.data()[i] = random.normal(1);
         return m;
     };
-    const MatrixXd half = matrix(5, 5), J = matrix(12, 5), C = half * half.transpose();
-    const MatrixXd both = (C.inverse() + J.transpose() * J / 0.04).inverse();
-    CHECK((covarianceWith(C, J, 0.2) - both).norm() < 1e-8 * both.norm());
+    const MatrixXd half = matrix(5, 5), J = matrix(12, 5), C = half*half.transpose();
+    const MatrixXd both = (C.inverse() + J.transpose()*J/0.04).inverse();
+    CHECK((covarianceWith(C, J, 0.2) - both).norm() < 1e-8*both.norm());
     CHECK(covarianceWith(MatrixXd::Zero(5, 5), J, 0.2).norm() == 0.);          // what is exact stays so
 }

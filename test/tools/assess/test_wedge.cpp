@@ -29,7 +29,7 @@ TEST_CASE("A thin wedge turns the ray by (index - 1) times its angle", "[wedge]"
     const std::vector<Point2d> centre = {{643.98, 500.01}};
     const double angle = 1e-5;
     const Point3d at = traceWedge(camera, centre, {Vec3d(angle, 0, 0), 0.}, {1000.})[0];
-    CHECK(at.x == Approx(-0.5 * angle * 1000.).epsilon(1e-3));        // towards the base: the thick side is where x < 0
+    CHECK(at.x == Approx(-0.5*angle*1000.).epsilon(1e-3));        // towards the base: the thick side is where x < 0
     CHECK(std::abs(at.y) < 1e-9);
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("The shift of an image by a wedge is right to first order", "[wedge]")
     double last = 0.;
     for (double angle : {1e-3, 1e-4})
     {
-        const Wedge wedge{angle * across, 0.};
+        const Wedge wedge{angle*across, 0.};
         std::vector<Point2d> shifted = wedgeShift(camera, points, wedge);
         double miss = 0.;
         for (size_t i = 0; i < points.size(); i++)
@@ -51,11 +51,11 @@ TEST_CASE("The shift of an image by a wedge is right to first order", "[wedge]")
         const std::vector<Point3d> traced = traceWedge(camera, shifted, wedge, {600., 650., 560.});
         for (size_t i = 0; i < points.size(); i++)
         {
-            CHECK(norm(shifted[i] - pixels[i]) > 500. * angle);
+            CHECK(norm(shifted[i] - pixels[i]) > 500.*angle);
             miss = std::max(miss, norm(traced[i] - points[i]));
         }
         if (last > 0.)
-            CHECK(miss < 0.02 * last);      // second order: a hundredth
+            CHECK(miss < 0.02*last);      // second order: a hundredth
         last = miss;
     }
 }

@@ -31,7 +31,7 @@ Mat calibratedCovariance(const RigModel& rig, const std::vector<Point3d>& object
     RigModel found = rig.clone();
     rms = calibrateGlass(objects, direct, glass, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
                          noArray());
-    return covariance * (2. * SIGMA * SIGMA / (rms * rms));
+    return covariance*(2.*SIGMA*SIGMA/(rms*rms));
 }
 
 //! A rig as a calibration would have found it: its normal off by a draw from the covariance.
@@ -44,7 +44,7 @@ RigModel drawn(const RigModel& truth, const Mat& covariance, scenes::Random& ran
     GlassWindow window = rig.cameras[0]->window();
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++)
-            window.normal[axis] += eigen.eigenvectors()(axis, k) * random.normal(std::sqrt(std::max(0., eigen.eigenvalues()[k])));
+            window.normal[axis] += eigen.eigenvectors()(axis, k)*random.normal(std::sqrt(std::max(0., eigen.eigenvalues()[k])));
     window.normal = normalize(window.normal);
     rig.cameras[0]->setWindow(window);
     return rig;
@@ -55,8 +55,8 @@ RigModel tilted(const RigModel& rig, double degrees, double azimuth)
     RigModel result = rig.clone();
     GlassWindow window = result.cameras[0]->window();
     const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
-    window.normal = normalize(window.normal + std::tan(degrees * CV_PI / 180)
-                              * (std::cos(azimuth) * across + std::sin(azimuth) * window.normal.cross(across)));
+    window.normal = normalize(window.normal + std::tan(degrees*CV_PI/180)
+                              * (std::cos(azimuth)*across + std::sin(azimuth)*window.normal.cross(across)));
     result.cameras[0]->setWindow(window);
     return result;
 }
@@ -75,19 +75,19 @@ Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int tr
         double chi = 0.;
         for (int k = 0; k < FREEDOM; k++)
             chi += std::pow(random.normal(1), 2);
-        const double scale = chi / FREEDOM;
-        const CheckBasis basis{drawn(truth, covariance, random), covariance * scale, SIGMA * std::sqrt(scale), FREEDOM};
+        const double scale = chi/FREEDOM;
+        const CheckBasis basis{drawn(truth, covariance, random), covariance*scale, SIGMA*std::sqrt(scale), FREEDOM};
         const Vec3d rvec = random.vector(0.3), tvec(random.uniform(-20, 20), random.uniform(-20, 20), z);
         const auto check = [&](const RigModel& now) {
             return checkTilts(basis, object, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
         };
-        const RigModel away = tilted(truth, tiltDeg, random.uniform(0, 2 * CV_PI));
+        const RigModel away = tilted(truth, tiltDeg, random.uniform(0, 2*CV_PI));
         const WindowCheck same = check(truth), other = check(away);
-        result.falseAlarms += same.moved / (double)trials;
-        result.found += other.moved / (double)trials;
-        result.predicted += powerOf(other, 1, FREEDOM, FALSE_ALARM, tiltDeg) / trials;
-        const double off = std::acos(std::min(1., other.normal.dot(away.cameras[0]->window().normal))) * 180 / CV_PI;
-        result.inTwoSigma += (off < 2 * other.stdDeg[0]) / (double)trials;
+        result.falseAlarms += same.moved/(double)trials;
+        result.found += other.moved/(double)trials;
+        result.predicted += powerOf(other, 1, FREEDOM, FALSE_ALARM, tiltDeg)/trials;
+        const double off = std::acos(std::min(1., other.normal.dot(away.cameras[0]->window().normal)))*180/CV_PI;
+        result.inTwoSigma += (off < 2*other.stdDeg[0])/(double)trials;
     }
     return result;
 }
@@ -118,7 +118,7 @@ TEST_CASE("A large tilt of both windows is measured, and the camera named", "[wi
                                                                       direct, 0.02, random)}, FALSE_ALARM);
         REQUIRE(result.windows.size() == 2);
         CHECK(result.windows[0].moved);
-        CHECK(result.windows[0].tiltDeg == Approx(5.).margin(5 * result.windows[0].stdDeg[0]));
+        CHECK(result.windows[0].tiltDeg == Approx(5.).margin(5*result.windows[0].stdDeg[0]));
         CHECK_FALSE(result.windows[1].moved);
         CHECK(result.misfitProbability > 1e-4);
         CHECK(result.sigmaSeen == Approx(0.02).epsilon(0.3));
@@ -151,7 +151,7 @@ TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-c
     {
         const Rates r = rates(c.object, 0.1, c.z, 1000, 3013);
         std::cout << format("[numbers] refract_check, one pair, %s: found %.1f %% (predicted %.1f %%), false alarms %.1f %%\n", c.name,
-                            100 * r.found, 100 * r.predicted, 100 * r.falseAlarms);
+                            100*r.found, 100*r.predicted, 100*r.falseAlarms);
         CHECK(r.falseAlarms < 0.02);
         CHECK(r.found > r.predicted - 0.04);
     }

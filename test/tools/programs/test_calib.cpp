@@ -43,7 +43,7 @@ std::vector<Point3d> boardPoints()
     std::vector<Point3d> points;
     for (int row = 0; row < BOARD.height; row++)
         for (int column = 0; column < BOARD.width; column++)
-            points.emplace_back(SQUARE * column, SQUARE * row, 0);
+            points.emplace_back(SQUARE*column, SQUARE*row, 0);
     return points;
 }
 
@@ -60,7 +60,7 @@ void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsi
         Matx33d board, R;
         Rodrigues(rvec, board);
         const Vec3d middle(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
-        const Vec3d tvec = middle - board * Vec3d(2.5 * SQUARE, 2 * SQUARE, 0);
+        const Vec3d tvec = middle - board*Vec3d(2.5*SQUARE, 2*SQUARE, 0);
         for (int c = 0; c < (options.stereo ? 2 : 1); c++)
         {
             Vec3d rvecC = rvec, tvecC = tvec;
@@ -91,9 +91,9 @@ void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsi
     for (int c = 0; c < 2; c++)
     {
         for (int through = 0; through < 2; through++)
-            std::ofstream(folder / format("%s%d.vnl", through ? "glass" : "direct", c + 1))
+            std::ofstream(folder/format("%s%d.vnl", through ? "glass" : "direct", c + 1))
                 << "# filename x y level\n" << files[c][through].str();
-        FileStorage out(folder / format("camera%d.yml", c + 1), FileStorage::WRITE);
+        FileStorage out(folder/format("camera%d.yml", c + 1), FileStorage::WRITE);
         out << "camera_matrix" << rig.K[c] << "distortion_coefficients" << rig.dist
             << "image_width" << IMAGE.width << "image_height" << IMAGE.height;
     }
@@ -112,7 +112,7 @@ std::string stereoInputs(const TemporaryFolder& f, const std::string& more)
 
 std::string lens(const TemporaryFolder& f) { return " --camera=" + f / "camera1.yml"; }
 
-double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)) * 180 / CV_PI; }
+double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b))*180/CV_PI; }
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -135,7 +135,7 @@ double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
         REQUIRE(refractiveSolvePnP(object, view.second, rig.K[0], rig.dist, window, rvec, tvec, false, error));
         squares += 2*error[0]*error[0];
     }
-    return std::sqrt(squares / views.size());
+    return std::sqrt(squares/views.size());
 }
 
 const char* const PANE = " --thickness=20 --index=1.5437";
@@ -157,10 +157,10 @@ TEST_CASE("refract_calib finds the normal from pairs and says how well", "[calib
     file["glass_window_std"]["normal_deg"] >> std;
     REQUIRE(std.size() == 2);
     CHECK(std[0] == Approx(0.0165).epsilon(0.6));       // physics: 0.016 for ten pairs
-    CHECK(degreesBetween(window.normal, PaperRig().normal[0]) < 4 * std[0]);
+    CHECK(degreesBetween(window.normal, PaperRig().normal[0]) < 4*std[0]);
     CHECK(window.thickness == std::vector<double>{20.});
     CHECK(window.index == std::vector<double>{1.5437});
-    CHECK((double)file["rms"] == Approx(SIGMA * std::sqrt(2.)).epsilon(0.15));
+    CHECK((double)file["rms"] == Approx(SIGMA*std::sqrt(2.)).epsilon(0.15));
     CHECK((int)file["image_width"] == IMAGE.width);
     CHECK((std::string)file["lens_model"] == "opencv");
     CHECK(file["covariance"].isMap());
@@ -360,7 +360,7 @@ TEST_CASE("refract_calib calibrates two cameras behind one pane", "[calib_tool]"
         GlassWindow window(rig.normal[0], 20., 1.5437, 100.);
         if (c == 1)
         {
-            window.normal = R * rig.normal[0];
+            window.normal = R*rig.normal[0];
             window.distance = 100. + window.normal.dot(rig.T);
         }
         return window;
@@ -698,7 +698,7 @@ TEST_CASE("refract_calib writes the same bytes for the same input", "[calib_tool
         REQUIRE(r.code == 0);
         for (size_t i = 0; i < names.size(); i++)
         {
-            const std::string bytes = readFile(f / names[i]);
+            const std::string bytes = readFile(f/names[i]);
             CAPTURE(names[i]);
             if (run == 0)
                 first.push_back(bytes);
@@ -722,7 +722,7 @@ TEST_CASE("refract_calib says which combination of thickness and index is determ
     double value = 0., std = 0.;
     REQUIRE(std::sscanf(r.out.c_str() + at, "only thickness x (1 - 1/index) = %lf +- %lf", &value, &std) == 2);
     CHECK(std < 0.1);
-    CHECK(std::abs(value - 20 * (1 - 1 / 1.5437)) < 4 * std);
+    CHECK(std::abs(value - 20*(1 - 1/1.5437)) < 4*std);
     CHECK_FALSE(mentions(r.out, "took no part"));
 }
 

@@ -27,7 +27,7 @@ void writeCalibration(const std::string& path, double degrees)
         const auto camera = cv::refract::RefractiveCamera::read(STEREO + "/truth.yml", name);
         cv::refract::GlassWindow window = camera->window();
         if (name == "camera2")
-            window.normal = cv::normalize(window.normal + std::tan(degrees * CV_PI / 180)
+            window.normal = cv::normalize(window.normal + std::tan(degrees*CV_PI/180)
                                           * cv::normalize(window.normal.cross(cv::Vec3d(0, 1, 0))));
         camera->setWindow(window);
         out << name << "{";
@@ -63,7 +63,7 @@ TEST_CASE("refract_check finds the window that moved, and no other", "[tools][ch
     REQUIRE(json["windows"].size() == 2);
     CHECK(json["windows"][0]["moved"] == false);
     CHECK(json["windows"][1]["moved"] == true);
-    CHECK(json["windows"][1]["tilt_deg"].get<double>() == Approx(0.1).margin(5 * json["windows"][1]["tilt_std_deg"][0].get<double>()));
+    CHECK(json["windows"][1]["tilt_deg"].get<double>() == Approx(0.1).margin(5*json["windows"][1]["tilt_std_deg"][0].get<double>()));
 
     // One image each is a pair whatever its name: the example of --help.
     std::filesystem::copy_file(STEREO + "/direct1/pair3.jpg", folder / "direct.jpg");

@@ -21,7 +21,7 @@ double rmsAgainst(const TrueView& truth, const std::vector<CsvRow>& rows)
     double squares = 0;
     for (const CsvRow& row : rows)
         squares += std::pow(cv::norm(row.point - truth.inCamera1(object[row.id])), 2);
-    return std::sqrt(squares / rows.size());
+    return std::sqrt(squares/rows.size());
 }
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -29,7 +29,7 @@ bool mentions(const std::string& text, const std::string& part) { return text.fi
 //! Copies of bundled images under other names: measure1/FROM -> FOLDER/TO.jpg
 void copyImage(const TemporaryFolder& folder, const std::string& from, const std::string& to)
 {
-    const std::filesystem::path path(folder / (to + ".jpg"));
+    const std::filesystem::path path(folder/(to + ".jpg"));
     std::filesystem::create_directories(path.parent_path());
     std::filesystem::copy_file(image(from), path);
 }
@@ -49,9 +49,9 @@ double rmsInSigma(const TrueView& truth, const std::vector<CsvRow>& rows)
     const std::vector<cv::Point3d> object = chessboard(6, 5, 39);
     double squares = 0;
     for (const CsvRow& row : rows)
-        for (int k = 0; k < 3; ++k)
-            squares += std::pow((row.point[k] - truth.inCamera1(object[row.id])[k]) / row.sigma[k], 2);
-    return std::sqrt(squares / (3 * rows.size()));
+        for (int k = 0; k < 3; k++)
+            squares += std::pow((row.point[k] - truth.inCamera1(object[row.id])[k])/row.sigma[k], 2);
+    return std::sqrt(squares/(3*rows.size()));
 }
 
 } // namespace
@@ -73,10 +73,10 @@ TEST_CASE("refract_measure triangulates fresh views to within their stated uncer
         const std::vector<CsvRow> rows = readPointsCsv(readFile(folder / "points.csv"));
         REQUIRE(rows.size() == 30);
         const TrueView& view = truth.at("measure1/" + stem + ".jpg");
-        CHECK(rmsAgainst(view, rows) < 0.02 * std::pow(view.tvec[2] / 600, 2));
+        CHECK(rmsAgainst(view, rows) < 0.02*std::pow(view.tvec[2]/600, 2));
         CHECK(rmsInSigma(view, rows) < 1.6);
         CHECK(rmsInSigma(view, rows) > 0.4);
-        for (size_t i = 0; i < rows.size(); ++i)
+        for (size_t i = 0; i < rows.size(); i++)
         {
             CHECK(rows[i].image == stem);
             CHECK(rows[i].id == (int)i);
@@ -149,7 +149,7 @@ TEST_CASE("the bundled rig, from images to lengths", "[tools][measure]")
         std::vector<double> n, expected;
         found[camera]["glass_window"]["normal"] >> n;
         truth[camera]["glass_window"]["normal"] >> expected;
-        const double angle = std::asin(cv::norm(cv::Vec3d(n.data()).cross(cv::Vec3d(expected.data())))) * 180 / CV_PI;
+        const double angle = std::asin(cv::norm(cv::Vec3d(n.data()).cross(cv::Vec3d(expected.data()))))*180/CV_PI;
         std::cout << "[numbers] bundled rig, " << camera << ": normal off by " << angle << " degrees (limit 0.03)\n";
         CHECK(angle < 0.03);
     }
@@ -162,13 +162,13 @@ TEST_CASE("the bundled rig, from images to lengths", "[tools][measure]")
     REQUIRE(rows.size() == 180);
     double squares = 0;
     int count = 0;
-    for (size_t i = 1; i < rows.size(); ++i)
+    for (size_t i = 1; i < rows.size(); i++)
         if (i % 6)      // a neighbour in the same row of the board
         {
             squares += std::pow(cv::norm(rows[i].point - rows[i - 1].point) - 39, 2);
-            ++count;
+            count++;
         }
-    const double rms = std::sqrt(squares / count);
+    const double rms = std::sqrt(squares/count);
     std::cout << "[numbers] bundled rig, lengths at 600 mm: RMS error " << rms << " mm (limit 0.05)\n";
     CHECK(rms < 0.05);
 }
@@ -184,7 +184,7 @@ TEST_CASE("refract_measure names the image of each point, and the images that it
     copyImage(folder, "measure1/z600_4", "1/e");
     copyImage(folder, "measure2/z600_5", "2/f");
     for (const std::string camera : {"1", "2"})
-        cv::imwrite(folder / (camera + "/b.jpg"), cv::Mat(1024, 1280, CV_8U, cv::Scalar(90)));
+        cv::imwrite(folder/(camera + "/b.jpg"), cv::Mat(1024, 1280, CV_8U, cv::Scalar(90)));
     const std::string call = "refract_measure " + STEREO + "/truth.yml --pixel-sigma=0.014" + TARGET + " --out="
                              + (folder / "points.csv") + " '" + (folder / "1/*") + "'";
     const ToolResult result = runTool(call + " '" + (folder / "2/*") + "'");
@@ -320,11 +320,11 @@ TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][
     const auto covarianceOf = [](int size, const std::string& first) {      // of two cameras with a pane each
         std::string text = cv::format("covariance: !!opencv-matrix\n   rows: %d\n   cols: %d\n   dt: d\n   data: [ ",
                                       size, size);
-        for (int i = 0; i < size * size; i++)
+        for (int i = 0; i < size*size; i++)
             text += i == 0 ? first : i % (size + 1) ? ", 0." : ", 1e-6";
         return text + " ]\n";
     };
-    const int parameters = 2 * (4 + 5 + 8) + 6;
+    const int parameters = 2*(4 + 5 + 8) + 6;
     const struct { std::string text, says; } cases[] = {
         {changedTruth("-2.3994111532053930e-01", "-2.6e-01"), "the normal for camera 1 has the length 1.00"},
         {truth + covarianceOf(parameters, "-1e-6"), "below 0"},
@@ -422,12 +422,12 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
     const TemporaryFolder folder;
     const std::string calib = STEREO + "/truth.yml", whole = readFile(image("measure1/z600_1"));
     const auto write = [&](const std::string& name, const std::string& bytes) {
-        std::ofstream(folder / name, std::ios::binary) << bytes;
-        return folder / name;
+        std::ofstream(folder/name, std::ios::binary) << bytes;
+        return folder/name;
     };
     std::string noise(4000, 0);
-    for (size_t i = 0; i < noise.size(); ++i)
-        noise[i] = (char)(i * i * 2654435761u >> 13);
+    for (size_t i = 0; i < noise.size(); i++)
+        noise[i] = (char)(i*i*2654435761u >> 13);
     const std::string first = image("measure1/z600_1"), second = image("measure2/z600_1");
     const std::string both = first + " " + second + TARGET, out = " --out=" + (folder / "points.csv");
 
@@ -441,7 +441,7 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
         {write("noise.yml", noise) + " " + both, "noise.yml"},
         {write("list.yml", "%YAML:1.0\n---\n[1, 2]\n") + " " + both, "list.yml"},
         {calib + " " + (folder / "none.jpg") + " " + second + TARGET, "none.jpg"},
-        {calib + " " + write("cut.jpg", whole.substr(0, whole.size() / 2)) + " " + second + TARGET, "cut short"},
+        {calib + " " + write("cut.jpg", whole.substr(0, whole.size()/2)) + " " + second + TARGET, "cut short"},
         {calib + " " + write("noise.jpg", noise) + " " + second + TARGET, "noise.jpg"},
         {calib + " " + write("empty.jpg", "") + " " + second + TARGET, "empty"},
         {calib + " " + STEREO + " " + second + TARGET, "folder"},

@@ -113,11 +113,11 @@ TEST_CASE("Links stay links, pipes stay pipes, and what is read-only stays", "[t
     std::filesystem::create_symlink("sub/new.csv", f / "dangling.csv");
     for (const std::string name : {"link.csv", "dangling.csv"})
     {
-        const ToolResult result = runTool(measure + (f / name));
+        const ToolResult result = runTool(measure + (f/name));
         INFO(name << result.err);
         CHECK(result.code == 0);
-        CHECK(std::filesystem::is_symlink(f / name));
-        CHECK(readFile(f / name) == points);
+        CHECK(std::filesystem::is_symlink(f/name));
+        CHECK(readFile(f/name) == points);
     }
     CHECK(readFile(f / "sub/old.csv") == points);
     CHECK(readFile(f / "sub/new.csv") == points);

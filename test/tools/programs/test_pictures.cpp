@@ -49,9 +49,9 @@ TEST_CASE("refract_undistort turns a plane's image into the pinhole's", "[tools]
     if (cv::norm(cv::Point2d(corners[0]) - pinhole[0]) > 100)       // OpenCV may count from the other end
         std::reverse(corners.begin(), corners.end());
     double squares = 0;
-    for (size_t i = 0; i < corners.size(); ++i)
+    for (size_t i = 0; i < corners.size(); i++)
         squares += std::pow(cv::norm(cv::Point2d(corners[i]) - pinhole[i]), 2);
-    CHECK(std::sqrt(squares / corners.size()) < 0.05);
+    CHECK(std::sqrt(squares/corners.size()) < 0.05);
 }
 
 TEST_CASE("refract_undistort takes globs, a depth, the second camera", "[tools][undistort]")
@@ -60,12 +60,12 @@ TEST_CASE("refract_undistort takes globs, a depth, the second camera", "[tools][
     for (const std::string depth : {"600", "inf"})
     {
         const ToolResult result = runTool("refract_undistort " + STEREO + "/truth.yml '" + image("measure2/z600_[12]")
-            + "' --camera=2 --depth=" + depth + " --quiet --out-dir=" + (folder / depth));
+            + "' --camera=2 --depth=" + depth + " --quiet --out-dir=" + (folder/depth));
         CAPTURE(result.err);
         REQUIRE(result.code == 0);
         CHECK(result.out.empty());
         for (const std::string name : {"z600_1.jpg", "z600_2.jpg"})
-            CHECK(cv::imread(folder / (depth + "/" + name)).size() == cv::Size(1280, 1024));
+            CHECK(cv::imread(folder/(depth + "/" + name)).size() == cv::Size(1280, 1024));
     }
     CHECK(readFile(folder / "600/z600_1.jpg") != readFile(folder / "inf/z600_1.jpg"));
 }
@@ -81,13 +81,13 @@ TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tool
     CHECK(lastNumbers(result.out).first < 0.03);
     CHECK(lastNumbers(result.out).second < 0.08);
     CHECK(result.out.find("windows ignored") != std::string::npos);
-    CHECK(cv::imread(folder / "picture.png").size() == cv::Size(2 * 1280 + 8, 1024));
+    CHECK(cv::imread(folder / "picture.png").size() == cv::Size(2*1280 + 8, 1024));
 
     std::ofstream(folder / "points.txt") << "# u v\n640 500\n300.5, 420.25\n";
     std::ofstream(folder / "points.csv") << "id,u1,v1,u2\n0,640,500,1\n1,nan,nan,2\n";
     for (const std::string name : {"points.txt", "points.csv"})
     {
-        const ToolResult points = runTool(call + " --depth=400,2000 --points=" + (folder / name));
+        const ToolResult points = runTool(call + " --depth=400,2000 --points=" + (folder/name));
         CAPTURE(points.err);
         CHECK(points.code == 0);
     }
@@ -98,7 +98,7 @@ TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and w
     const TemporaryFolder folder;
     const std::string calib = STEREO + "/truth.yml", first = image("measure1/z600_1"), second = image("measure2/z600_1");
     const std::string whole = readFile(first);
-    std::ofstream(folder / "cut.jpg", std::ios::binary) << whole.substr(0, whole.size() / 2);
+    std::ofstream(folder / "cut.jpg", std::ios::binary) << whole.substr(0, whole.size()/2);
     std::ofstream(folder / "bad.txt") << "1 2\nx y\n";
     std::ofstream(folder / "none.txt") << "# nothing\n";
     cv::imwrite(folder / "small.png", cv::Mat(100, 100, CV_8U, cv::Scalar(90)));

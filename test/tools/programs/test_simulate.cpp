@@ -81,7 +81,7 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
             for (const CsvRow& row : rows)
                 squares += std::pow(cv::norm(row.pixel1 - truth.at(name).pixels[row.id]), 2);
             // The middle of a tilted dot's image is not the image of its middle: up to radius^2 * tilt / f = 0.3 px here.
-            CHECK(std::sqrt(squares / rows.size()) < kind.limit);
+            CHECK(std::sqrt(squares/rows.size()) < kind.limit);
         }
     }
 }
@@ -108,10 +108,10 @@ TEST_CASE("a chessboard of another size than --size is told from, soon", "[tools
     // One odd-sized image among many is to blame, wherever it stands.
     for (const std::string name : {"a.png", "e.png", "z.png"})
     {
-        cv::imwrite(folder / ("out/direct/" + name), cv::Mat(480, 600, CV_8U, cv::Scalar(90)));
+        cv::imwrite(folder/("out/direct/" + name), cv::Mat(480, 600, CV_8U, cv::Scalar(90)));
         const ToolResult odd = runTool("refract_calib --size=9x6 --square=22 --thickness=20 --index=1.5 --unpaired --direct='"
             + (folder / "out/direct/*") + "' --glass='" + (folder / "out/glass/*") + "' --out=" + (folder / "calib.yml"));
-        std::filesystem::remove(folder / ("out/direct/" + name));
+        std::filesystem::remove(folder/("out/direct/" + name));
         INFO(odd.err);
         CHECK(odd.code == 1);
         CHECK(odd.err.find(name + "' is 600x480 pixels, 5 other images are 640x512") != std::string::npos);
@@ -125,7 +125,7 @@ TEST_CASE("the same scene gives the same images, another seed gives others", "[t
     write(folder / "rig.yml", scene(CHESSBOARD, sets));
     write(folder / "other.yml", scene(CHESSBOARD, sets, 2));
     for (const std::string name : {"a", "b"})
-        REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / name)).code == 0);
+        REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder/name)).code == 0);
     REQUIRE(runTool("refract_simulate " + (folder / "other.yml") + " --format=jpg --out-dir=" + (folder / "c")).code == 0);
     CHECK(readFile(folder / "a/glass/drawn1.png") == readFile(folder / "b/glass/drawn1.png"));
     CHECK(readFile(folder / "a/glass/drawn1.png") != readFile(folder / "a/direct/drawn1.png"));

@@ -19,7 +19,7 @@ struct TrueView
     {
         cv::Matx33d R;
         cv::Rodrigues(rvec, R);
-        return R * cv::Vec3d(objectPoint) + tvec;
+        return R*cv::Vec3d(objectPoint) + tvec;
     }
 
     //! The target's plane as the tools take it: --plane=a,b,c,d
@@ -47,7 +47,7 @@ inline std::map<std::string, TrueView> readTruth(const std::string& folder)
         TrueView& view = views[(std::string)node["file"]];
         view.rvec = cv::Vec3d(rvec.data());
         view.tvec = cv::Vec3d(tvec.data());
-        for (int i = 0; i < pixels.rows; ++i)
+        for (int i = 0; i < pixels.rows; i++)
             view.pixels.emplace_back(pixels.at<double>(i, 0), pixels.at<double>(i, 1));
     }
     return views;
@@ -56,9 +56,9 @@ inline std::map<std::string, TrueView> readTruth(const std::string& folder)
 inline std::vector<cv::Point3d> chessboard(int columns, int rows, double square)
 {
     std::vector<cv::Point3d> points;
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            points.emplace_back(square * column, square * row, 0);
+    for (int row = 0; row < rows; row++)
+        for (int column = 0; column < columns; column++)
+            points.emplace_back(square*column, square*row, 0);
     return points;
 }
 

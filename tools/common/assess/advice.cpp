@@ -55,11 +55,11 @@ public:
             for (size_t i = 0; i < map.total.size(); i++)
                 if (map.total[i] == map.total[i])
                 {
-                    squares += map.total[i] * map.total[i] - map.ofPixels[i] * map.ofPixels[i];
+                    squares += map.total[i]*map.total[i] - map.ofPixels[i]*map.ofPixels[i];
                     count++;
                 }
         }
-        worth.calibrationPart = count ? std::sqrt(std::max(0., squares) / count) : NONE;
+        worth.calibrationPart = count ? std::sqrt(std::max(0., squares)/count) : NONE;
         return worth;
     }
 
@@ -73,11 +73,11 @@ public:
                 if ((glass && kind == DIRECT_ONLY) || (!glass && kind == GLASS_ONLY))
                     continue;
                 images.push_back(pointsInImage(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, camera, glass));
-                if (images.back().points.size() < MUST_BE_SEEN * c_.data.objectPoints.size())
+                if (images.back().points.size() < MUST_BE_SEEN*c_.data.objectPoints.size())
                     return MatrixXd();
             }
         const ViewDerivatives d = differentiateView(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, images);
-        const MatrixXd J = basisWithoutPose(d.byPose).transpose() * d.byParameters;
+        const MatrixXd J = basisWithoutPose(d.byPose).transpose()*d.byParameters;
         const Eigen::Index n = std::min(J.rows(), J.cols());
         return Eigen::HouseholderQR<MatrixXd>(J).matrixQR().topRows(n).triangularView<Eigen::Upper>();
     }
@@ -105,7 +105,7 @@ public:
                 for (const auto& tilt : tilts)
                     result.push_back({format("%s (z = %.4g %s), %s, %s", range.words, range.z, c_.unit.c_str(), place.words,
                                              tilt.words),
-                                      tilt.axis * (TILT_DEG * CV_PI / 180.), boardAt(place.at, range.z, tilt.axis)});
+                                      tilt.axis*(TILT_DEG*CV_PI/180.), boardAt(place.at, range.z, tilt.axis)});
         return result;
     }
 
@@ -115,14 +115,14 @@ private:
     {
         const Size size = c_.data.imageSize[0];
         std::vector<Point3d> middle;
-        refractivePointsOnPlane(std::vector<Point2d>{{share.x * size.width, share.y * size.height}}, middle,
+        refractivePointsOnPlane(std::vector<Point2d>{{share.x*size.width, share.y*size.height}}, middle,
                                 c_.fit.rig.cameras[0], Vec4d(0, 0, 1, z));
         Point3d centre;
         for (const Point3d& X : c_.data.objectPoints)
-            centre += X * (1. / c_.data.objectPoints.size());
+            centre += X*(1./c_.data.objectPoints.size());
         Matx33d R;
-        Rodrigues(axis * (TILT_DEG * CV_PI / 180.), R);
-        return Vec3d(middle[0]) - R * Vec3d(centre);
+        Rodrigues(axis*(TILT_DEG*CV_PI/180.), R);
+        return Vec3d(middle[0]) - R*Vec3d(centre);
     }
 
     const RigCalibration& c_;

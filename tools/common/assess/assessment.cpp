@@ -17,11 +17,11 @@ Assessment assess(const RigCalibration& c, bool quiet)
     calibration.covariance = c.fit.covariance;
     Assessment result;
     const Vec3d depth = workingDepth(c, 0);
-    for (double z : {0.5 * depth[0], depth[0], depth[1], depth[2], 1.5 * depth[2], 2. * depth[2]})
+    for (double z : {0.5*depth[0], depth[0], depth[1], depth[2], 1.5*depth[2], 2.*depth[2]})
         result.errors.push_back(mapErrors(calibration, z, c.fit.sigma, COLUMNS));
     for (const ErrorLimit& limit : c.limits.errors)
         result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, COLUMNS));
-    result.tolerances = analyseTolerances(c, 1. / millimetresIn(c.unit), quiet);
+    result.tolerances = analyseTolerances(c, 1./millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
     result.contradictions = contradictedValues(c);
     return result;

@@ -42,7 +42,7 @@ public:
         Vec3d rvec;
         cv::Rodrigues(calibration.R, rvec);
         const Vec3d tvecs[] = {Vec3d(), calibration.T}, rvecs[] = {Vec3d(), rvec};
-        for (int c = 0; c < 2; ++c)
+        for (int c = 0; c < 2; c++)
         {
             cv::refract::refractiveProjectPoints(m.points, rvecs[c], tvecs[c], calibration.cameras[c].camera, predicted_[c]);
             derivatives_[c] = differentiatePoints(calibration.cameras[c].camera, m.points, rvecs[c], tvecs[c]);
@@ -56,20 +56,20 @@ public:
         const PointDerivatives &d1 = derivatives_[0], &d2 = derivatives_[1];
         const Point2d e1 = m_.pixels1[i] - predicted_[0][i], e2 = m_.pixels2[i] - predicted_[1][i];
         MatrixXd J(4, 3);
-        J << d1.byPose.block(2 * i, 3, 2, 3), d2.byPose.block(2 * i, 3, 2, 3) * R_;
+        J << d1.byPose.block(2*i, 3, 2, 3), d2.byPose.block(2*i, 3, 2, 3)*R_;
         if (!J.allFinite())
             return {NOT_KNOWN, NOT_KNOWN, J};
-        const Eigen::Vector4d over = Eigen::HouseholderQR<MatrixXd>(J).householderQ() * Eigen::Vector4d::UnitW();
-        double variance = sigma_ * sigma_;
+        const Eigen::Vector4d over = Eigen::HouseholderQR<MatrixXd>(J).householderQ()*Eigen::Vector4d::UnitW();
+        double variance = sigma_*sigma_;
         if (covariance_.size())
         {
             const Eigen::Index n1 = d1.byParameters.cols(), n2 = d2.byParameters.cols();
             MatrixXd A = MatrixXd::Zero(4, n1 + n2 + 6);
-            A.block(0, 0, 2, n1) = d1.byParameters.middleRows(2 * i, 2);
-            A.block(2, n1, 2, n2) = d2.byParameters.middleRows(2 * i, 2);
-            A.block(2, n1 + n2, 2, 6) = d2.byPose.middleRows(2 * i, 2);
-            const Eigen::VectorXd a = A.transpose() * over;
-            variance += a.dot(covariance_ * a);
+            A.block(0, 0, 2, n1) = d1.byParameters.middleRows(2*i, 2);
+            A.block(2, n1, 2, n2) = d2.byParameters.middleRows(2*i, 2);
+            A.block(2, n1 + n2, 2, 6) = d2.byPose.middleRows(2*i, 2);
+            const Eigen::VectorXd a = A.transpose()*over;
+            variance += a.dot(covariance_*a);
         }
         return {std::abs(over.dot(Eigen::Vector4d(e1.x, e1.y, e2.x, e2.y))), std::sqrt(variance), J};
     }
@@ -91,17 +91,17 @@ double timesNoisier(const std::vector<PartnerMisfit>& misfits, double pixelSigma
     for (const PartnerMisfit& misfit : misfits)
         if (misfit.expected > 0)
         {
-            ratios.push_back(misfit.pixels / misfit.expected);
-            ofPixels += std::pow(pixelSigma / misfit.expected, 2);
+            ratios.push_back(misfit.pixels/misfit.expected);
+            ofPixels += std::pow(pixelSigma/misfit.expected, 2);
         }
     if (ratios.empty())
         return 1.;
     ofPixels /= ratios.size();
-    const double byNoise = 1 + 4.7 / std::sqrt((double)ratios.size());      // four standard deviations of the median's estimate
-    const double byCalibration = USUAL / MEDIAN;
-    const double byChance = std::sqrt(ofPixels * byNoise * byNoise + (1 - ofPixels) * byCalibration * byCalibration);
-    std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
-    const double times = ratios[ratios.size() / 2] / MEDIAN;
+    const double byNoise = 1 + 4.7/std::sqrt((double)ratios.size());      // four standard deviations of the median's estimate
+    const double byCalibration = USUAL/MEDIAN;
+    const double byChance = std::sqrt(ofPixels*byNoise*byNoise + (1 - ofPixels)*byCalibration*byCalibration);
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+    const double times = ratios[ratios.size()/2]/MEDIAN;
     return times > byChance ? times : 1.;
 }
 
@@ -118,31 +118,31 @@ void judgePartners(const Calibration& calibration, double pixelSigma, Measuremen
     const bool known = pixelSigma > 0;
     const PartnerMisfits misfitOf(calibration, m, known ? pixelSigma : 0.);
     std::vector<PartnerMisfit> misfits;
-    for (size_t i = 0; i < m.points.size(); ++i)
+    for (size_t i = 0; i < m.points.size(); i++)
         misfits.push_back(misfitOf(i));
     const double times = known ? timesNoisier(misfits, pixelSigma) : 1.;
     if (times > 1)
-        m.noise = times * pixelSigma;
-    for (size_t i = 0; i < m.points.size(); ++i)
+        m.noise = times*pixelSigma;
+    for (size_t i = 0; i < m.points.size(); i++)
     {
         const double misfit = misfits[i].pixels, expected = known ? misfits[i].expected : 0.;
         if (!(misfit == misfit))
             continue;
-        const double limit = known ? FEW * std::min(times, NOISIER) * expected : GROSS_PIXELS;
+        const double limit = known ? FEW*std::min(times, NOISIER)*expected : GROSS_PIXELS;
         if (known)
         {
-            const double beyond = std::max(0., misfit * misfit - std::pow(USUAL * times * expected, 2));
-            const double more = (times * times - 1) * pixelSigma * pixelSigma + beyond;
+            const double beyond = std::max(0., misfit*misfit - std::pow(USUAL*times*expected, 2));
+            const double more = (times*times - 1)*pixelSigma*pixelSigma + beyond;
             const MatrixXd& J = misfits[i].byPoint;
-            const MatrixXd C = more * (J.transpose() * J).inverse();
-            for (int k = 0; k < 3; ++k)
-                m.sigma[i][k] = std::sqrt(m.sigma[i][k] * m.sigma[i][k] + C(k, k));
+            const MatrixXd C = more*(J.transpose()*J).inverse();
+            for (int k = 0; k < 3; k++)
+                m.sigma[i][k] = std::sqrt(m.sigma[i][k]*m.sigma[i][k] + C(k, k));
         }
         if (misfit > limit)
         {
             m.status[i] = INCONSISTENT;
             m.worstMisfit = std::max(m.worstMisfit, misfit);
-            if (misfit > std::max(GROSS_PIXELS, GROSS * expected))
+            if (misfit > std::max(GROSS_PIXELS, GROSS*expected))
                 forget(m, i);
         }
     }
@@ -150,7 +150,7 @@ void judgePartners(const Calibration& calibration, double pixelSigma, Measuremen
 
 void judgePose(double pixelSigma, Measurement& m)
 {
-    if (!(m.noise > (pixelSigma > 0 ? FEW * pixelSigma : GROSS_PIXELS)))
+    if (!(m.noise > (pixelSigma > 0 ? FEW*pixelSigma : GROSS_PIXELS)))
         return;
     std::fill(m.status.begin(), m.status.end(), INCONSISTENT);
     std::fill(m.sigma.begin(), m.sigma.end(), Vec3d::all(NOT_KNOWN));     // residuals do not tell what a wrong model does

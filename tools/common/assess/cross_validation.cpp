@@ -20,10 +20,10 @@ double rangeOf(const RigData& data, const Fit& fit, size_t k)
 {
     Point3d middle;
     for (const Point3d& X : data.objectPoints)
-        middle += X * (1. / data.objectPoints.size());
+        middle += X*(1./data.objectPoints.size());
     Matx33d R;
     Rodrigues(fit.rvecs[k], R);
-    return norm(R * Vec3d(middle) + fit.tvecs[k]);
+    return norm(R*Vec3d(middle) + fit.tvecs[k]);
 }
 
 //! Moments with a glass image, nearest board first; the others, which are never held out.
@@ -77,12 +77,12 @@ class Pool
 public:
     void add(double error)
     {
-        squares_ += error * error;
+        squares_ += error*error;
         sum_ += error;
         count_++;
     }
-    double rms() const { return count_ ? std::sqrt(squares_ / count_) : NONE; }
-    double mean() const { return count_ ? sum_ / count_ : NONE; }
+    double rms() const { return count_ ? std::sqrt(squares_/count_) : NONE; }
+    double mean() const { return count_ ? sum_/count_ : NONE; }
 private:
     double squares_ = 0., sum_ = 0.;
     int count_ = 0;
@@ -198,7 +198,7 @@ NearFar nearAgainstFar(const RigData& data, const Fit& fit, int flags)
     NearFar result;
     if (byRange.size() < 4)
         return result;
-    const size_t half = byRange.size() / 2;
+    const size_t half = byRange.size()/2;
     for (size_t k = 0; k < byRange.size(); k++)
         (k < half ? nearHalf : farHalf).push_back(byRange[k].second);
     result.done = true;

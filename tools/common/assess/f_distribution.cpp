@@ -8,30 +8,30 @@ double upperTailF(int m, double v, double x)
 {
     if (!(x > 0))
         return 1.;
-    const double odds = 2. * m * x / v, logW = -std::log1p(odds), logRest = std::log(odds) + logW;
-    double sum = 0., logTerm = 0.5 * v * logW;      // term by term in logarithms: the factors alone overflow
+    const double odds = 2.*m*x/v, logW = -std::log1p(odds), logRest = std::log(odds) + logW;
+    double sum = 0., logTerm = 0.5*v*logW;      // term by term in logarithms: the factors alone overflow
     for (int j = 0; j < m; j++)
     {
         sum += std::exp(logTerm);
-        logTerm += std::log((0.5 * v + j) / (j + 1.)) + logRest;
+        logTerm += std::log((0.5*v + j)/(j + 1.)) + logRest;
     }
     return std::min(1., sum);
 }
 
 double quantileF2(double v, double probability)
 {
-    return 0.5 * v * std::expm1(-2. / v * std::log(probability));
+    return 0.5*v*std::expm1(-2./v*std::log(probability));
 }
 
 double upperTailNoncentralF2(double v, double lambda, double x)
 {
     // A Poisson mixture of central ones; from where it is largest, terms fall off fast to both sides.
-    const int last = (int)(0.5 * lambda + 10. * std::sqrt(0.5 * lambda) + 30.);
+    const int last = (int)(0.5*lambda + 10.*std::sqrt(0.5*lambda) + 30.);
     double sum = 0.;
     for (int j = 0; j <= last; j++)
     {
-        const double logWeight = (lambda > 0 ? j * std::log(0.5 * lambda) : j ? -HUGE_VAL : 0.) - 0.5 * lambda - std::lgamma(j + 1.);
-        sum += std::exp(logWeight) * upperTailF(1 + j, v, x / (1 + j));
+        const double logWeight = (lambda > 0 ? j*std::log(0.5*lambda) : j ? -HUGE_VAL : 0.) - 0.5*lambda - std::lgamma(j + 1.);
+        sum += std::exp(logWeight)*upperTailF(1 + j, v, x/(1 + j));
     }
     return std::min(1., sum);
 }

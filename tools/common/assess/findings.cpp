@@ -65,13 +65,13 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
         f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std.normalDeg[0])
                          + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
-    if (std.distance > WEAK_RELATIVE * window.distance)
+    if (std.distance > WEAK_RELATIVE*window.distance)
         f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
                                                 window.distance, std.distance, c.unit.c_str()));
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
-        if (std.thickness[i] > WEAK_RELATIVE * window.thickness[i])
+        if (std.thickness[i] > WEAK_RELATIVE*window.thickness[i])
             f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
                                                     "a caliper and give it by --thickness", window.thickness[i],
                                                     std.thickness[i], c.unit.c_str()));
@@ -96,13 +96,13 @@ std::string opticalPath(const RigCalibration& c, int camera)
 {
     const GlassWindow w = c.fit.rig.cameras[camera]->window();
     const ParameterColumns at = columnsOf(c.fit.rig, camera);
-    const double d = w.thickness[0], n = w.index[0], byThickness = 1. - w.outerIndex / n, byIndex = d * w.outerIndex / (n * n);
+    const double d = w.thickness[0], n = w.index[0], byThickness = 1. - w.outerIndex/n, byIndex = d*w.outerIndex/(n*n);
     const auto cov = [&](int i, int j) { return c.fit.covariance.at<double>(i, j); };
-    const double variance = byThickness * byThickness * cov(at.thickness, at.thickness)
-        + 2. * byThickness * byIndex * cov(at.thickness, at.index) + byIndex * byIndex * cov(at.index, at.index);
+    const double variance = byThickness*byThickness*cov(at.thickness, at.thickness)
+        + 2.*byThickness*byIndex*cov(at.thickness, at.index) + byIndex*byIndex*cov(at.index, at.index);
     return of(c, camera) + format("thickness and index apart: only thickness x (1 - %s/index) = ",
                                   w.outerIndex == 1. ? "1" : format("%.4g", w.outerIndex).c_str())
-        + plusMinus(d * byThickness, std::sqrt(std::max(0., variance))) + " is determined (thickness alone +- "
+        + plusMinus(d*byThickness, std::sqrt(std::max(0., variance))) + " is determined (thickness alone +- "
         + format("%.2g, index alone +- %.2g); fixing one of them makes the other far better",
                  std::sqrt(cov(at.thickness, at.thickness)), std::sqrt(cov(at.index, at.index)));
 }
@@ -118,7 +118,7 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
             if (free[i].isNormal && free[j].isNormal)       // told by the two principal deviations
                 continue;
             const double covariance = c.fit.covariance.at<double>(free[i].column, free[j].column);
-            const double r = covariance / (free[i].std * free[j].std);
+            const double r = covariance/(free[i].std*free[j].std);
             if (std::abs(r) <= TIED)
                 continue;
             bool told = false;
@@ -132,11 +132,11 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
             if (told)
                 continue;
             // The combination of both that is known best.
-            const double k = -covariance / (free[j].std * free[j].std);
+            const double k = -covariance/(free[j].std*free[j].std);
             f.cannotTell.push_back(format("%s and %s apart (correlation %.4f): only %s %c %.4g x %s = ", free[i].name.c_str(),
                                           free[j].name.c_str(), r, free[i].name.c_str(), k < 0 ? '-' : '+', std::abs(k),
                                           free[j].name.c_str())
-                                   + plusMinus(free[i].value + k * free[j].value, free[i].std * std::sqrt(std::max(0., 1. - r * r)))
+                                   + plusMinus(free[i].value + k*free[j].value, free[i].std*std::sqrt(std::max(0., 1. - r*r)))
                                    + format(" is determined (each alone +- %.2g, +- %.2g)", free[i].std, free[j].std));
         }
 }
@@ -147,16 +147,16 @@ void judgeFit(const RigCalibration& c, int camera, Findings& f)
     // What the direct images reach without the window; in the joint fit a wrong window drags them along.
     const LensSource& lens = c.lensSources[camera];
     const double alone = lens.kind == LensSource::FROM_DIRECT ? std::min(lens.rms, direct.px) : direct.px;
-    if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO * alone)
+    if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO*alone)
         f.weak.push_back(of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
                          "together, direct alone %.3f px): check thickness and index, whether the board moved within a pair, "
                          "and whether the window is flat", direct.px, glass.px, alone));
     const double through = c.baselines.throughGlass[camera];
-    if (glass.px > MISFIT_RATIO * through)
+    if (glass.px > MISFIT_RATIO*through)
         f.weak.push_back(of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
                          "(%.3f px) than lens and window together (%.3f px): the lens or the given values may be wrong",
                          through, glass.px));
-    else if (glass.px > 0.8 * through)
+    else if (glass.px > 0.8*through)
         f.cannotTell.push_back(of(c, camera) + format("from the residuals alone that the window is needed: a pinhole camera "
                                "calibrated on these same images fits them about as well (%.3f px). It does so only near the "
                                "poses it was calibrated on", through));
@@ -166,9 +166,9 @@ void judgeFit(const RigCalibration& c, int camera, Findings& f)
     const double covered = coverage(c, camera);
     if (covered < LOW_COVERAGE)
         f.weak.push_back(of(c, camera) + format("the board covers only %.0f %% of the image through the window: show it in the "
-                                                "corners too", 100. * covered));
+                                                "corners too", 100.*covered));
     const Vec3d depth = workingDepth(c, camera);
-    if (depth[2] < NARROW_RANGE * depth[0])
+    if (depth[2] < NARROW_RANGE*depth[0])
         f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
                                                 depth[2], c.unit.c_str()));
 }
@@ -187,19 +187,19 @@ void judgeViews(const RigCalibration& c, int camera, Findings& f)
         if (views.size() < 3)
             continue;
         std::sort(views.begin(), views.end());
-        const double median = views[views.size() / 2].first;
+        const double median = views[views.size()/2].first;
         for (const auto& view : views)
-            if (view.first > OUTLYING_VIEW * median)
+            if (view.first > OUTLYING_VIEW*median)
                 f.weak.push_back(of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the middle view has %.3f px; look at "
                                  "the image, leave it out if corners are wrong", c.data.moments[view.second].stem.c_str(),
                                  glass ? "through the window" : "direct", view.first, median));
     }
     const double sigma = windowStd(c.fit, camera).normalDeg[0];
     for (const Influence& influence : c.influences)
-        if (influence.turnDeg[camera] > INFLUENTIAL * sigma)
+        if (influence.turnDeg[camera] > INFLUENTIAL*sigma)
             f.weak.push_back(of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
                              c.data.moments[influence.moment].stem.c_str(), influence.turnDeg[camera],
-                             influence.turnDeg[camera] / sigma));
+                             influence.turnDeg[camera]/sigma));
 }
 
 bool isLensFree(const RigCalibration& c, int camera)
@@ -233,9 +233,9 @@ void judgeHeldOut(const RigCalibration& c, Findings& f)
         f.cannotTell.push_back("whether the stated +- is true: " + f.notChecked);
         return;
     }
-    const double perDirection = m.chiSquare / m.directions;
+    const double perDirection = m.chiSquare/m.directions;
     // The folds share most of their images: as if there were only one.
-    const int pairsOfDirections = std::max(1, m.directions / c.heldOut.folds / 2);
+    const int pairsOfDirections = std::max(1, m.directions/c.heldOut.folds/2);
     if (upperTailF(pairsOfDirections, c.fit.freedom, perDirection) < HELD_OUT_CHANCE)
         f.weak.push_back(format("boards that took no part are %.1f times as far off as the calibration's +- says: the stated "
                                 "uncertainties are too small. A given value, the lens model or the target may be wrong, or "

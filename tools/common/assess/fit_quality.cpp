@@ -11,7 +11,7 @@ namespace tools {
 namespace {
 
 const double CORNERS_PX = 2.;           // half of the corners are never farther off, in an image of usual size;
-const double CORNERS_SHARE = 1. / 640.; // in a larger one, of its longer side
+const double CORNERS_SHARE = 1./640.; // in a larger one, of its longer side
 const int ITERATIONS = 100;             // what explains the images fits them soon; a wrong guess may creep for a thousand
 
 } // namespace
@@ -20,8 +20,8 @@ double median(std::vector<double> values)
 {
     if (values.empty())
         return 0.;
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
 }
 
 double medianCornerError(const RigData& data, const std::vector<Residual>& residuals)
@@ -42,7 +42,7 @@ double largestSoundError(const RigData& data)
 {
     double limit = CORNERS_PX;
     for (int c = 0; c < data.cameraCount; c++)
-        limit = std::max(limit, CORNERS_SHARE * std::max(data.imageSize[c].width, data.imageSize[c].height));
+        limit = std::max(limit, CORNERS_SHARE*std::max(data.imageSize[c].width, data.imageSize[c].height));
     return limit;
 }
 

@@ -44,7 +44,7 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
 std::string Contradiction::sentence() const
 {
     return "the images contradict " + option + format("=%.5g: set free, the %s would be ", given, what.c_str())
-        + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - given) / std);
+        + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - given)/std);
 }
 
 std::vector<Contradiction> contradictedValues(const RigCalibration& c)
@@ -63,7 +63,7 @@ std::vector<Contradiction> contradictedValues(const RigCalibration& c)
                 const double before = given.valueOf(c.fit.rig.cameras[k]->window());
                 const double estimate = given.valueOf(fit.rig.cameras[k]->window());
                 const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
-                if (std::abs(estimate - before) > SURE * std)
+                if (std::abs(estimate - before) > SURE*std)
                     contradictions.push_back({given.word + (c.data.cameraCount == 1 || shared ? std::string()
                                               : format(" of camera %d's window", k + 1)), given.option, before, estimate, std});
             }

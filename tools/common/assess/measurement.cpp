@@ -38,9 +38,9 @@ Vec3d deviations(const MatrixXd& covariance)
 double residualSigma(const std::vector<Point2d>& seenPixels, const std::vector<Point2d>& predicted)
 {
     double squares = 0;
-    for (size_t i = 0; i < seenPixels.size(); ++i)
+    for (size_t i = 0; i < seenPixels.size(); i++)
         squares += std::pow(cv::norm(seenPixels[i] - predicted[i]), 2);
-    return std::sqrt(squares / std::max(1., 2. * seenPixels.size() - 6));
+    return std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
 }
 
 } // namespace
@@ -58,7 +58,7 @@ int Measurement::inconsistent() const
 int Measurement::seenPoints() const
 {
     int count = 0;
-    for (size_t i = 0; i < pixels1.size(); ++i)
+    for (size_t i = 0; i < pixels1.size(); i++)
         count += seen(pixels1[i]) && (pixels2.empty() || seen(pixels2[i]));
     return count;
 }
@@ -75,7 +75,7 @@ Measurement measureStereo(const Calibration& calibration, const std::vector<Poin
         pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
     result.sigma.assign(pixels1.size(), Vec3d::all(NOT_KNOWN));
     if (pixelSigma > 0)
-        for (size_t i = 0; i < pixels1.size(); ++i)
+        for (size_t i = 0; i < pixels1.size(); i++)
         {
             const double* c = covariance.ptr<double>((int)i);
             result.sigma[i] = Vec3d(std::sqrt(c[0]), std::sqrt(c[4]), std::sqrt(c[8]));
@@ -96,12 +96,12 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
     const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
     const MatrixXd B = Eigen::JacobiSVD<MatrixXd>(Eigen::RowVector3d(plane[0], plane[1], plane[2]),
                                                   Eigen::ComputeFullV).matrixV().rightCols(2);
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
     {
-        const MatrixXd A = d.byParameters.middleRows(2 * i, 2);
-        const MatrixXd byPixel = B * (d.byPose.block(2 * i, 3, 2, 3) * B).inverse();
-        const MatrixXd ofPixel = pixelSigma * pixelSigma * MatrixXd::Identity(2, 2) + A * C * A.transpose();
-        result.sigma.push_back(deviations(byPixel * ofPixel * byPixel.transpose()));
+        const MatrixXd A = d.byParameters.middleRows(2*i, 2);
+        const MatrixXd byPixel = B*(d.byPose.block(2*i, 3, 2, 3)*B).inverse();
+        const MatrixXd ofPixel = pixelSigma*pixelSigma*MatrixXd::Identity(2, 2) + A*C*A.transpose();
+        result.sigma.push_back(deviations(byPixel*ofPixel*byPixel.transpose()));
     }
     return result;
 }
@@ -116,7 +116,7 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
         throw Failure("no pose of the target explains its points: check --size and --square");
     std::vector<Point3d> seenPoints;
     std::vector<Point2d> seenPixels, predicted;
-    for (size_t i = 0; i < pixels.size(); ++i)
+    for (size_t i = 0; i < pixels.size(); i++)
         if (seen(pixels[i]))
         {
             seenPoints.push_back(target.objectPoints()[i]);
@@ -130,10 +130,10 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
     if (residual > pixelSigma)
         pixelSigma = residual;
     const PointDerivatives d = differentiatePoints(camera, seenPoints, rvec, tvec);
-    const MatrixXd inverse = (d.byPose.transpose() * d.byPose).inverse();
-    const MatrixXd byParameters = inverse * d.byPose.transpose() * d.byParameters;
-    const MatrixXd ofPose = pixelSigma * pixelSigma * inverse
-        + byParameters * covarianceOfCamera1(calibration, byParameters.cols()) * byParameters.transpose();
+    const MatrixXd inverse = (d.byPose.transpose()*d.byPose).inverse();
+    const MatrixXd byParameters = inverse*d.byPose.transpose()*d.byParameters;
+    const MatrixXd ofPose = pixelSigma*pixelSigma*inverse
+        + byParameters*covarianceOfCamera1(calibration, byParameters.cols())*byParameters.transpose();
 
     cv::Matx33d R;
     Mat jacobian;                               // 3x9: by rvec, of R row by row
@@ -143,12 +143,12 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
     for (const Point3d& point : target.objectPoints())
     {
         const Vec3d X(point);
-        result.points.push_back(Point3d(R * X + tvec));
+        result.points.push_back(Point3d(R*X + tvec));
         MatrixXd byPose(3, 6);
         byPose.rightCols(3).setIdentity();
-        for (int row = 0; row < 3; ++row)
-            byPose.block(row, 0, 1, 3) = (dR.middleCols(3 * row, 3) * Eigen::Vector3d(X[0], X[1], X[2])).transpose();
-        result.sigma.push_back(deviations(byPose * ofPose * byPose.transpose()));
+        for (int row = 0; row < 3; row++)
+            byPose.block(row, 0, 1, 3) = (dR.middleCols(3*row, 3)*Eigen::Vector3d(X[0], X[1], X[2])).transpose();
+        result.sigma.push_back(deviations(byPose*ofPose*byPose.transpose()));
         result.status.push_back(cv::refract::REFRACT_OK);
     }
     return result;
@@ -168,7 +168,7 @@ double pixelSigmaOf(const Calibration& calibration)
     if (calibration.sigma >= 0)
         return calibration.sigma;
     const double rms = calibration.rms >= 0 ? calibration.rms : calibration.cameras[0].rms;
-    return rms >= 0 ? rms / std::sqrt(2.) : NOT_KNOWN;
+    return rms >= 0 ? rms/std::sqrt(2.) : NOT_KNOWN;
 }
 
 } // namespace tools

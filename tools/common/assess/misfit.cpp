@@ -48,7 +48,7 @@ std::vector<std::string> explainMisfit(const Given& given)
     for (const Explanation& e : tried)
         best = std::min(best, e.px);
     for (const Explanation& e : tried)
-        if (e.px < EXPLAINS * now && e.px < largestSoundError(given.data) && e.px <= AS_GOOD * best)
+        if (e.px < EXPLAINS*now && e.px < largestSoundError(given.data) && e.px <= AS_GOOD*best)
             sentences.push_back(format("the same images fit within %.2g px with ", e.px) + e.sentence);
     return sentences;
 }
@@ -60,7 +60,7 @@ void requireSensible(const RigCalibration& c, const Given& given)
     for (int k = 0; k < c.data.cameraCount; k++)
         alone = std::max({alone, c.baselines.throughGlass[k], c.lensSources[k].rms});
     std::string fault;
-    if (now > largestSoundError(c.data) || (now > ALONE_PX && now > ALONE * alone))
+    if (now > largestSoundError(c.data) || (now > ALONE_PX && now > ALONE*alone))
         fault = format("the calibration does not fit its images: half of the corners lie more than %.2g px from where it puts "
                        "them", now);
     else if (hasPairs(given.data) && !hasPairs(c.data))

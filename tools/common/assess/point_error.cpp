@@ -24,7 +24,7 @@ std::vector<double> sortedAnswers(const std::vector<double>& values)
 double quantile(const std::vector<double>& values, double share)
 {
     const std::vector<double> answers = sortedAnswers(values);
-    return answers.empty() ? NOT_SEEN : answers[std::min(answers.size() - 1, (size_t)(share * answers.size()))];
+    return answers.empty() ? NOT_SEEN : answers[std::min(answers.size() - 1, (size_t)(share*answers.size()))];
 }
 
 double largest(const std::vector<double>& values)
@@ -61,15 +61,15 @@ double ErrorMap::most() const { return quantile(total, 0.95); }
 
 double ErrorMap::median() const { return quantile(total, 0.5); }
 
-double ErrorMap::share() const { return total.empty() ? 0. : (double)sortedAnswers(total).size() / total.size(); }
+double ErrorMap::share() const { return total.empty() ? 0. : (double)sortedAnswers(total).size()/total.size(); }
 
 std::vector<Point2d> gridOver(Size image, int columns, Size& grid)
 {
-    grid = Size(columns, std::max(2, cvRound((double)columns * image.height / image.width)));
+    grid = Size(columns, std::max(2, cvRound((double)columns*image.height/image.width)));
     std::vector<Point2d> pixels;
     for (int row = 0; row < grid.height; row++)
         for (int column = 0; column < grid.width; column++)
-            pixels.emplace_back((image.width - 1.) * column / (grid.width - 1), (image.height - 1.) * row / (grid.height - 1));
+            pixels.emplace_back((image.width - 1.)*column/(grid.width - 1), (image.height - 1.)*row/(grid.height - 1));
     return pixels;
 }
 

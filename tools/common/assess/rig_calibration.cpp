@@ -24,7 +24,7 @@ Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment)
         }
     rms.views = (int)views.size();
     if (rms.points)
-        rms.px = std::sqrt(sum / rms.points);
+        rms.px = std::sqrt(sum/rms.points);
     return rms;
 }
 
@@ -37,9 +37,9 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
     double sum = 0.;
     for (const Rms& part : {glass, direct})
         if (part.points)
-            sum += part.px * part.px * part.points;
+            sum += part.px*part.px*part.points;
     if (both.points)
-        both.px = std::sqrt(sum / both.points);
+        both.px = std::sqrt(sum/both.points);
     return both;
 }
 
@@ -57,7 +57,7 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
     if (std::isnan(excess))
         return std::nullopt;
     const Vec3d normal(row.ptr<double>());
-    const auto rmsWith = [&](double rms, double freedom) { return rms * std::sqrt(1. + excess * excess / freedom); };
+    const auto rmsWith = [&](double rms, double freedom) { return rms*std::sqrt(1. + excess*excess/freedom); };
     // The search that knows of it had all images where none is direct;
     const Fit& fit = calibration.fit;
     if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
@@ -68,7 +68,7 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
         for (int other = 0; other < calibration.data.cameraCount; other++)
             if (rmsOf(calibration, other, true).points > seen.points)
                 seen = rmsOf(calibration, other, true);
-    return SecondSolution{normal, excess, rmsWith(seen.px, 2. * seen.points - 6. * seen.views - 2.), seen.px};
+    return SecondSolution{normal, excess, rmsWith(seen.px, 2.*seen.points - 6.*seen.views - 2.), seen.px};
 }
 
 double coverage(const RigCalibration& calibration, int camera)
@@ -78,8 +78,8 @@ double coverage(const RigCalibration& calibration, int camera)
     std::set<int> cells;
     for (const Residual& r : calibration.residuals)
         if (r.camera == camera && r.glass)
-            cells.insert((int)(r.pixel.y * ROWS / size.height) * COLUMNS + (int)(r.pixel.x * COLUMNS / size.width));
-    return (double)cells.size() / (COLUMNS * ROWS);
+            cells.insert((int)(r.pixel.y*ROWS/size.height)*COLUMNS + (int)(r.pixel.x*COLUMNS/size.width));
+    return (double)cells.size()/(COLUMNS*ROWS);
 }
 
 Vec3d workingDepth(const RigCalibration& calibration, int camera)
@@ -95,10 +95,10 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
         Matx33d R;
         Rodrigues(rvec, R);
         for (const Point3d& X : calibration.data.objectPoints)
-            depths.push_back((R * Vec3d(X) + tvec)[2]);
+            depths.push_back((R*Vec3d(X) + tvec)[2]);
     }
     std::sort(depths.begin(), depths.end());
-    return depths.empty() ? Vec3d(NONE, NONE, NONE) : Vec3d(depths.front(), depths[depths.size() / 2], depths.back());
+    return depths.empty() ? Vec3d(NONE, NONE, NONE) : Vec3d(depths.front(), depths[depths.size()/2], depths.back());
 }
 
 } // namespace tools

@@ -27,7 +27,7 @@ Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RefractiveCamera&
 
 double angleDeg(const Vec3d& a, const Vec3d& b)
 {
-    return std::atan2(norm(a.cross(b)), a.dot(b)) * 180. / CV_PI;
+    return std::atan2(norm(a.cross(b)), a.dot(b))*180./CV_PI;
 }
 
 //! RMS px between the two images of each corner of a pair: what ignoring the glass costs if the board cannot give way.
@@ -44,7 +44,7 @@ double shiftOfPairs(const RigData& data, int camera)
             sum += d.dot(d);
             count++;
         }
-    return count ? std::sqrt(sum / count) : NONE;
+    return count ? std::sqrt(sum/count) : NONE;
 }
 
 } // namespace
@@ -58,7 +58,7 @@ void PooledRms::add(const std::vector<Point3d>& object, const std::vector<Point2
     std::vector<double> error;
     const bool found = refractiveSolvePnP(object, pixels, camera, rvec, tvec, false, error);
     const int n = (int)std::count_if(pixels.begin(), pixels.end(), seen);
-    sum_ += found ? 2. * error[0] * error[0] * n : NONE;      // a view without a pose makes the whole NaN
+    sum_ += found ? 2.*error[0]*error[0]*n : NONE;      // a view without a pose makes the whole NaN
     count_ += n;
 }
 

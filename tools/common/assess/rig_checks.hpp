@@ -18,7 +18,7 @@ class PooledRms
 public:
     void add(const std::vector<cv::Point3d>& object, const std::vector<cv::Point2d>& pixels,
              const cv::Ptr<cv::refract::RefractiveCamera>& camera);
-    double value() const { return count_ ? std::sqrt(sum_ / count_) : NONE; }
+    double value() const { return count_ ? std::sqrt(sum_/count_) : NONE; }
 private:
     double sum_ = 0.;
     int count_ = 0;

@@ -29,7 +29,7 @@ bool startPose(const RigModel& rig, const std::vector<Point3d>& object, const Mo
             {
                 RigModel back = rig;
                 back.R = rig.R.t();
-                back.T = -(rig.R.t() * rig.T);
+                back.T = -(rig.R.t()*rig.T);
                 poseInCamera(back, 1, sight.rvec, sight.tvec);
             }
             return true;
@@ -60,8 +60,8 @@ MatrixXd rootOf(const MatrixXd& covariance)
 {
     const VectorXd deviations = covariance.diagonal().cwiseMax(0.).cwiseSqrt();
     const VectorXd inverse = (deviations.array() > 0.).select(deviations.cwiseInverse(), 0.);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-    return deviations.asDiagonal() * correlation.eigenvectors() * correlation.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal()*covariance*inverse.asDiagonal());
+    return deviations.asDiagonal()*correlation.eigenvectors()*correlation.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
 }
 
 } // namespace
@@ -100,12 +100,12 @@ void Misfit::add(const Misfit& other)
 
 double Misfit::ratio() const
 {
-    return expectedSquares > 0. ? std::sqrt(squares / expectedSquares) : std::numeric_limits<double>::quiet_NaN();
+    return expectedSquares > 0. ? std::sqrt(squares/expectedSquares) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Misfit::calibrationRatio() const
 {
-    return directions ? std::sqrt(chiSquare / directions) : std::numeric_limits<double>::quiet_NaN();
+    return directions ? std::sqrt(chiSquare/directions) : std::numeric_limits<double>::quiet_NaN();
 }
 
 Misfit misfitOf(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<Point3d>& object,
@@ -121,18 +121,18 @@ Misfit misfitOf(const RigModel& rig, const Mat& covariance, double sigma, const 
         const MatrixXd Qt = basisWithoutPose(view.byPose).transpose();
         const Eigen::Index rows = r.size();
         AH.conservativeResize(rows + Qt.rows(), Eigen::NoChange);
-        AH.bottomRows(Qt.rows()) = Qt * (view.byParameters * H);
+        AH.bottomRows(Qt.rows()) = Qt*(view.byParameters*H);
         r.conservativeResize(rows + Qt.rows());
-        r.tail(Qt.rows()) = Qt * (sight.pixels - view.predicted);
+        r.tail(Qt.rows()) = Qt*(sight.pixels - view.predicted);
     }
     const Eigen::BDCSVD<MatrixXd> svd(AH, Eigen::ComputeThinU);
     Misfit misfit;
     misfit.squares = r.squaredNorm();
-    misfit.expectedSquares = sigma * sigma * (double)r.size() + svd.singularValues().squaredNorm();
+    misfit.expectedSquares = sigma*sigma*(double)r.size() + svd.singularValues().squaredNorm();
     for (int i = 0; i < svd.singularValues().size() && svd.singularValues()[i] > sigma; i++)
     {
-        const double variance = sigma * sigma + std::pow(svd.singularValues()[i], 2);
-        misfit.chiSquare += std::pow(svd.matrixU().col(i).dot(r), 2) / variance;
+        const double variance = sigma*sigma + std::pow(svd.singularValues()[i], 2);
+        misfit.chiSquare += std::pow(svd.matrixU().col(i).dot(r), 2)/variance;
         misfit.directions++;
     }
     return misfit;

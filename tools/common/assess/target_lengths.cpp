@@ -29,7 +29,7 @@ std::vector<double> lengthRatios(const Target& target, const std::vector<Point3d
 {
     std::vector<double> ratios;
     for (const auto& length : lengthsOf(target, points))
-        ratios.push_back(length.first / length.second);
+        ratios.push_back(length.first/length.second);
     return ratios;
 }
 

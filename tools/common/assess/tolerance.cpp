@@ -19,7 +19,7 @@ namespace {
 
 const double THICKNESS_MM = 0.1;
 const double INDEX = 0.001;
-const double ARC_MINUTE = CV_PI / 180. / 60.;
+const double ARC_MINUTE = CV_PI/180./60.;
 const double NUDGE_MM = 0.1;
 const double SQUARE = 0.001;            // share of it
 const double BOW_MM = 0.1;
@@ -43,7 +43,7 @@ Wedge wedgeBefore(const RigModel& rig, const Cause& cause, int camera, const Vec
 {
     if (camera == cause.camera || camera == 0)
         return {tilt, 0.};
-    return {rig.R * tilt, tilt.dot(rig.R.t() * rig.T)};
+    return {rig.R*tilt, tilt.dot(rig.R.t()*rig.T)};
 }
 
 //! Points of the working volume as the calibrated rig sees them.
@@ -55,7 +55,7 @@ public:
         const Calibration truth = calibrationOf(c.fit.rig);
         std::vector<double> ranges;
         const Vec3d depth = workingDepth(c, 0);
-        for (double z : {depth[0], 0.5 * (depth[0] + depth[2]), depth[2]})
+        for (double z : {depth[0], 0.5*(depth[0] + depth[2]), depth[2]})
         {
             seen_.push_back(pointsAtRange(truth, gridOver(c.data.imageSize[0], GRID_COLUMNS, grid_), z));
             range_.push_back(z);
@@ -91,10 +91,10 @@ public:
                     {
                         if (column + step.x >= grid_.width || row + step.y >= grid_.height)
                             continue;
-                        const int i = row * grid_.width + column, j = i + step.y * grid_.width + step.x;
+                        const int i = row*grid_.width + column, j = i + step.y*grid_.width + step.x;
                         const Vec3d between = seen_[k].points[j] - seen_[k].points[i];
-                        const Vec3d change = moved[k * grid_.area() + j] - moved[k * grid_.area() + i];
-                        const double stretch = norm(between + change) / norm(between) - 1.;
+                        const Vec3d change = moved[k*grid_.area() + j] - moved[k*grid_.area() + i];
+                        const double stretch = norm(between + change)/norm(between) - 1.;
                         if (stretch == stretch)
                             result.push_back(stretch);
                     }
@@ -108,7 +108,7 @@ public:
             return;
         std::vector<Point3d> inCamera;
         for (const Point3d& X : points)
-            inCamera.push_back(camera == 0 ? X : Point3d(truth.R * Vec3d(X) + truth.T));
+            inCamera.push_back(camera == 0 ? X : Point3d(truth.R*Vec3d(X) + truth.T));
         const std::vector<Point2d> shift = wedgeShift(truth.cameras[camera], inCamera,
                                                       wedgeBefore(truth, cause, camera, tilt));
         for (size_t i = 0; i < pixels.size(); i++)
@@ -181,7 +181,7 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
         Rodrigues(c.fit.rvecs[k], R);
         std::vector<Point3d> points;
         for (const Point3d& X : data.objectPoints)
-            points.push_back(R * Vec3d(X) + c.fit.tvecs[k]);
+            points.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
         for (int camera = 0; camera < data.cameraCount; camera++)
             Volume::bend(c.fit.rig, cause, camera, points, tilt, data.moments[c.fit.moments[k]].glass[camera]);
     }
@@ -205,8 +205,8 @@ double rmsOfAll(const std::vector<double>& values)
 {
     double sum = 0.;
     for (double v : values)
-        sum += v * v;
-    return values.empty() ? NONE : std::sqrt(sum / values.size());
+        sum += v*v;
+    return values.empty() ? NONE : std::sqrt(sum/values.size());
 }
 
 //! The worst direction of the tilts: each point moves by a linear map of the tilt.
@@ -237,12 +237,12 @@ void bow(std::vector<Point3d>& board, double height)
 {
     Point3d middle;
     for (const Point3d& X : board)
-        middle += X * (1. / board.size());
+        middle += X*(1./board.size());
     double farthest = 0.;
     for (const Point3d& X : board)
         farthest = std::max(farthest, norm(X - middle));
     for (Point3d& X : board)
-        X.z += height * (1. - std::pow(norm(X - middle) / farthest, 2));
+        X.z += height*(1. - std::pow(norm(X - middle)/farthest, 2));
 }
 
 //! What no image shows of the board itself, which is calibrated with as given.
@@ -252,7 +252,7 @@ std::vector<Cause> causesOfBoard(double millimetre)
         for (Point3d& X : board)
             X *= 1. + SQUARE;
     };
-    const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM * millimetre); };
+    const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM*millimetre); };
     return {{"square wrong by 0.1 %", -1, nullptr, {Vec3d()}, false, scale},
             {"board bent by 0.1 mm", -1, nullptr, {Vec3d()}, false, bend}};
 }
@@ -272,7 +272,7 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
         const std::string which = window.thickness.size() == 1 ? "" : format(" of layer %zu", layer + 1);
         if (!(c.options.flags & GLASS_FREE_THICKNESS))
             causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, target, [=](GlassWindow& w) {
-                w.thickness[layer] += THICKNESS_MM * millimetre;
+                w.thickness[layer] += THICKNESS_MM*millimetre;
             }, {Vec3d()}});
         if (!(c.options.flags & GLASS_FREE_INDEX))
             causes.push_back({"index" + which + " wrong by 0.001" + whose, target, [=](GlassWindow& w) {
@@ -280,11 +280,11 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
             }, {Vec3d()}});
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
         causes.push_back({"wedge of 1 arc minute between the faces" + whose, target, nullptr,
-                          {ARC_MINUTE * across, ARC_MINUTE * window.normal.cross(across)}});
+                          {ARC_MINUTE*across, ARC_MINUTE*window.normal.cross(across)}});
     }
     if (c.data.countPairs(0) + (c.data.cameraCount == 2 ? c.data.countPairs(1) : 0))
     {
-        const double shift = NUDGE_MM * millimetre;
+        const double shift = NUDGE_MM*millimetre;
         causes.push_back({"boards moved by 0.1 mm between direct and glass", -1, nullptr,
                           {Vec3d(shift, 0, 0), Vec3d(0, shift, 0), Vec3d(0, 0, shift)}, true});
     }

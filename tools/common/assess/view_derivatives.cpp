@@ -52,7 +52,7 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
 {
     int rows = 0;
     for (const ImageOfView& image : images)
-        rows += 2 * (int)image.points.size();
+        rows += 2*(int)image.points.size();
     ViewDerivatives view;
     view.predicted.resize(rows);
     view.byPose.resize(rows, 6);
@@ -73,13 +73,13 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
         const int n = (int)J.rows(), own = image.glass ? at.end - at.lens : at.lensCount;
         for (size_t i = 0; i < pixels.size(); i++)
         {
-            view.predicted[row + 2 * i] = pixels[i].x;
-            view.predicted[row + 2 * i + 1] = pixels[i].y;
+            view.predicted[row + 2*i] = pixels[i].x;
+            view.predicted[row + 2*i + 1] = pixels[i].y;
         }
-        view.byPose.middleRows(row, n) = J.leftCols(6) * pose.byPose;
+        view.byPose.middleRows(row, n) = J.leftCols(6)*pose.byPose;
         view.byParameters.block(row, at.lens, n, own) = J.middleCols(6, own);
         if (image.camera == 1)
-            view.byParameters.block(row, at.end, n, 6) = J.leftCols(6) * pose.byRig;
+            view.byParameters.block(row, at.end, n, 6) = J.leftCols(6)*pose.byRig;
         row += n;
     }
     return view;
@@ -103,17 +103,17 @@ ImageOfView pointsInImage(const RigModel& rig, const std::vector<Point3d>& objec
 MatrixXd basisWithoutPose(const MatrixXd& byPose)
 {
     const Eigen::RowVectorXd scale = byPose.colwise().norm().cwiseMax(1e-300);
-    const Eigen::HouseholderQR<MatrixXd> qr(byPose.array().rowwise() / scale.array());
+    const Eigen::HouseholderQR<MatrixXd> qr(byPose.array().rowwise()/scale.array());
     const MatrixXd Q = qr.householderQ();
     return Q.rightCols(byPose.rows() - byPose.cols());
 }
 
 MatrixXd covarianceWith(const MatrixXd& covariance, const MatrixXd& byParameters, double sigma)
 {
-    const MatrixXd CJt = covariance * byParameters.transpose();
-    MatrixXd predicted = byParameters * CJt;
-    predicted.diagonal().array() += sigma * sigma;
-    return covariance - CJt * predicted.ldlt().solve(CJt.transpose());
+    const MatrixXd CJt = covariance*byParameters.transpose();
+    MatrixXd predicted = byParameters*CJt;
+    predicted.diagonal().array() += sigma*sigma;
+    return covariance - CJt*predicted.ldlt().solve(CJt.transpose());
 }
 
 } // namespace tools

@@ -12,8 +12,8 @@ namespace {
 //! Snell's law; NaN for total reflection.
 Vec3d refracted(const Vec3d& direction, const Vec3d& normal, double indexBefore, double indexAfter)
 {
-    const double mu = indexBefore / indexAfter, cosine = direction.dot(normal);
-    return mu * direction + (std::sqrt(1. - mu * mu * (1. - cosine * cosine)) - mu * cosine) * normal;
+    const double mu = indexBefore/indexAfter, cosine = direction.dot(normal);
+    return mu*direction + (std::sqrt(1. - mu*mu*(1. - cosine*cosine)) - mu*cosine)*normal;
 }
 
 } // namespace
@@ -36,13 +36,13 @@ std::vector<Point3d> traceWedge(const Ptr<RefractiveCamera>& camera, const std::
         {
             const bool outermost = surface + 2 == index.size();
             const Vec3d normal = outermost ? normalize(window.normal + wedge.tilt) : window.normal;
-            const Vec3d onAxis = (height + (outermost ? wedge.lift : 0.)) * window.normal;
-            at += direction * ((onAxis - at).dot(normal) / direction.dot(normal));
+            const Vec3d onAxis = (height + (outermost ? wedge.lift : 0.))*window.normal;
+            at += direction*((onAxis - at).dot(normal)/direction.dot(normal));
             direction = refracted(direction, normal, index[surface], index[surface + 1]);
             if (!outermost)
                 height += window.thickness[surface];
         }
-        points.push_back(Point3d(at + direction * ((z[i] - at[2]) / direction[2])));
+        points.push_back(Point3d(at + direction*((z[i] - at[2])/direction[2])));
     }
     return points;
 }
@@ -61,7 +61,7 @@ std::vector<Point2d> wedgeShift(const Ptr<RefractiveCamera>& camera, const std::
     {
         // The pixel that looks at the point is the one whose ray does not miss it.
         const Vec3d miss = traced[i] - points[i];
-        const auto row = [&](int r) { return Vec3d(jacobian.ptr<double>(2 * (int)i + r) + 3).dot(miss); };
+        const auto row = [&](int r) { return Vec3d(jacobian.ptr<double>(2*(int)i + r) + 3).dot(miss); };
         shift.emplace_back(-row(0), -row(1));
     }
     return shift;

@@ -20,7 +20,7 @@ namespace {
 
 const int ITERATIONS = 20;
 const double CONVERGED = 1e-9;          // radians
-const double DEGREES = 180. / CV_PI;
+const double DEGREES = 180./CV_PI;
 const char* const NO_TILT = "no tilt of the window explains the new images: did the target move between the images of a pair, or "
                             "are images and calibration not of the same cameras?";
 
@@ -38,7 +38,7 @@ struct FreeNormal
         basis.col(0) = calibrated.cross(Eigen::Vector3d::UnitY()).normalized();
         basis.col(1) = calibrated.cross(basis.col(0));
     }
-    Eigen::Vector3d at(const Eigen::Vector2d& delta) const { return calibrated + basis * delta; }
+    Eigen::Vector3d at(const Eigen::Vector2d& delta) const { return calibrated + basis*delta; }
 };
 
 //! The new images against the calibration, linearised; the boards' poses projected out.
@@ -55,7 +55,7 @@ public:
                 normals_.emplace_back(rig_, c);
         if (normals_.empty())
             throw Failure("there is no image through the window to check: give --glass");
-        delta = VectorXd::Zero(2 * normals_.size());
+        delta = VectorXd::Zero(2*normals_.size());
     }
 
     //! Gauss-Newton on tilts and poses.
@@ -81,17 +81,17 @@ private:
         VectorXd r;
         std::vector<ViewDerivatives> views;
         linearise(views, A, B, r);
-        MatrixXd S = MatrixXd::Identity(r.size(), r.size()) * (basis_.sigma * basis_.sigma);
+        MatrixXd S = MatrixXd::Identity(r.size(), r.size())*(basis_.sigma*basis_.sigma);
         MatrixXd CAt = MatrixXd::Zero(A.cols(), A.rows());
         if (!basis_.covariance.empty())
-            CAt = toEigen(basis_.covariance) * A.transpose();
-        S += A * CAt;
+            CAt = toEigen(basis_.covariance)*A.transpose();
+        S += A*CAt;
         const Eigen::LDLT<MatrixXd> inverse(S);
-        covariance = (B.transpose() * inverse.solve(B)).inverse();
-        const VectorXd change = covariance * (B.transpose() * inverse.solve(r));
+        covariance = (B.transpose()*inverse.solve(B)).inverse();
+        const VectorXd change = covariance*(B.transpose()*inverse.solve(r));
         if (!change.allFinite())
             throw Failure(NO_TILT);
-        const VectorXd rest = r - B * change, weighted = inverse.solve(rest), parameters = CAt * weighted;
+        const VectorXd rest = r - B*change, weighted = inverse.solve(rest), parameters = CAt*weighted;
         misfit = rest.dot(weighted);
         freedom = (int)(r.size() - delta.size());
         for (size_t i = 0; i < sights_.size(); i++)
@@ -100,7 +100,7 @@ private:
         for (size_t w = 0; w < normals_.size(); w++)
         {
             GlassWindow window = rig_.cameras[normals_[w].camera]->window();
-            const Eigen::Vector3d n = normals_[w].at(delta.segment<2>(2 * w)).normalized();
+            const Eigen::Vector3d n = normals_[w].at(delta.segment<2>(2*w)).normalized();
             window.normal = Vec3d(n[0], n[1], n[2]);
             rig_.cameras[normals_[w].camera]->setWindow(window);
         }
@@ -111,8 +111,8 @@ private:
     {
         MatrixXd B(view.byParameters.rows(), delta.size());
         for (size_t w = 0; w < normals_.size(); w++)
-            B.middleCols(2 * w, 2) = view.byParameters.middleCols(normals_[w].column, 3) * normals_[w].basis
-                                     / normals_[w].at(delta.segment<2>(2 * w)).norm();
+            B.middleCols(2*w, 2) = view.byParameters.middleCols(normals_[w].column, 3)*normals_[w].basis
+                                     / normals_[w].at(delta.segment<2>(2*w)).norm();
         return B;
     }
 
@@ -133,16 +133,16 @@ private:
                 r.resize(rows);
                 rows = 0;
             }
-            A.middleRows(rows, Q.rows()) = Q * view.byParameters;
-            B.middleRows(rows, Q.rows()) = Q * byTilts(view);
-            r.segment(rows, Q.rows()) = Q * (sight.pixels - view.predicted);
+            A.middleRows(rows, Q.rows()) = Q*view.byParameters;
+            B.middleRows(rows, Q.rows()) = Q*byTilts(view);
+            r.segment(rows, Q.rows()) = Q*(sight.pixels - view.predicted);
             rows += Q.rows();
         }
     }
 
     void movePose(Sight& sight, const ViewDerivatives& view, const VectorXd& parameters, const VectorXd& change) const
     {
-        const VectorXd r = sight.pixels - view.predicted - view.byParameters * parameters - byTilts(view) * change;
+        const VectorXd r = sight.pixels - view.predicted - view.byParameters*parameters - byTilts(view)*change;
         const VectorXd pose = view.byPose.colPivHouseholderQr().solve(r);
         for (int i = 0; i < 3; i++)
         {
@@ -170,30 +170,30 @@ CheckResult checkTilts(const CheckBasis& basis, const std::vector<Point3d>& obje
     for (size_t w = 0; w < count; w++)
     {
         const FreeNormal& free = problem.normals()[w];
-        const Eigen::Vector2d delta = problem.delta.segment<2>(2 * w);
-        const Eigen::Matrix2d V = problem.covariance.block<2, 2>(2 * w, 2 * w);
+        const Eigen::Vector2d delta = problem.delta.segment<2>(2*w);
+        const Eigen::Matrix2d V = problem.covariance.block<2, 2>(2*w, 2*w);
         const Eigen::Vector3d n = free.at(delta).normalized();
         const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(V).eigenvalues();
         WindowCheck check;
         check.camera = free.camera;
         check.normal = Vec3d(n[0], n[1], n[2]);
-        check.tiltDeg = std::atan(delta.norm()) * DEGREES;
-        check.stdDeg[0] = std::sqrt(variances[1]) * DEGREES;
-        check.stdDeg[1] = std::sqrt(variances[0]) * DEGREES;
-        check.probability = upperTailF(1, basis.freedom, 0.5 * delta.dot(V.inverse() * delta));
-        check.moved = check.probability < falseAlarm / count;
+        check.tiltDeg = std::atan(delta.norm())*DEGREES;
+        check.stdDeg[0] = std::sqrt(variances[1])*DEGREES;
+        check.stdDeg[1] = std::sqrt(variances[0])*DEGREES;
+        check.probability = upperTailF(1, basis.freedom, 0.5*delta.dot(V.inverse()*delta));
+        check.moved = check.probability < falseAlarm/count;
         result.windows.push_back(check);
     }
     // Pixels come in twos, and so do poses and tilts: the number of degrees of freedom is even.
-    result.sigmaSeen = basis.sigma * std::sqrt(problem.misfit / problem.freedom);
-    result.misfitProbability = upperTailF(problem.freedom / 2, basis.freedom, problem.misfit / problem.freedom);
+    result.sigmaSeen = basis.sigma*std::sqrt(problem.misfit/problem.freedom);
+    result.misfitProbability = upperTailF(problem.freedom/2, basis.freedom, problem.misfit/problem.freedom);
     return result;
 }
 
 double powerOf(const WindowCheck& window, size_t windowCount, double freedom, double falseAlarm, double tiltDeg, double share)
 {
-    const double lambda = tiltDeg * tiltDeg / (share * window.stdDeg[0] * window.stdDeg[0]);
-    return upperTailNoncentralF2(freedom, lambda, quantileF2(freedom, falseAlarm / windowCount));
+    const double lambda = tiltDeg*tiltDeg/(share*window.stdDeg[0]*window.stdDeg[0]);
+    return upperTailNoncentralF2(freedom, lambda, quantileF2(freedom, falseAlarm/windowCount));
 }
 
 } // namespace tools

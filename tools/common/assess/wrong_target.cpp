@@ -29,7 +29,7 @@ Point shiftOfPair(const Given& given, const Moment& m, int camera)
     const auto offBy = [&](Point shift) {
         std::vector<Point2d> moved, there;
         for (const Point2d& p : board)
-            moved.push_back(p + given.square * Point2d(shift));
+            moved.push_back(p + given.square*Point2d(shift));
         perspectiveTransform(moved, there, H);
         std::vector<double> lengths;
         for (size_t i = 0; i < there.size(); i++)
@@ -39,7 +39,7 @@ Point shiftOfPair(const Given& given, const Moment& m, int camera)
     Point best;
     for (int x = -2; x <= 2; x++)
         for (int y = -2; y <= 2; y++)
-            if (offBy(Point(x, y)) < WHOLE_SQUARES * offBy(best))
+            if (offBy(Point(x, y)) < WHOLE_SQUARES*offBy(best))
                 best = Point(x, y);
     return best;
 }

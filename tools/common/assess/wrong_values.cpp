@@ -19,10 +19,10 @@ GlassWindow onePane(const GlassWindow& window)
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         thickness += window.thickness[i];
-        shift += window.thickness[i] * (1. - window.outerIndex / window.index[i]);
+        shift += window.thickness[i]*(1. - window.outerIndex/window.index[i]);
     }
     pane.thickness = {thickness};
-    pane.index = {window.outerIndex / (1. - shift / thickness)};
+    pane.index = {window.outerIndex/(1. - shift/thickness)};
     return pane;
 }
 
@@ -44,15 +44,15 @@ Explanation wrongScale(const Given& given)
         options.window.thickness[0] *= start;
         RigModel rig;
         const double px = medianErrorOfFit(given.data, options, &rig);
-        if (px >= 0.5 * best)
+        if (px >= 0.5*best)
             continue;
         best = px;
-        ratio = rig.cameras[0]->window().thickness[0] / pane.thickness[0];
+        ratio = rig.cameras[0]->window().thickness[0]/pane.thickness[0];
     }
-    std::string sentence = format("--square=%.3g in place of %.4g%s", given.square / ratio, given.square,
+    std::string sentence = format("--square=%.3g in place of %.4g%s", given.square/ratio, given.square,
                                   isRatioOfUnits(ratio) ? " (a wrong unit?)" : "");
     if (given.options.window.thickness.size() == 1)
-        sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0] * ratio, pane.thickness[0]);
+        sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0]*ratio, pane.thickness[0]);
     else
         sentence += format(", or each --thickness times %.3g", ratio);
     return {sentence + ", as only their ratio shows", best};

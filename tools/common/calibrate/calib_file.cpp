@@ -72,7 +72,7 @@ cv::Mat readMatrix(const FileNode& node)
     // Not node >> matrix: that takes the memory for as many rows and columns as the file claims.
     const int rows = node["rows"], cols = node["cols"];
     const std::vector<double> data = readList(node["data"]);
-    if (data.empty() || rows < 0 || cols < 0 || (int64_t)rows * cols != (int64_t)data.size() || !cv::checkRange(data))
+    if (data.empty() || rows < 0 || cols < 0 || (int64_t)rows*cols != (int64_t)data.size() || !cv::checkRange(data))
         return cv::Mat();
     return cv::Mat(data, true).reshape(1, rows);
 }
@@ -111,7 +111,7 @@ cv::Mat readCovariance(const FileStorage& fs, const std::string& filename)
     if (C.rows > 0 && C.rows == C.cols)
         cv::minMaxIdx(C.diag(), &least, &most);
     const double ROUNDING = 1e-12;
-    if (!node.empty() && (C.empty() || C.rows != C.cols || least < -ROUNDING * most))
+    if (!node.empty() && (C.empty() || C.rows != C.cols || least < -ROUNDING*most))
         throw Failure("'" + filename + "': the covariance is none: it must be a square matrix of finite numbers with none "
                       "below 0 on its diagonal. Was the file edited? Calibrate again");
     return C;
@@ -148,7 +148,7 @@ void readRigid(const FileStorage& fs, const std::string& filename, Calibration& 
         throw Failure("'" + filename + "' has two cameras but no 3x3 R and no T of 3 numbers beside them");
     calibration.R = cv::Matx33d(R.ptr<double>());
     calibration.T = cv::Vec3d(T.ptr<double>());
-    if (cv::norm(calibration.R * calibration.R.t() - cv::Matx33d::eye()) > 1e-6)
+    if (cv::norm(calibration.R*calibration.R.t() - cv::Matx33d::eye()) > 1e-6)
         throw Failure("'" + filename + "': R is not a rotation");
 }
 
@@ -271,7 +271,7 @@ Calibration readCalibration(const std::string& filename)
 
 void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow, const std::string& option)
 {
-    for (size_t c = 0; c < calibration.cameras.size(); ++c)
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const CameraCalibration& camera = calibration.cameras[c];
         const std::string which = calibration.stereo() ? format(" for camera %d", (int)c + 1) : "";
@@ -299,7 +299,7 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
         fs << "unit" << calibration.unit << "target_square" << calibration.square;
     if (calibration.stereo())
     {
-        for (int i = 0; i < 2; ++i)
+        for (int i = 0; i < 2; i++)
         {
             fs << "camera" + std::to_string(i + 1) << "{";
             writeCamera(fs, calibration.cameras[i]);

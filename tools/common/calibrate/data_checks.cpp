@@ -84,7 +84,7 @@ Vec3d boardNormal(const RigData& data, const std::vector<Point2d>& pixels, Size 
         if (seen(pixels[i]))
         {
             board.emplace_back(data.objectPoints[i].x, data.objectPoints[i].y);
-            directions.push_back((pixels[i] - 0.5 * Point2d(size)) / (USUAL_FOCAL * size.width));
+            directions.push_back((pixels[i] - 0.5*Point2d(size))/(USUAL_FOCAL*size.width));
         }
     const Mat H = board.size() < 4 ? Mat() : findHomography(board, directions);
     if (H.empty())
@@ -110,7 +110,7 @@ double tiltSpreadDeg(const RigData& data, int camera, bool through)
         return NAN;
     double spread = 0.;
     for (const Vec3d& n : normals)
-        spread = std::max(spread, std::atan2(norm(n.cross(middle)), n.dot(middle)) * 180. / CV_PI);
+        spread = std::max(spread, std::atan2(norm(n.cross(middle)), n.dot(middle))*180./CV_PI);
     return spread;
 }
 
@@ -137,7 +137,7 @@ void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
         {
             const ViewSet& set = (through ? sets.glass : sets.direct)[c];
             const size_t found = set.views.size(), count = found + set.withoutTarget.size();
-            if (2 * found < count)
+            if (2*found < count)
                 notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
                                          "inner corners or dots), light and focus", found, count,
                                          through ? "images through the window" : "direct images", c ? " of camera 2" : ""));

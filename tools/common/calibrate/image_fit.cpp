@@ -114,8 +114,8 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);
     const size_t free = estimatedWindowParameters(fit, flags).size() + estimatedRigParameters(fit).size();
-    fit.freedom = 2. * points + countPriors(fit.rig, flags) - (double)free - 6. * (double)moments.size();
-    fit.sigma = fit.rms * std::sqrt(points / fit.freedom);
+    fit.freedom = 2.*points + countPriors(fit.rig, flags) - (double)free - 6.*(double)moments.size();
+    fit.sigma = fit.rms*std::sqrt(points/fit.freedom);
     return fit;
 }
 

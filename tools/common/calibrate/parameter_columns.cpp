@@ -42,7 +42,7 @@ std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int
     eigen(covariance(Rect(at, at, 3, 3)), eigenvalues);
     std::vector<double> result;
     for (int i = 0; i < 2; i++)
-        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i))) * 180. / CV_PI);
+        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i)))*180./CV_PI);
     return result;
 }
 

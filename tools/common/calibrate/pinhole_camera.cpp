@@ -26,8 +26,8 @@ void seenPoints(const std::vector<Point3d>& object, const std::vector<Point2d>& 
 
 void roundTo(double step, Mat& numbers)
 {
-    for (auto it = numbers.begin<double>(); it != numbers.end<double>(); ++it)
-        *it = std::round(*it / step) * step;
+    for (auto it = numbers.begin<double>(); it != numbers.end<double>(); it++)
+        *it = std::round(*it/step)*step;
 }
 
 int calibrateCameraFlags(int coefficients)

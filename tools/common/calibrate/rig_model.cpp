@@ -27,8 +27,8 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
         return;
     Matx33d R;
     Rodrigues(rvec, R);
-    Rodrigues(rig.R * R, rvec);
-    tvec = rig.R * tvec + rig.T;
+    Rodrigues(rig.R*R, rvec);
+    tvec = rig.R*tvec + rig.T;
 }
 
 Calibration calibrationOf(const RigModel& rig)

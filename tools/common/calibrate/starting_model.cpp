@@ -83,8 +83,8 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
     known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
     for (int i = 0; i < layers; i++)
     {
-        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd * options.thicknessStd;
-        covariance.at<double>(at.index + i, at.index + i) = options.indexStd * options.indexStd;
+        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd*options.thicknessStd;
+        covariance.at<double>(at.index + i, at.index + i) = options.indexStd*options.indexStd;
     }
     known.covariance = covariance;
     return known;
@@ -135,13 +135,13 @@ double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const std::vec
         for (const Point3d& X : object)
         {
             const Vec3d p(X);
-            const Vec3d there = R * (b.R1 * p + b.t1) + T, here = b.R2 * p + b.t2;
-            sum += norm(there - here, NORM_L2SQR) / here.dot(here);
+            const Vec3d there = R*(b.R1*p + b.t1) + T, here = b.R2*p + b.t2;
+            sum += norm(there - here, NORM_L2SQR)/here.dot(here);
         }
         misfits.push_back(sum);
     }
-    std::nth_element(misfits.begin(), misfits.begin() + misfits.size() / 2, misfits.end());
-    return misfits[misfits.size() / 2];
+    std::nth_element(misfits.begin(), misfits.begin() + misfits.size()/2, misfits.end());
+    return misfits[misfits.size()/2];
 }
 
 //! R, T from single boards seen by both cameras (direct images first, any lens): the one that fits the others best.
@@ -165,8 +165,8 @@ void startExtrinsics(const RigData& data, RigModel& rig)
     double best = std::numeric_limits<double>::infinity();
     for (const BoardInBoth& b : boards)
     {
-        const Matx33d R = b.R2 * b.R1.t();
-        const Vec3d T = b.t2 - R * b.t1;
+        const Matx33d R = b.R2*b.R1.t();
+        const Vec3d T = b.t2 - R*b.t1;
         const double misfit = relativePoseMisfit(boards, data.objectPoints, R, T);
         if (misfit < best)
         {

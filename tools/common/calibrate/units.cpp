@@ -30,8 +30,8 @@ double millimetresIn(const std::string& unit)
 bool isRatioOfUnits(double ratio)
 {
     for (double unit : {10., 25.4, 1000., 2.54, 100.})
-        for (double r : {ratio, 1. / ratio})
-            if (std::abs(r / unit - 1.) < NEARLY)
+        for (double r : {ratio, 1./ratio})
+            if (std::abs(r/unit - 1.) < NEARLY)
                 return true;
     return false;
 }
@@ -43,8 +43,8 @@ void requireSameUnit(const Calibration& calibration, double square, const std::s
                       + calibration.unit + " too");
     if (!unit.empty() || !(calibration.square > 0))
         return;
-    const double ratio = square / calibration.square;
-    if ((ratio > OTHER_BOARD || ratio < 1. / OTHER_BOARD) && isRatioOfUnits(ratio))
+    const double ratio = square/calibration.square;
+    if ((ratio > OTHER_BOARD || ratio < 1./OTHER_BOARD) && isRatioOfUnits(ratio))
         throw Failure(format("the calibration's board has squares of %g %s, this one %g: another unit? Lengths are in the "
                              "calibration's. If the boards do differ so much, say --unit=", calibration.square,
                              calibration.unit.c_str(), square) + (calibration.unit.empty() ? "..." : calibration.unit));

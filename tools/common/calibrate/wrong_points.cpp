@@ -39,7 +39,7 @@ bool clean(std::vector<Point2d>& pixels, uchar status, const Mat& inliers, Dropp
 //! Images of pairs that a robust fit has no use for, and how many pairs there are.
 bool losesPairs(const RigData& data, const Fit& fit)
 {
-    const double MOST = 1. / 3;
+    const double MOST = 1./3;
     int pairs = 0, lost = 0;
     for (int i = 0; i < (int)data.moments.size(); i++)
         for (int c = 0; c < data.cameraCount; c++)
@@ -48,11 +48,11 @@ bool losesPairs(const RigData& data, const Fit& fit)
                 continue;
             pairs++;
             bool whole = true;
-            for (int column : {2 * c, 2 * c + 1})
+            for (int column : {2*c, 2*c + 1})
                 whole = whole && fit.imageStatus.at<uchar>(i, column) == GLASS_IMAGE_USED;
             lost += !whole;
         }
-    return lost > MOST * pairs;
+    return lost > MOST*pairs;
 }
 
 /** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
@@ -109,10 +109,10 @@ WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags)
             for (bool glass : {true, false})
             {
                 Moment& m = data.moments[i];
-                const int column = 2 * c + glass;
+                const int column = 2*c + glass;
                 Dropped dropped{m.stem, c, glass, 0, false, ""};
                 if (clean(glass ? m.glass[c] : m.direct[c], fit.imageStatus.at<uchar>(i, column),
-                          fit.inliers[fit.imageStatus.cols * i + column], dropped))
+                          fit.inliers[fit.imageStatus.cols*i + column], dropped))
                     wrong.dropped.push_back(dropped);
             }
     return wrong;

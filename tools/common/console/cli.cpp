@@ -38,9 +38,9 @@ std::string oneLine(const std::string& text)
 Command::Command(int argc, char** argv, const std::string& manual)
     : app(manual, argc > 0 ? stripFolder(argv[0]) : "")
 {
-    for (int i = 0; i < argc; ++i)
+    for (int i = 0; i < argc; i++)
         line_ += (i ? " " : "") + quoted(i ? argv[i] : app.get_name());
-    for (int i = argc - 1; i > 0; --i)      // CLI11 takes them in reverse
+    for (int i = argc - 1; i > 0; i--)      // CLI11 takes them in reverse
         arguments_.push_back(argv[i]);
     app.set_version_flag("--version", app.get_name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
     app.add_flag("--quiet", quiet_, "no progress, no table: errors and warnings only");

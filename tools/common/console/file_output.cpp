@@ -56,8 +56,8 @@ std::string targetOfLinks(const std::string& path)
 {
     std::error_code ignored;
     fs::path target = path;
-    for (int i = 0; i < MOST_LINKS && fs::is_symlink(target, ignored); ++i)
-        target = folderOf(target) / fs::read_symlink(target, ignored);
+    for (int i = 0; i < MOST_LINKS && fs::is_symlink(target, ignored); i++)
+        target = folderOf(target)/fs::read_symlink(target, ignored);
     if (fs::is_symlink(target, ignored))
         throw Failure("cannot write '" + path + "': its links lead round in a circle");
     return target.string();

@@ -37,8 +37,8 @@ bool isCutJpeg(const std::vector<uchar>& bytes)
         return false;
     size_t at = 2;
     while (at + 4 <= bytes.size() && bytes[at] == 0xFF && bytes[at + 1] != 0xDA)
-        at += bytes[at + 1] == 0xFF ? 1 : 2 + 256 * bytes[at + 2] + bytes[at + 3];
-    for (; at + 2 <= bytes.size(); ++at)
+        at += bytes[at + 1] == 0xFF ? 1 : 2 + 256*bytes[at + 2] + bytes[at + 3];
+    for (; at + 2 <= bytes.size(); at++)
         if (bytes[at] == 0xFF && bytes[at + 1] == 0xD9)
             return false;
     return true;
@@ -101,7 +101,7 @@ cv::Mat readGrey(const std::string& path)
     if (image.depth() != CV_8U)
     {
         cv::minMaxLoc(image, nullptr, &brightest);
-        image.convertTo(image, CV_8U, brightest > 0 ? 255. / brightest : 1.);
+        image.convertTo(image, CV_8U, brightest > 0 ? 255./brightest : 1.);
     }
     return image;
 }

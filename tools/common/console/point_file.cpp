@@ -47,7 +47,7 @@ std::vector<cv::Point2d> readPixels(const std::string& path)
     size_t u = 0, v = 1;
     std::string line;
     bool first = true;
-    for (int number = 1; std::getline(in, line); ++number)
+    for (int number = 1; std::getline(in, line); number++)
     {
         const std::vector<std::string> cells = cellsOf(line);
         if (cells.empty() || cells[0][0] == '#')

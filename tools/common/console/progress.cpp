@@ -35,7 +35,7 @@ void Progress::at(const std::string& name)
 void Progress::step()
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ++done_;
+    done_++;
 }
 
 std::string Progress::text() const

@@ -65,7 +65,7 @@ std::vector<size_t> Table::columnWidths() const
 {
     std::vector<size_t> widths, bodies, words;
     for (const auto& row : rows_)
-        for (size_t i = 0; i < row.size(); ++i)
+        for (size_t i = 0; i < row.size(); i++)
         {
             widths.resize(std::max(widths.size(), row.size()));
             bodies.resize(widths.size());
@@ -82,14 +82,14 @@ std::vector<size_t> Table::columnWidths() const
         for (size_t widest = 0; total > SCREEN && widest < widths.size(); )
         {
             widest = widths.size();
-            for (size_t i = 0; i < widths.size(); ++i)
+            for (size_t i = 0; i < widths.size(); i++)
                 if (widths[i] > (headings ? std::max(bodies[i], words[i]) : words[i]) &&
                     (widest == widths.size() || widths[i] + (widest == 0 ? FIRST : 0) > widths[widest]))
                     widest = i;
             if (widest < widths.size())
             {
                 --widths[widest];
-                --total;
+                total--;
             }
         }
     return widths;
@@ -102,15 +102,15 @@ void Table::print(std::ostream& out) const
     {
         std::vector<std::vector<std::string>> cells;        // each in its lines
         size_t lines = 1;
-        for (size_t i = 0; i < row.size(); ++i)
+        for (size_t i = 0; i < row.size(); i++)
         {
             cells.push_back(brokenInto(row[i], widths[i], i == 0));
             lines = std::max(lines, cells[i].size());
         }
-        for (size_t k = 0; k < lines; ++k)
+        for (size_t k = 0; k < lines; k++)
         {
             std::string line;
-            for (size_t i = 0; i < row.size(); ++i)
+            for (size_t i = 0; i < row.size(); i++)
             {
                 const std::string cell = k < cells[i].size() ? cells[i][k] : "";
                 const std::string space(widths[i] - width(cell), ' ');

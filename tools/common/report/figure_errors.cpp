@@ -11,8 +11,8 @@ namespace tools {
 Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
 {
     const Size size = c.data.imageSize[0];
-    const double halfWidth = 0.5 * (size.width - 1.) / (map.grid.width - 1);
-    const double halfHeight = 0.5 * (size.height - 1.) / (map.grid.height - 1);
+    const double halfWidth = 0.5*(size.width - 1.)/(map.grid.width - 1);
+    const double halfHeight = 0.5*(size.height - 1.)/(map.grid.height - 1);
     std::vector<std::vector<double>> rows;
     for (size_t i = 0; i < map.pixels.size(); i++)
         if (map.total[i] == map.total[i])
@@ -40,7 +40,7 @@ Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
         plot.data("limits", limits);
     plot << "set logscale xy\nset xlabel " << Plot::quoted("z from camera 1, " + c.unit) << "\nset ylabel "
          << Plot::quoted("expected error, " + c.unit) << "\nset format y '%g'\n"
-         << "set xrange [" << rows.front()[0] * 0.95 << ':' << rows.back()[0] * 1.05 << "]\n"
+         << "set xrange [" << rows.front()[0]*0.95 << ':' << rows.back()[0]*1.05 << "]\n"
          << "set xtics (";
     for (size_t i = 0; i < rows.size(); i++)
         plot << (i ? ", " : "") << format("'%.0f' %.9g", rows[i][0], rows[i][0]);

@@ -42,7 +42,7 @@ public:
     std::vector<Path> fieldOfView() const
     {
         const Size size = c_.data.imageSize[camera_];
-        const Point2d middle((size.width - 1) / 2., (size.height - 1) / 2.);
+        const Point2d middle((size.width - 1)/2., (size.height - 1)/2.);
         const std::vector<Point2d> pixels = axis_ == 0
             ? std::vector<Point2d>{{-0.5, middle.y}, {size.width - 0.5, middle.y}}
             : std::vector<Point2d>{{middle.x, -0.5}, {middle.x, size.height - 0.5}};
@@ -54,10 +54,10 @@ public:
         {
             if (directions[i] != directions[i])     // the border sees nothing through this window
                 continue;
-            const Vec3d enters = inner[i] * (window_.distance / inner[i].dot(window_.normal));
-            const double s = (window_.distance + glass_ - origins[i].dot(window_.normal)) / directions[i].dot(window_.normal);
-            const Vec3d leaves = origins[i] + s * directions[i];
-            const Vec3d end = origins[i] + directions[i] * ((1.1 * farthest_ - origins[i][2]) / directions[i][2]);
+            const Vec3d enters = inner[i]*(window_.distance/inner[i].dot(window_.normal));
+            const double s = (window_.distance + glass_ - origins[i].dot(window_.normal))/directions[i].dot(window_.normal);
+            const Vec3d leaves = origins[i] + s*directions[i];
+            const Vec3d end = origins[i] + directions[i]*((1.1*farthest_ - origins[i][2])/directions[i][2]);
             rays.push_back(onPaper({Vec3d(), enters, leaves, end}));
         }
         return rays;
@@ -78,7 +78,7 @@ public:
             const Rect2d box = boundingBox();
             std::vector<Vec3d> corners;
             for (const Point2d& p : {box.tl(), Point2d(box.br().x, box.y), box.br(), Point2d(box.x, box.br().y), box.tl()})
-                corners.push_back(R * Vec3d(p.x, p.y, 0) + tvec);
+                corners.push_back(R*Vec3d(p.x, p.y, 0) + tvec);
             outlines.push_back(onPaper(corners));
         }
         return outlines;
@@ -89,12 +89,12 @@ public:
     {
         const Vec2d n(window_.normal[2], window_.normal[axis_]);
         const double length = std::sqrt(n.dot(n));
-        const Vec2d unit = n / length, along(-unit[1], unit[0]);
+        const Vec2d unit = n/length, along(-unit[1], unit[0]);
         Path path;
         for (const auto& corner : {std::make_pair(from, -1.), std::make_pair(from, 1.), std::make_pair(to, 1.),
                                    std::make_pair(to, -1.)})
         {
-            const Vec2d p = unit * (corner.first / length) + along * (corner.second * halfLength);
+            const Vec2d p = unit*(corner.first/length) + along*(corner.second*halfLength);
             path.emplace_back(p[0], p[1]);
         }
         return path;
@@ -106,11 +106,11 @@ public:
         const Vec3d n = window_.normal;
         const int at = columnsOf(c_.fit.rig, camera_).normal;
         const Mat cov = c_.fit.covariance(Rect(at, at, 3, 3));
-        const double squared = n[2] * n[2] + n[axis_] * n[axis_];
-        const double gAxis = n[2] / squared, gZ = -n[axis_] / squared;      // of atan2(n[axis], n[2])
+        const double squared = n[2]*n[2] + n[axis_]*n[axis_];
+        const double gAxis = n[2]/squared, gZ = -n[axis_]/squared;      // of atan2(n[axis], n[2])
         angle = std::atan2(n[axis_], n[2]);
-        std = std::sqrt(std::max(0., gAxis * gAxis * cov.at<double>(axis_, axis_) + gZ * gZ * cov.at<double>(2, 2)
-                                 + 2 * gAxis * gZ * cov.at<double>(axis_, 2)));
+        std = std::sqrt(std::max(0., gAxis*gAxis*cov.at<double>(axis_, axis_) + gZ*gZ*cov.at<double>(2, 2)
+                                 + 2*gAxis*gZ*cov.at<double>(axis_, 2)));
     }
 
     double distance() const { return window_.distance; }
@@ -154,8 +154,8 @@ Path cone(double angle, double halfWidth, double length)
     Path path{Point2d(0, 0)};
     for (int i = -8; i <= 8; i++)
     {
-        const double a = angle + halfWidth * i / 8.;
-        path.emplace_back(length * std::cos(a), length * std::sin(a));
+        const double a = angle + halfWidth*i/8.;
+        path.emplace_back(length*std::cos(a), length*std::sin(a));
     }
     path.emplace_back(0, 0);
     return path;
@@ -170,20 +170,20 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
     double half = 0.;       // of the window as drawn
     for (const Path& ray : rays)
         half = std::max({half, std::abs(ray[1].y), std::abs(ray[2].y)});
-    half = std::max(1.6 * half, 0.08 * view.farthest());
+    half = std::max(1.6*half, 0.08*view.farthest());
 
     double angle, std;
     view.normalAngle(angle, std);
-    const double widened = std > 0 ? std::max(1., std::pow(10., std::ceil(std::log10(2. / (std * 180. / CV_PI))))) : 1.;
-    const double length = std::max(0.4 * view.farthest(), 1.3 * (view.distance() + view.glass()));
+    const double widened = std > 0 ? std::max(1., std::pow(10., std::ceil(std::log10(2./(std*180./CV_PI))))) : 1.;
+    const double length = std::max(0.4*view.farthest(), 1.3*(view.distance() + view.glass()));
 
     Plot plot(640, 420);
     draw(plot, "rays", rays);
     draw(plot, "boards", view.boards());
     // A surface without thickness (bare water) is a line.
     draw(plot, "glass", {view.section(view.distance(), view.distance() + view.glass(), half)});
-    draw(plot, "cone", {cone(angle, widened * std, length)});
-    draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length * std::cos(angle), length * std::sin(angle))}});
+    draw(plot, "cone", {cone(angle, widened*std, length)});
+    draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
     plot << "set size ratio -1\nset xlabel 'z (away from the camera)'\nset ylabel '" << (axis == 0 ? "x (right)" : "y (down)")
          << "'\nset yrange [*:*] " << "reverse\n"
          << "set key outside top center horizontal maxrows 1 samplen 1.5\n"

@@ -66,7 +66,7 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
     std::string windows;
     for (int k = 0; k < c.data.cameraCount; k++)
     {
-        const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2])) * 180. / CV_PI;
+        const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2]))*180./CV_PI;
         windows += c.data.cameraCount == 1 ? "The window" : format("%sThe window of camera %d", k ? " " : "", k + 1);
         windows += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
     }
@@ -156,10 +156,10 @@ void setParameters(data& page, const Fit& fit, int flags)
         entry.set("name", p.name);
         for (const EstimatedParameter& q : window)
         {
-            const double r = fit.covariance.at<double>(p.column, q.column) / (p.std * q.std);
+            const double r = fit.covariance.at<double>(p.column, q.column)/(p.std*q.std);
             data cell;
-            cell.set("value", format("%.2f", std::round(100. * r) / 100. + 0.));    // no minus before 0.00
-            cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6 * std::abs(r)));
+            cell.set("value", format("%.2f", std::round(100.*r)/100. + 0.));    // no minus before 0.00
+            cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6*std::abs(r)));
             cells << cell;
         }
         entry.set("cells", cells);
@@ -216,7 +216,8 @@ data thumbnailsOf(const RigCalibration& c, Progress& progress)
 
 } // namespace
 
-std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings, const std::string& commandLine, bool quiet)
+std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings,
+                       const std::string& commandLine, bool quiet)
 {
     data page;
     setVerdict(page, c, findings);
@@ -246,7 +247,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("unit", c.unit);
     setParameters(page, c.fit, c.options.flags);
 
-    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9) * c.data.cameraCount
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount
                                              + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
     page.set("error_figures", errorFigures(c, assessment, progress));
     data cameras{data::type::list}, heads{data::type::list};

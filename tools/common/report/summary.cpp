@@ -95,7 +95,7 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
         return format("(%.5f, %.5f, %.5f)", n[0], n[1], n[2]);
     }));
     rows.push_back(row(c, "tilt against the optical axis, deg",
-                       [&](int k) { return format("%.3f", std::acos(std::min(1., window(k).normal[2])) * 180. / CV_PI); }));
+                       [&](int k) { return format("%.3f", std::acos(std::min(1., window(k).normal[2]))*180./CV_PI); }));
     rows.push_back(row(c, "normal +- (two principal), deg", [&](int k) {
         const std::vector<double> std = deviation(k).normalDeg;
         return format("%.2g, %.2g", std[0], std[1]);
@@ -176,7 +176,7 @@ std::vector<SummaryRow> pointErrorRows(const RigCalibration& c, const Assessment
         rows.push_back({format("z = %.4g %s", map.range, c.unit.c_str()),
                         map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.most()),
                                                               format("%.3g", map.worst()), format("%.3g", map.worstOfPixels()),
-                                                              format("%.0f %%", 100. * map.share())}
+                                                              format("%.0f %%", 100.*map.share())}
                                    : std::vector<std::string>{"-", "-", "-", "-", "0 %"}});
     return rows;
 }
@@ -188,7 +188,7 @@ std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
                               : "Seen: the share of the image whose rays meet the plane at that z.";
     if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return !map.seen(); }))
         note += stereo ? " 0 %: no point there is in both images." : " 0 %: that z lies within or before the window.";
-    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE * map.most(); }))
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE*map.most(); }))
         note += " Where the worst is far above the rest it is a few points at the border of what is seen: leave them out.";
     return note;
 }
@@ -198,7 +198,7 @@ std::vector<SummaryRow> toleranceRows(const Assessment& a)
     std::vector<SummaryRow> rows;
     for (const Tolerance& t : a.tolerances)
         rows.push_back({t.what, t.done ? std::vector<std::string>{format("%.3g", t.rms), format("%.3g", t.worst),
-                                                                  format("%.3g", 1000. * t.lengths)}
+                                                                  format("%.3g", 1000.*t.lengths)}
                                        : std::vector<std::string>{"no fit", "-", "-"}});
     return rows;
 }

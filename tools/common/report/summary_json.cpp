@@ -70,7 +70,7 @@ Json cameraJson(const RigCalibration& c, int camera)
         {"window", {
             {"normal", listOf(window.normal)},
             {"normal_std_deg", std.normalDeg},
-            {"tilt_deg", std::acos(std::min(1., window.normal[2])) * 180. / CV_PI},
+            {"tilt_deg", std::acos(std::min(1., window.normal[2]))*180./CV_PI},
             {"distance", window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance)},
             {"thickness", estimates(window.thickness, std.thickness)},
             {"index", estimates(window.index, std.index)},
@@ -126,7 +126,8 @@ Json heldOutJson(const HeldOut& h)
         return nullptr;
     return {{"folds", h.folds}, {"views", h.views}, {"views_without_result", h.failed}, {"rms_px", h.px},
             {"rms_px_pinhole_through_glass", h.pinholePx}, {"rms_px_board_from_direct_image", h.transferPx},
-            {"error_over_stated", h.misfit.calibrationRatio()}, {"length_rms", h.lengthRms}, {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
+            {"error_over_stated", h.misfit.calibrationRatio()}, {"length_rms", h.lengthRms},
+            {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
 }
 
 Json nearFarJson(const NearFar& n)
@@ -165,7 +166,8 @@ void addAssessment(Json& json, const Assessment& a)
 {
     Json errors = Json::array(), tolerances = Json::array();
     for (const ErrorMap& map : a.errors)
-        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.most()}, {"worst", map.worst()}, {"share_seen", map.share()},
+        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.most()}, {"worst", map.worst()},
+                          {"share_seen", map.share()},
                           {"worst_of_pixel_noise", map.worstOfPixels()}});
     for (const Tolerance& t : a.tolerances)
         tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
@@ -203,7 +205,8 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;
     json["left_out"] = droppedJson(c);
-    json["findings"] = {{"contradictions", findings.contradictions}, {"weak", findings.weak}, {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
+    json["findings"] = {{"contradictions", findings.contradictions}, {"weak", findings.weak},
+                        {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
     json["made_by"] = {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
                        {"time", timeOfFiles(c.inputs)}};
     roundNumbers(json);

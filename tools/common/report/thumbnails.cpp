@@ -26,7 +26,7 @@ std::string base64(const std::vector<uchar>& bytes)
         for (size_t k = 0; k < 3; k++)
             block = block << 8 | (k < count ? bytes[i + k] : 0);
         for (size_t k = 0; k < 4; k++)
-            text += k <= count ? digits[block >> (18 - 6 * k) & 63] : '=';
+            text += k <= count ? digits[block >> (18 - 6*k) & 63] : '=';
     }
     return text;
 }
@@ -66,7 +66,7 @@ std::vector<Photo> photosOf(const RigViewSets& sets)
 Thumbnail makeThumbnail(const RigCalibration& c, const Photo& photo)
 {
     const Mat grey = readGrey(photo.path);
-    const double scale = std::min(1., (double)WIDTH / grey.cols);
+    const double scale = std::min(1., (double)WIDTH/grey.cols);
     Mat small, picture;
     resize(grey, small, Size(), scale, scale, INTER_AREA);
     cvtColor(small, picture, COLOR_GRAY2BGR);
@@ -79,7 +79,7 @@ Thumbnail makeThumbnail(const RigCalibration& c, const Photo& photo)
         const bool isUsed = std::find(used.begin(), used.end(), p) != used.end();
         found++;
         leftOut += !isUsed;
-        circle(picture, (p + Point2d(0.5, 0.5)) * scale - Point2d(0.5, 0.5), isUsed ? 3 : 5, isUsed ? USED : LEFT_OUT, FILLED,
+        circle(picture, (p + Point2d(0.5, 0.5))*scale - Point2d(0.5, 0.5), isUsed ? 3 : 5, isUsed ? USED : LEFT_OUT, FILLED,
                LINE_AA);
     }
     std::vector<uchar> bytes;

@@ -27,7 +27,7 @@ public:
     Paint(const Target& target, const Exposure& exposure) : pattern_(target.pattern()), exposure_(exposure)
     {
         drawing_ = target.drawing(DRAWING);
-        columns_ = target.size().width * (pattern_ == Target::ACIRCLES ? 2 : 1);
+        columns_ = target.size().width*(pattern_ == Target::ACIRCLES ? 2 : 1);
         rows_ = target.size().height;
     }
 
@@ -45,14 +45,14 @@ private:
         if (pattern_ == Target::CHESSBOARD)
             return inside && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
         if (pattern_ == Target::CHARUCO)
-            return inside && drawing_.at<uchar>((int)((t + 1) * DRAWING), (int)((s + 1) * DRAWING)) < 128;
-        const double radius = 0.3 * (pattern_ == Target::ACIRCLES ? 2 : 1);
-        for (int row = cvFloor(t); row <= cvFloor(t) + 1; ++row)
+            return inside && drawing_.at<uchar>((int)((t + 1)*DRAWING), (int)((s + 1)*DRAWING)) < 128;
+        const double radius = 0.3*(pattern_ == Target::ACIRCLES ? 2 : 1);
+        for (int row = cvFloor(t); row <= cvFloor(t) + 1; row++)
         {
             if (row < 0 || row >= rows_)
                 continue;
             const int step = pattern_ == Target::ACIRCLES ? 2 : 1, shift = pattern_ == Target::ACIRCLES ? row % 2 : 0;
-            const int column = cvRound((s - shift) / step) * step + shift;
+            const int column = cvRound((s - shift)/step)*step + shift;
             if (column >= 0 && column < columns_ && std::hypot(s - column, t - row) < radius)
                 return true;
         }
@@ -68,10 +68,10 @@ private:
 //! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.
 Mat traceTarget(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
-    const Size size = camera->imageSize() + Size(2 * PAD, 2 * PAD);
+    const Size size = camera->imageSize() + Size(2*PAD, 2*PAD);
     Mat pixels(size, CV_64FC2);
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x)
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
             pixels.at<Vec2d>(y, x) = Vec2d(x - PAD, y - PAD);
     Matx33d R;
     cv::Rodrigues(pose.rvec, R);
@@ -81,10 +81,10 @@ Mat traceTarget(const Target& target, const BoardPose& pose, const cv::Ptr<cv::r
                                          cv::Vec4d(normal[0], normal[1], normal[2], normal.dot(pose.tvec)));
     Mat coordinates(size, CV_64FC2);
     const Vec3d* point = points.ptr<Vec3d>();
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x)
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
         {
-            const Vec3d onTarget = R.t() * (*point++ - pose.tvec) * (1. / target.square());
+            const Vec3d onTarget = R.t()*(*point++ - pose.tvec)*(1./target.square());
             coordinates.at<Vec2d>(y, x) = Vec2d(onTarget[0], onTarget[1]);
         }
     return coordinates;
@@ -98,29 +98,29 @@ double meanLevel(const Paint& paint, const Vec2d& centre, const Vec2d& du, const
     for (const double a : {-0.5, 0.5})
         for (const double b : {-0.5, 0.5})
         {
-            const Vec2d corner = centre + a * du + b * dv;
+            const Vec2d corner = centre + a*du + b*dv;
             edge = edge || paint(corner[0], corner[1]) != middle;
         }
     if (!edge)
         return middle;
     double sum = 0;
-    for (int i = 0; i < PARTS; ++i)
-        for (int j = 0; j < PARTS; ++j)
+    for (int i = 0; i < PARTS; i++)
+        for (int j = 0; j < PARTS; j++)
         {
-            const Vec2d part = centre + ((i + 0.5) / PARTS - 0.5) * du + ((j + 0.5) / PARTS - 0.5) * dv;
+            const Vec2d part = centre + ((i + 0.5)/PARTS - 0.5)*du + ((j + 0.5)/PARTS - 0.5)*dv;
             sum += paint(part[0], part[1]);
         }
-    return sum / (PARTS * PARTS);
+    return sum/(PARTS*PARTS);
 }
 
 //! The light that falls on the fine grid, before blur.
 Mat paintFine(const Paint& paint, const Mat& coordinates)
 {
-    Mat fine, levels(coordinates.size() * FINE, CV_32F);
+    Mat fine, levels(coordinates.size()*FINE, CV_32F);
     cv::resize(coordinates, fine, levels.size(), 0, 0, cv::INTER_LINEAR);    // aligned by pixel areas, as needed here
     cv::parallel_for_(cv::Range(0, fine.rows), [&](const cv::Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-            for (int x = 0; x < fine.cols; ++x)
+        for (int y = range.start; y < range.end; y++)
+            for (int x = 0; x < fine.cols; x++)
             {
                 const int x0 = std::min(x, fine.cols - 2), y0 = std::min(y, fine.rows - 2);
                 const Vec2d du = fine.at<Vec2d>(y0, x0 + 1) - fine.at<Vec2d>(y0, x0);
@@ -133,12 +133,12 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
 
 void vignette(Mat& levels, double loss)
 {
-    const Point2d centre(0.5 * (levels.cols - 1), 0.5 * (levels.rows - 1));
-    for (int y = 0; y < levels.rows; ++y)
-        for (int x = 0; x < levels.cols; ++x)
+    const Point2d centre(0.5*(levels.cols - 1), 0.5*(levels.rows - 1));
+    for (int y = 0; y < levels.rows; y++)
+        for (int x = 0; x < levels.cols; x++)
         {
             const Point2d offset = Point2d(x, y) - centre;
-            levels.at<float>(y, x) *= (float)(1 - loss * offset.dot(offset) / centre.dot(centre));
+            levels.at<float>(y, x) *= (float)(1 - loss*offset.dot(offset)/centre.dot(centre));
         }
 }
 
@@ -149,8 +149,8 @@ Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refrac
 {
     Mat levels = paintFine(Paint(target, exposure), traceTarget(target, pose, camera));
     if (exposure.blur > 0)
-        cv::GaussianBlur(levels, levels, Size(), exposure.blur * FINE);
-    cv::resize(levels, levels, levels.size() / FINE, 0, 0, cv::INTER_AREA);
+        cv::GaussianBlur(levels, levels, Size(), exposure.blur*FINE);
+    cv::resize(levels, levels, levels.size()/FINE, 0, 0, cv::INTER_AREA);
     levels = levels(cv::Rect(cv::Point(PAD, PAD), camera->imageSize())).clone();
     vignette(levels, exposure.vignetting);
     Mat noise(levels.size(), CV_32F);
@@ -167,8 +167,8 @@ BoardPose inSecondCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T
     Matx33d board;
     cv::Rodrigues(pose.rvec, board);
     BoardPose second;
-    cv::Rodrigues(R * board, second.rvec);
-    second.tvec = R * pose.tvec + T;
+    cv::Rodrigues(R*board, second.rvec);
+    second.tvec = R*pose.tvec + T;
     return second;
 }
 

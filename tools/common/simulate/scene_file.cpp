@@ -92,7 +92,7 @@ public:
 
     BoardPose draw(const std::string& stem)
     {
-        for (int attempt = 0; attempt < 20000; ++attempt)
+        for (int attempt = 0; attempt < 20000; attempt++)
         {
             const BoardPose pose = any();
             if (isSeen(pose))
@@ -106,20 +106,20 @@ private:
     //! Target turned by the roll and tilted about a random axis in its plane; its centre anywhere in camera 1's view.
     BoardPose any()
     {
-        const double degree = CV_PI / 180, axis = rng_.uniform(0., 2 * CV_PI);
-        const double tilt = degree * rng_.uniform(tilt_[0], tilt_[1]), roll = degree * rng_.uniform(-roll_, roll_);
+        const double degree = CV_PI/180, axis = rng_.uniform(0., 2*CV_PI);
+        const double tilt = degree*rng_.uniform(tilt_[0], tilt_[1]), roll = degree*rng_.uniform(-roll_, roll_);
         cv::Matx33d tilted, rolled;
-        cv::Rodrigues(tilt * Vec3d(std::cos(axis), std::sin(axis), 0), tilted);
+        cv::Rodrigues(tilt*Vec3d(std::cos(axis), std::sin(axis), 0), tilted);
         cv::Rodrigues(Vec3d(0, 0, roll), rolled);
         const cv::Ptr<cv::refract::RefractiveCamera>& camera = rig_.cameras[0].camera;
         const cv::Matx33d K = camera->cameraMatrix();
         const double z = rng_.uniform(distance_[0], distance_[1]);
-        const Vec3d centre(z * (rng_.uniform(0., (double)camera->imageSize().width) - K(0, 2)) / K(0, 0),
-                           z * (rng_.uniform(0., (double)camera->imageSize().height) - K(1, 2)) / K(1, 1), z);
+        const Vec3d centre(z*(rng_.uniform(0., (double)camera->imageSize().width) - K(0, 2))/K(0, 0),
+                           z*(rng_.uniform(0., (double)camera->imageSize().height) - K(1, 2))/K(1, 1), z);
         BoardPose pose;
-        cv::Rodrigues(tilted * rolled, pose.rvec);
+        cv::Rodrigues(tilted*rolled, pose.rvec);
         const Vec3d first(target_.objectPoints().front()), last(target_.objectPoints().back());
-        pose.tvec = centre - tilted * rolled * (0.5 * (first + last));
+        pose.tvec = centre - tilted*rolled*(0.5*(first + last));
         return pose;
     }
 
@@ -133,7 +133,7 @@ private:
 
     bool areSeen(const std::vector<cv::Point3d>& points, const BoardPose& pose) const
     {
-        for (size_t i = 0; i < rig_.cameras.size(); ++i)
+        for (size_t i = 0; i < rig_.cameras.size(); i++)
         {
             const BoardPose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
             const auto& camera = rig_.cameras[i].camera;
@@ -171,7 +171,7 @@ std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, con
     const int count = (int)keys.number("count", 1, 10000);
     PoseLottery lottery(keys, target, rig, seed);
     const int digits = (int)std::to_string(count).size();
-    for (int i = 1; i <= count; ++i)
+    for (int i = 1; i <= count; i++)
     {
         const std::string stem = name + cv::format("%0*d", digits, i);
         poses.push_back({stem, lottery.draw(stem)});
@@ -228,7 +228,7 @@ Scene readScene(const std::string& filename)
     std::map<std::string, std::vector<NamedPose>> poses;
     uint64_t seed = scene.seed;     // of each kind of pose, so that one more at the end leaves the others as they were
     for (const FileNode& node : fs["poses"])
-        poses[node.name()] = readPoses(node, points, scene.cameras, ++seed * 0x9E3779B97F4A7C15ull);
+        poses[node.name()] = readPoses(node, points, scene.cameras, ++seed*0x9E3779B97F4A7C15ull);
     for (const FileNode& node : fs["sets"])
         scene.sets.push_back(readSet(node, poses));
     const bool windowNeeded = std::any_of(scene.sets.begin(), scene.sets.end(), [](const ImageSet& set) { return set.window; });

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#define REFRACT_OPENCV_AT_LEAST_4_7 (CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)
+#define REFRACT_OPENCV_AT_LEAST_4_7 (CV_VERSION_MAJOR*100 + CV_VERSION_MINOR >= 407)
 #if REFRACT_OPENCV_AT_LEAST_4_7
 #include <opencv2/objdetect/charuco_detector.hpp>
 #else
@@ -58,7 +58,7 @@ void requireMarkers(cv::Size innerCorners, int dictionary)
 #else
     const int markers = cv::aruco::getPredefinedDictionary(dictionary)->bytesList.rows;
 #endif
-    const int needed = squaresOf(innerCorners).area() / 2;
+    const int needed = squaresOf(innerCorners).area()/2;
     if (needed > markers)
         throw Failure(cv::format("--dictionary has %d markers, a board of this --size needs %d: take the dictionary that the "
                                  "board was printed with", markers, needed));
@@ -67,7 +67,7 @@ void requireMarkers(cv::Size innerCorners, int dictionary)
 cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dictionary, int pixelsPerSquare)
 {
     cv::Mat image;
-    const cv::Size size = squaresOf(innerCorners) * pixelsPerSquare;
+    const cv::Size size = squaresOf(innerCorners)*pixelsPerSquare;
 #if REFRACT_OPENCV_AT_LEAST_4_7
     const cv::aruco::CharucoBoard board(squaresOf(innerCorners), (float)square, (float)marker,
                                         cv::aruco::getPredefinedDictionary(dictionary));
@@ -99,10 +99,10 @@ std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorner
     if (ids.size() < 4)
         return {};
     // OpenCV's own refinement ends up to half a pixel off. The nearest other edge is the marker's.
-    refineCorners(grey, corners, 0.5 * (1 - marker / square));
+    refineCorners(grey, corners, 0.5*(1 - marker/square));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<cv::Point2d> points(innerCorners.area(), cv::Point2d(nan, nan));
-    for (size_t i = 0; i < ids.size(); ++i)
+    for (size_t i = 0; i < ids.size(); i++)
         points.at(ids[i]) = corners[i];
     return points;
 }

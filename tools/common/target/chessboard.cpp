@@ -27,11 +27,11 @@ std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
 cv::Mat_<double> squaresOf(const std::vector<Point2d>& points, Size size, const Mat& grey)
 {
     cv::Mat_<double> squares(size.height - 1, size.width - 1);
-    for (int row = 0; row < squares.rows; ++row)
-        for (int column = 0; column < squares.cols; ++column)
+    for (int row = 0; row < squares.rows; row++)
+        for (int column = 0; column < squares.cols; column++)
         {
-            const int i = row * size.width + column;
-            const Point2d centre = 0.25 * (points[i] + points[i + 1] + points[i + size.width] + points[i + size.width + 1]);
+            const int i = row*size.width + column;
+            const Point2d centre = 0.25*(points[i] + points[i + 1] + points[i + size.width] + points[i + size.width + 1]);
             Mat patch;
             cv::getRectSubPix(grey, Size(3, 3), Point2f(centre), patch);
             squares(row, column) = cv::mean(patch)[0];
@@ -45,16 +45,16 @@ bool isAlternating(const std::vector<Point2d>& points, Size size, const Mat& gre
 {
     const cv::Mat_<double> squares = squaresOf(points, size, grey);
     int inTurn[2] = {0, 0}, all = 0;            // by which comes first
-    for (int row = 0; row < squares.rows; ++row)
-        for (int column = 0; column < squares.cols; ++column)
+    for (int row = 0; row < squares.rows; row++)
+        for (int column = 0; column < squares.cols; column++)
             for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1)})
                 if (column + step.x < squares.cols && row + step.y < squares.rows)
                 {
                     const bool lighter = squares(row, column) > squares(row + step.y, column + step.x);
                     ++inTurn[lighter == ((row + column) % 2 == 0)];
-                    ++all;
+                    all++;
                 }
-    return std::max(inTurn[0], inTurn[1]) >= 0.8 * all;
+    return std::max(inTurn[0], inTurn[1]) >= 0.8*all;
 }
 
 //! A detector that has skipped corners, or taken a board's edge for some, has not found the target.
@@ -85,9 +85,9 @@ double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, cons
 {
     const cv::Mat_<double> squares = squaresOf(points, size, grey);
     double contrast = 0;
-    for (int row = 0; row < squares.rows; ++row)
-        for (int column = 0; column < squares.cols; ++column)
-            contrast += ((row + column) % 2 ? -1 : 1) * squares(row, column);
+    for (int row = 0; row < squares.rows; row++)
+        for (int column = 0; column < squares.cols; column++)
+            contrast += ((row + column) % 2 ? -1 : 1)*squares(row, column);
     return contrast;
 }
 

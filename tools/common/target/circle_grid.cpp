@@ -19,7 +19,7 @@ const int SECONDS = 20;     // of processor time: the detector may take minutes 
 std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
 {
     cv::SimpleBlobDetector::Params limits;
-    limits.maxArea = std::max(limits.maxArea, (float)(grey.total() / size.area()));
+    limits.maxArea = std::max(limits.maxArea, (float)(grey.total()/size.area()));
     const int flags = asymmetric ? cv::CALIB_CB_ASYMMETRIC_GRID : cv::CALIB_CB_SYMMETRIC_GRID;
     for (const uchar colour : {0, 255})
     {

@@ -48,7 +48,7 @@ void search(const std::vector<std::string>& paths, const std::vector<int>& which
             std::vector<Search>& results, Progress& progress)
 {
     cv::parallel_for_(cv::Range(0, (int)which.size()), [&](const cv::Range& range) {
-        for (int k = range.start; k < range.end; ++k)
+        for (int k = range.start; k < range.end; k++)
         {
             const int i = which[k];
             progress.at(paths[i]);
@@ -79,7 +79,7 @@ cv::Size otherTargetIn(const std::vector<Search>& results, const std::vector<int
 void requireOneSize(const std::vector<std::string>& paths, const std::vector<Search>& results, cv::Size known)
 {
     std::map<std::pair<int, int>, std::vector<std::string>> pathsOf;
-    for (size_t i = 0; i < paths.size(); ++i)
+    for (size_t i = 0; i < paths.size(); i++)
         pathsOf[{results[i].image.width, results[i].image.height}].push_back(paths[i]);
     const auto nameOf = [](const auto& entry) { return sizeText(cv::Size(entry.first.first, entry.first.second)); };
     for (const auto& entry : pathsOf)
@@ -104,8 +104,8 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
 {
     const int count = (int)paths.size();
     std::vector<int> samples, others;
-    for (int i = 0; i < count; ++i)
-        (i == 0 || i == count / 2 || i == count - 1 ? samples : others).push_back(i);
+    for (int i = 0; i < count; i++)
+        (i == 0 || i == count/2 || i == count - 1 ? samples : others).push_back(i);
     std::vector<Search> results(count);
     {
         Progress progress("searching images for the target", count, quiet);
@@ -123,7 +123,7 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
     ViewSet set;
     set.files = paths;
     set.imageSize = results[0].image;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
         addView(set, paths[i], results[i].points);
     if (set.views.empty() && !otherTargetIn(results, samples).empty())
         throw Failure(otherTargetText("'" + paths[0] + "'", target, otherTargetIn(results, samples)));
@@ -134,7 +134,7 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
 void requireInside(const std::string& path, const std::pair<std::string, std::vector<cv::Point2d>>& image, cv::Size size)
 {
     const double BEYOND = 1.;
-    const cv::Rect2d allowed(-BEYOND, -BEYOND, size.width + 2 * BEYOND, size.height + 2 * BEYOND);
+    const cv::Rect2d allowed(-BEYOND, -BEYOND, size.width + 2*BEYOND, size.height + 2*BEYOND);
     for (const cv::Point2d& p : image.second)
         if (seen(p) && !allowed.contains(p))
             throw Failure("'" + path + "': a point of '" + image.first + "' is at " + cv::format("(%g, %g)", p.x, p.y)

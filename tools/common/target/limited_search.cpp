@@ -24,7 +24,7 @@ struct Result
 class SharedResult
 {
 public:
-    explicit SharedResult(size_t most) : bytes_(sizeof(Result) + most * sizeof(cv::Point2f))
+    explicit SharedResult(size_t most) : bytes_(sizeof(Result) + most*sizeof(cv::Point2f))
     {
         memory_ = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
         if (memory_ == MAP_FAILED)
@@ -64,7 +64,7 @@ bool await(pid_t child, int seconds)
 {
     using namespace std::chrono;
     const auto end = steady_clock::now() + std::chrono::seconds(seconds);
-    for (milliseconds pause(1);; pause = std::min(2 * pause, milliseconds(20)))
+    for (milliseconds pause(1);; pause = std::min(2*pause, milliseconds(20)))
     {
         int status = 0;
         if (waitpid(child, &status, WNOHANG) != 0)
@@ -87,7 +87,7 @@ std::vector<cv::Point2f> searchLimited(int seconds, size_t most, const std::func
     const pid_t child = fork();
     if (child == 0)
         searchAndEnd(seconds, most, search, shared.get());
-    if (child < 0 || !await(child, 4 * seconds))
+    if (child < 0 || !await(child, 4*seconds))
         return {};
     const Result* result = shared.get();
     return std::vector<cv::Point2f>(result->points, result->points + result->count);

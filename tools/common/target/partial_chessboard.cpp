@@ -37,7 +37,7 @@ Mat_<Point2f> inner(Mat_<Point2f> grid, Size size)
 bool isEvenStep(const Point2d& a, const Point2d& b, const Point2d& c)
 {
     const double first = norm(b - a), second = norm(c - b);
-    return !(std::max(first, second) > ABRUPT * std::min(first, second));   // true with a NaN
+    return !(std::max(first, second) > ABRUPT*std::min(first, second));   // true with a NaN
 }
 
 } // namespace
@@ -60,7 +60,7 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
         std::vector<Point2d> points(size.area(), Point2d(nan, nan));
         for (int row = 0; row < piece.rows; row++)
             for (int column = 0; column < piece.cols; column++)
-                points[row * size.width + column] = piece(row, column);
+                points[row*size.width + column] = piece(row, column);
         if (!piece.empty() && isEvenGrid(points, size))
             return points;
     }
@@ -69,7 +69,7 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
 Size lookForChessboard(const Mat& grey)
 {
     const int sideOfCopy = 1000, leastCorners = 12;
-    const double scale = std::min(1., (double)sideOfCopy / std::max(grey.cols, grey.rows));
+    const double scale = std::min(1., (double)sideOfCopy/std::max(grey.cols, grey.rows));
     Mat copy;
     resize(grey, copy, Size(), scale, scale, INTER_AREA);
     Size largest;
@@ -87,7 +87,7 @@ Size lookForChessboard(const Mat& grey)
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)
 {
-    const auto at = [&](int row, int column) { return points[row * size.width + column]; };
+    const auto at = [&](int row, int column) { return points[row*size.width + column]; };
     for (int row = 0; row < size.height; row++)
         for (int column = 0; column < size.width; column++)
             if ((column > 1 && !isEvenStep(at(row, column - 2), at(row, column - 1), at(row, column))) ||

@@ -23,7 +23,7 @@ const std::map<std::string, Target::Pattern> PATTERNS = {
 std::vector<Point2d> renumbered(const std::vector<Point2d>& points, const std::vector<int>& order)
 {
     std::vector<Point2d> result(order.size());
-    for (size_t i = 0; i < order.size(); ++i)
+    for (size_t i = 0; i < order.size(); i++)
         result[i] = points[order[i]];
     return result;
 }
@@ -61,20 +61,20 @@ Target::Target(const TargetOptions& options)
     if (partial_ && pattern_ != CHESSBOARD)
         throw Failure("--partial is for --pattern=chessboard; a ChArUco target may be partly in view as it is");
     const int least = partial_ ? 5 : pattern_ == CHESSBOARD ? 3 : 2;   // what the detectors need
-    if (std::min(size_.width, size_.height) < least || (int64_t)size_.width * size_.height > 100000)
+    if (std::min(size_.width, size_.height) < least || (int64_t)size_.width*size_.height > 100000)
         throw Failure("--size=" + options.size + ": a target of at least " + std::to_string(least) + "x"
                       + std::to_string(least) + " points is needed, and no more than 100000 in all");
     if (pattern_ == CHARUCO)
     {
-        marker_ = marker_ > 0 ? marker_ : 0.75 * square_;
+        marker_ = marker_ > 0 ? marker_ : 0.75*square_;
         if (marker_ >= square_)
             throw Failure("--marker: a marker must be smaller than its square (--square)");
         dictionary_ = charucoDictionary(options.dictionary);
         requireMarkers(size_, dictionary_);
     }
-    for (int row = 0; row < size_.height; ++row)
-        for (int column = 0; column < size_.width; ++column)
-            objectPoints_.emplace_back(square_ * (pattern_ == ACIRCLES ? 2 * column + row % 2 : column), square_ * row, 0);
+    for (int row = 0; row < size_.height; row++)
+        for (int column = 0; column < size_.width; column++)
+            objectPoints_.emplace_back(square_*(pattern_ == ACIRCLES ? 2*column + row % 2 : column), square_*row, 0);
 }
 
 cv::Mat Target::drawing(int pixelsPerSquare) const
@@ -85,10 +85,10 @@ cv::Mat Target::drawing(int pixelsPerSquare) const
 std::vector<std::pair<int, int>> Target::neighbours() const
 {
     std::vector<std::pair<int, int>> pairs;
-    for (int row = 0; row < size_.height; ++row)
-        for (int column = 0; column < size_.width; ++column)
+    for (int row = 0; row < size_.height; row++)
+        for (int column = 0; column < size_.width; column++)
         {
-            const int i = row * size_.width + column;
+            const int i = row*size_.width + column;
             if (column + 1 < size_.width)
                 pairs.emplace_back(i, i + 1);
             if (row + 1 < size_.height)
@@ -115,7 +115,7 @@ std::vector<std::vector<int>> Target::symmetries() const
 {
     const int columns = size_.width, rows = size_.height;
     std::vector<std::vector<int>> orders(1);
-    for (int i = 0; i < count(); ++i)
+    for (int i = 0; i < count(); i++)
         orders[0].push_back(i);
     if (pattern_ == CHARUCO)
         return orders;
@@ -127,10 +127,10 @@ std::vector<std::vector<int>> Target::symmetries() const
         for (const int direction : {1, -1})
         {
             std::vector<int> turned;
-            for (int row = 0; row < rows; ++row)
-                for (int column = 0; column < columns; ++column)
-                    turned.push_back(direction > 0 ? (rows - 1 - column) * columns + row
-                                                   : column * columns + (columns - 1 - row));
+            for (int row = 0; row < rows; row++)
+                for (int column = 0; column < columns; column++)
+                    turned.push_back(direction > 0 ? (rows - 1 - column)*columns + row
+                                                   : column*columns + (columns - 1 - row));
             orders.push_back(turned);
         }
     return orders;
@@ -140,8 +140,8 @@ std::vector<Point2d> Target::canonical(const std::vector<Point2d>& points, const
 {
     std::vector<Point2d> result = points;
     if (pattern_ != ACIRCLES && signedArea(result, size_) < 0)      // x right, y down, seen from the front
-        for (int row = 0; row < size_.height; ++row)
-            std::reverse(result.begin() + row * size_.width, result.begin() + (row + 1) * size_.width);
+        for (int row = 0; row < size_.height; row++)
+            std::reverse(result.begin() + row*size_.width, result.begin() + (row + 1)*size_.width);
     if (pattern_ == CHESSBOARD && contrastOfFirstSquare(result, size_, grey) > 0)
     {
         if ((size_.width + size_.height) % 2)
@@ -149,9 +149,9 @@ std::vector<Point2d> Target::canonical(const std::vector<Point2d>& points, const
         else if (size_.width == size_.height)       // a quarter turn swaps dark and light
         {
             std::vector<Point2d> turned;
-            for (int row = 0; row < size_.height; ++row)
-                for (int column = 0; column < size_.width; ++column)
-                    turned.push_back(result[(size_.height - 1 - column) * size_.width + row]);
+            for (int row = 0; row < size_.height; row++)
+                for (int column = 0; column < size_.width; column++)
+                    turned.push_back(result[(size_.height - 1 - column)*size_.width + row]);
             result = turned;
         }
     }

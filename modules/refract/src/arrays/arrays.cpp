@@ -34,7 +34,7 @@ static void prefetchAhead(const uchar* array, size_t itemSize, int size, int beg
 static String describe(const Mat& m)
 {
     String shape;
-    for (int i = 0; i < m.dims; ++i)
+    for (int i = 0; i < m.dims; i++)
         shape += format(i ? "x%d" : "%d", m.size[i]);
     return shape + " " + typeToString(m.type());
 }
@@ -69,7 +69,7 @@ void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar*
     prefetchAhead(points_.data, pointSize, size_, begin, n);
     if (finite)
         return;
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         if (!std::isfinite(x[i] + y[i] + (z ? z[i] : 0)))
             status[i] = REFRACT_NOT_FINITE;
 }
@@ -92,7 +92,7 @@ PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
 template<typename T>
 static void setNaN(T* points, int channels, int n, const uchar* status)
 {
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         if (status[i] != REFRACT_OK)
             std::fill(points + channels*i, points + channels*(i + 1), std::numeric_limits<T>::quiet_NaN());
 }
@@ -106,7 +106,7 @@ void PointWriter::store(int begin, int n, const double* x, const double* y, cons
     uchar* points = points_.data + (size_t)channels*begin*points_.elemSize1();
     arrayKernels().store(points, isFloat, n, x, y, z);
     uchar reasons = 0;
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         reasons |= status[i];
     if (reasons == REFRACT_OK)
         return;
@@ -158,7 +158,7 @@ static int readSmall(InputArray a, int capacity, double* numbers, const char* na
     if (m.dims > 2)
         CV_Error_(Error::StsBadSize, ("%s is %s; it must have one or two dimensions", name, describe(m).c_str()));
     const int count = (int)m.total()*m.channels();
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
     {
         const double number = numberAt(m, i);
         if (!std::isfinite(number))
@@ -258,7 +258,7 @@ std::vector<double> readDistCoeffs(InputArray a, const char* name)
 //! The rotation next to a matrix that is one but for a few digits: Newton's iteration for the polar decomposition.
 static Matx33d nearestRotation(Matx33d R)
 {
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 4; i++)
         R = 0.5*(R + R.inv().t());
     return R;
 }
@@ -308,7 +308,7 @@ static std::vector<Double> readPoints(InputArray a, int channels, const char* na
     int n;
     const Mat m = pointsOf(a, channels, name, n);
     std::vector<Double> points(n);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         points[i] = m.depth() == CV_32F ? Double(m.ptr<Float>()[i]) : m.ptr<Double>()[i];
     return points;
 }

@@ -77,7 +77,7 @@ void forEachBlock(int size, const Body& body)
 {
     const auto run = [&](const Range& range)
     {
-        for (int b = range.start; b < range.end; ++b)
+        for (int b = range.start; b < range.end; b++)
             body(b*BLOCK, std::min(BLOCK, size - b*BLOCK));
     };
     const Range blocks(0, (size + BLOCK - 1)/BLOCK);

@@ -16,14 +16,14 @@ template<typename T>
 inline void deinterleave(const T* p, int n, double* x, double* y, double* z)
 {
     if (z)
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             x[i] = p[3*i];
             y[i] = p[3*i + 1];
             z[i] = p[3*i + 2];
         }
     else
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             x[i] = p[2*i];
             y[i] = p[2*i + 1];
@@ -51,14 +51,14 @@ template<typename T>
 inline void interleave(T* p, int n, const double* x, const double* y, const double* z)
 {
     if (z)
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             p[3*i] = (T)x[i];
             p[3*i + 1] = (T)y[i];
             p[3*i + 2] = (T)z[i];
         }
     else
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             p[2*i] = (T)x[i];
             p[2*i + 1] = (T)y[i];

@@ -65,7 +65,8 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
             p.block = &block;
             p.coordinate = i;
             const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
-            const bool isLength = block.kind == RigBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE : block.kind == RigBlock::EXTRINSICS && i >= 3;
+            const bool isLength = block.kind == RigBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
+                                  block.kind == RigBlock::EXTRINSICS && i >= 3;
             p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
                 block.kind == RigBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);

@@ -128,7 +128,7 @@ static String targetOfLinks(const String& filename)
     String target = filename;
 #ifndef _WIN32
     char next[4096];
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 40; i++)
     {
         const ssize_t length = readlink(target.c_str(), next, sizeof(next));
         if (length <= 0 || length == (ssize_t)sizeof(next))

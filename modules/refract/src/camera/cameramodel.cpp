@@ -63,11 +63,11 @@ private:
 
     void space()
     {
-        for (;; ++p_)
+        for (;; p_++)
             if (*p_ == '#')
             {
                 while (p_[1] && *p_ != '\n')
-                    ++p_;
+                    p_++;
             }
             else if (!*p_ || !std::isspace((unsigned char)*p_))
                 return;
@@ -78,7 +78,7 @@ private:
         space();
         if (*p_ != c)
             return false;
-        ++p_;
+        p_++;
         return true;
     }
 
@@ -92,7 +92,7 @@ private:
     {
         space();
         if (*p_ == 'b')         // bytes
-            ++p_;
+            p_++;
         const char quote = *p_;
         if (quote != '\'' && quote != '"')
             fail("a string is expected");
@@ -109,7 +109,7 @@ private:
         space();
         const char* begin = p_;
         while (*p_ && std::strchr("+-.0123456789eE", *p_))
-            ++p_;
+            p_++;
         std::istringstream text(std::string(begin, p_));
         text.imbue(std::locale::classic());     // the user's may have a decimal comma
         double value;
@@ -148,10 +148,10 @@ private:
                 continue;
             }
             if (*p_ == '[' || *p_ == '(' || *p_ == '{')
-                ++nesting;
+                nesting++;
             else if (*p_ == ']' || *p_ == ')' || *p_ == '}')
-                --nesting;
-            ++p_;
+                nesting--;
+            p_++;
         }
         fail("it ends within a value");
     }

@@ -22,10 +22,8 @@ const Kernels& kernels()
     return chosen;
 }
 
-const ArrayKernels& arrayKernels() { return kernels().arrays; }
-const LayerKernels& layerKernels() { return kernels().layers; }
-const LensKernels<OpenCVModel>& openCVKernels() { return kernels().openCV; }
-const LensKernels<FisheyeModel>& fisheyeKernels() { return kernels().fisheye; }
-const PointKernels& pointKernels() { return kernels().points; }
+#define REFRACT_ACCESSOR(Type, name) const Type& name##Kernels() { return kernels().name; }
+REFRACT_KERNELS(REFRACT_ACCESSOR)
+#undef REFRACT_ACCESSOR
 
 }} // namespace

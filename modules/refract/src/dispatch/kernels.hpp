@@ -23,15 +23,22 @@ machines that do not have it. */
 
 namespace cv { namespace refract {
 
+/* What each room declares: its type, and the name before -Kernels(), by which the room asks for it, and -Table, its constant in
+the room's *.simd.hpp. */
+#define REFRACT_KERNELS(EACH) \
+    EACH(ArrayKernels, array) \
+    EACH(LayerKernels, layer) \
+    EACH(LensKernels<OpenCVModel>, openCV) \
+    EACH(LensKernels<FisheyeModel>, fisheye) \
+    EACH(PointKernels, point)
+
 //! All of one level.
 struct Kernels
 {
     const char* instructions;
-    ArrayKernels arrays;
-    LayerKernels layers;
-    LensKernels<OpenCVModel> openCV;
-    LensKernels<FisheyeModel> fisheye;
-    PointKernels points;
+#define REFRACT_MEMBER(Type, name) Type name;
+    REFRACT_KERNELS(REFRACT_MEMBER)
+#undef REFRACT_MEMBER
 };
 
 //! The fastest that this machine runs (OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 in the environment leaves levels out).

@@ -23,7 +23,9 @@ constexpr Kernels table = {
 #else
     "baseline",
 #endif
-    arrayTable, layerTable, openCVTable, fisheyeTable, pointTable
+#define REFRACT_ENTRY(Type, name) name##Table,
+    REFRACT_KERNELS(REFRACT_ENTRY)
+#undef REFRACT_ENTRY
 };
 
 }}} // namespace

@@ -56,7 +56,7 @@ bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const 
             a.theta = a.target*guessRatio(m.inverse, target2);
         });
         bool more = true;
-        for (int k = 0; k < STEPS && more; ++k)
+        for (int k = 0; k < STEPS && more; k++)
         {
             group.each([&](AngleSearch& a, Part)
             {
@@ -112,11 +112,11 @@ bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, 
         storeAt(all(0), byParameters, 1, 0, at);
         storeAt(all(0), byParameters, 0, 1, at);
         storeAt(y, byParameters, 1, 1, at);
-        for (int row = 0; row < 2; ++row)
-            for (int c = 0; c < 2; ++c)
+        for (int row = 0; row < 2; row++)
+            for (int c = 0; c < 2; c++)
                 storeAt(all(row == c), byParameters, row, 2 + c, at);
         Lanes power = theta;
-        for (int c = 0; c < 4; ++c)
+        for (int c = 0; c < 4; c++)
         {
             power *= theta*theta;
             storeAt(m.fx*power*(ex + m.alpha*ey), byParameters, 0, 4 + c, at);

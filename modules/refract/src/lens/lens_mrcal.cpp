@@ -21,7 +21,7 @@ Ptr<Lens> makeMrcalLens(const String& model, const std::vector<double>& intrinsi
         if (intrinsics.size() != 4 + m.coefficients)
             CV_Error_(Error::StsBadArg, ("intrinsics has %d values; %s has %d", (int)intrinsics.size(), m.name,
                                          (int)(4 + m.coefficients)));
-        for (size_t i = 0; i < intrinsics.size(); ++i)
+        for (size_t i = 0; i < intrinsics.size(); i++)
             if (!std::isfinite(intrinsics[i]) || (i < 2 && !(intrinsics[i] > 0)))
                 CV_Error_(Error::StsBadArg, ("intrinsics[%d] is %g; focal lengths must be positive, all finite",
                                              (int)i, intrinsics[i]));

@@ -69,7 +69,7 @@ void tiltDerivatives(double tauX, double tauY, Matx33d dTilt[2])
     const Matx33d RX(1, 0, 0, 0, cX, sX, 0, -sX, cX), RY(cY, 0, -sY, 0, 1, 0, sY, 0, cY), R = RY*RX;
     const Matx33d dRX(0, 0, 0, 0, -sX, cX, 0, -cX, -sX), dRY(-sY, 0, -cY, 0, 0, 0, cY, 0, -sY);
     const Matx33d P(R(2, 2), 0, -R(0, 2), 0, R(2, 2), -R(1, 2), 0, 0, 1);
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; i++)
     {
         const Matx33d dR = i == 0 ? RY*dRX : dRY*RX;
         dTilt[i] = Matx33d(dR(2, 2), 0, -dR(0, 2), 0, dR(2, 2), -dR(1, 2), 0, 0, 0)*R + P*dR;
@@ -81,8 +81,8 @@ double monotoneRange(const double* k)
 {
     const double N[4] = { 1, k[K1], k[K2], k[K3] }, D[4] = { 1, k[K4], k[K5], k[K6] };
     double slope[7] = {};
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
             slope[i + j] += N[i]*D[j]*(1 + 2*(i - j));
     return std::min(firstPositiveRoot(slope, 7), firstPositiveRoot(D, 4));
 }
@@ -109,7 +109,7 @@ OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, 
     std::copy(untilt.val, untilt.val + 9, m_.untilt);
     Matx33d dTilt[2];
     tiltDerivatives(k[TAUX], k[TAUY], dTilt);
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; i++)
         std::copy(dTilt[i].val, dTilt[i].val + 9, m_.dTilt[i]);
 }
 
@@ -127,7 +127,7 @@ void OpenCVLens::fitStart() const
     const int MOST = 3;
     m_.sNear = image*image;
     m_.near2 = NOTHING/curvature(image);
-    for (m_.shifts = 0; m_.shifts < MOST && std::pow(startError(image), 2) > m_.near2; ++m_.shifts) {}
+    for (m_.shifts = 0; m_.shifts < MOST && std::pow(startError(image), 2) > m_.near2; m_.shifts++) {}
 }
 
 double OpenCVLens::curvature(double r) const
@@ -156,7 +156,7 @@ double OpenCVLens::startError(double r) const
         const Distorted<double> d = distort(m_, x, y);
         double foundX, foundY;
         guess(m_, d.x, d.y, foundX, foundY);
-        for (int k = 1; k <= m_.shifts; ++k)
+        for (int k = 1; k <= m_.shifts; k++)
             shift(m_, k, d.x, d.y, foundX, foundY);
         worst = std::max(worst, std::hypot(foundX - x, foundY - y));
     }
@@ -200,7 +200,7 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
 
     double best = DBL_MAX;
     const double floor = 4*DBL_EPSILON*(1 + target);
-    for (int i = 0; i < 50; ++i)
+    for (int i = 0; i < 50; i++)
     {
         const Distorted<double> d = distort(m_, x, y);
         const double ex = d.x - xd, ey = d.y - yd, error = std::abs(ex) + std::abs(ey);
@@ -209,7 +209,7 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
         best = std::min(best, error);
         const double determinant = d.determinant();
         double stepX = -(d.yy*ex - d.xy*ey)/determinant, stepY = -(d.xx*ey - d.yx*ex)/determinant;
-        for (int cut = 0; cut < 60 && !inside(x + stepX, y + stepY, distort(m_, x + stepX, y + stepY)); ++cut)
+        for (int cut = 0; cut < 60 && !inside(x + stepX, y + stepY, distort(m_, x + stepX, y + stepY)); cut++)
         {
             stepX *= 0.5; stepY *= 0.5;
         }

@@ -82,11 +82,11 @@ bool unprojectOpenCV(const OpenCVModel& model, int n, const double* u, const dou
     eachGroup<PlaneSearch>(n, [&](Group<PlaneSearch>& group)
     {
         group.each([&](PlaneSearch& p, Part at) { p = beginSearch(m, load(u, at), load(v, at)); });
-        for (int k = 1; k <= m.shifts; ++k)
+        for (int k = 1; k <= m.shifts; k++)
             group.each([&](PlaneSearch& p, Part) { shift(m, k, p.xd, p.yd, p.x, p.y); });
         Answers found;
         bool more = true;
-        for (int k = 0; k < STEPS && more; ++k)
+        for (int k = 0; k < STEPS && more; k++)
         {
             found = Answers();
             Mask unfinished = none();
@@ -135,8 +135,8 @@ inline void byOpenCVParameters(const OpenCVModel& m, Lanes x, Lanes y, const Dis
     storeAt(zero, out, 1, 0, at);
     storeAt(zero, out, 0, 1, at);
     storeAt(tilt.y, out, 1, 1, at);
-    for (int r = 0; r < 2; ++r)
-        for (int c = 0; c < 2; ++c)
+    for (int r = 0; r < 2; r++)
+        for (int c = 0; c < 2; c++)
             storeAt(all(r == c), out, r, 2 + c, at);
     const auto put = [&](int c, Lanes dx, Lanes dy)
     {
@@ -147,7 +147,7 @@ inline void byOpenCVParameters(const OpenCVModel& m, Lanes x, Lanes y, const Dis
     };
     const int numerator[] = { K1, K2, K3 }, denominator[] = { K4, K5, K6 };
     Lanes power = s*D;
-    for (int k = 0; k < 3; ++k, power *= s)
+    for (int k = 0; k < 3; k++, power *= s)
     {
         put(numerator[k], x*power, y*power);
         const Lanes byD = -radial.F*power;
@@ -159,7 +159,7 @@ inline void byOpenCVParameters(const OpenCVModel& m, Lanes x, Lanes y, const Dis
     put(S2, s*s, zero);
     put(S3, zero, s);
     put(S4, zero, s*s);
-    for (int c = TAUX; c < m.given; ++c)
+    for (int c = TAUX; c < m.given; c++)
     {
         const double* T = m.dTilt[c - TAUX];
         const Lanes inverse = 1/tilt.w, dw = T[6]*d.x + T[7]*d.y + T[8];

@@ -14,7 +14,7 @@ namespace cv { namespace refract {
 template<typename Answer>
 void answerMissing(int n, const double* output, uchar* status, const Answer& answer)
 {
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         if (status[i] == REFRACT_OK && std::isnan(output[i]))
             status[i] = answer(i);
 }

@@ -16,10 +16,10 @@ static double largestRootOfCubic(const double* c, int degree)
     Vec3d roots;
     const int count = solveCubic(coefficients, roots);
     double y = 0;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; i++)
         y = std::max(y, roots[i]);
     // Newton's step repairs what the formulas' cancellation has cost, unless the root is a double one.
-    for (int i = 0; i < 2 && y > 0; ++i)
+    for (int i = 0; i < 2 && y > 0; i++)
     {
         const Vec4d& a = coefficients;
         const double step = (((a[0]*y + a[1])*y + a[2])*y + a[3])/((3*a[0]*y + 2*a[1])*y + a[2]);
@@ -35,12 +35,12 @@ static double largestRoot(const double* c, int degree)
     typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> Companion;   // not on the heap
     CV_Assert(degree <= Companion::MaxRowsAtCompileTime);
     Companion companion = Companion::Zero(degree, degree);
-    for (int i = 0; i < degree; ++i)
+    for (int i = 0; i < degree; i++)
         companion(0, i) = -c[i + 1]/c[0];
     companion.diagonal(-1).setOnes();
     const auto roots = companion.eigenvalues();
     double y = 0;
-    for (int i = 0; i < degree; ++i)
+    for (int i = 0; i < degree; i++)
         if (std::abs(roots[i].imag()) <= 1e-7*std::abs(roots[i]))
             y = std::max(y, roots[i].real());
     return y;
@@ -50,7 +50,7 @@ double firstPositiveRoot(const double* c, int terms)
 {
     int degree = terms - 1;
     while (degree > 0 && c[degree] == 0)
-        --degree;
+        degree--;
     const double y = degree < 1 ? 0 : degree <= 3 ? largestRootOfCubic(c, degree) : largestRoot(c, degree);
     return y > 0 ? 1/y : std::numeric_limits<double>::infinity();
 }
@@ -58,12 +58,12 @@ double firstPositiveRoot(const double* c, int terms)
 void fitPolynomial(int n, double* x, double* y)
 {
     // Newton's divided differences in y, ...
-    for (int k = 1; k < n; ++k)
-        for (int i = n - 1; i >= k; --i)
+    for (int k = 1; k < n; k++)
+        for (int i = n - 1; i >= k; i--)
             y[i] = (y[i] - y[i - 1])/(x[i] - x[i - k]);
     // ... multiplied out from the inside.
-    for (int k = n - 2; k >= 0; --k)
-        for (int i = k; i < n - 1; ++i)
+    for (int k = n - 2; k >= 0; k--)
+        for (int i = k; i < n - 1; i++)
             y[i] -= x[k]*y[i + 1];
 }
 

@@ -23,7 +23,7 @@ double invertMonotone(const F& f, double target, double upper)
     double low = 0, high = upper, x = std::min(target, 0.5*upper), slope;
     if (!(target > 0) || !std::isfinite(target))
         return target == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
-    for (int i = 0; i < 200; ++i)
+    for (int i = 0; i < 200; i++)
     {
         const double error = f(x, slope) - target;
         (error > 0 ? high : low) = x;
@@ -55,7 +55,7 @@ template<typename F>
 void fitInverse(const F& f, double upper, int n, double* c)
 {
     AutoBuffer<double> y2(n);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
     {
         double slope;
         const double x = upper*std::cos(0.25*CV_PI*(2*i + 1)/n), y = f(x, slope);

@@ -12,7 +12,7 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian)
     Mat J;
     cv::Rodrigues(rvec, R, jacobian ? OutputArray(J) : OutputArray(noArray()));
     if (jacobian)
-        for (int i = 0; i < 3; ++i)         // row i: derivatives of the nine elements by rvec[i]
+        for (int i = 0; i < 3; i++)         // row i: derivatives of the nine elements by rvec[i]
             jacobian[i] = Matx33d(J.ptr<double>(i));
     return R;
 }

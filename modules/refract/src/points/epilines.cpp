@@ -21,7 +21,7 @@ so that each segment's next middle lies elsewhere on the same stretch of the cur
 int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, Projection& p)
 {
     double middles[Projection::CAPACITY/2];
-    for (int j = 0; j < segments; ++j)
+    for (int j = 0; j < segments; j++)
         middles[j] = 0.5*(nodes[j] + nodes[j + 1]);
     middles[segments] = 0.5*(nodes[segments] + middles[segments - 1]);
     const int begin = p.add(curve, segments + 1, nodes);
@@ -39,7 +39,7 @@ void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
     const double *t = p.t() + begin, *u = p.u() + begin, *v = p.v() + begin;
     const int middles = segments + 1;
     const bool allClose = pointKernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
-    for (int j = 0; j < segments; ++j)
+    for (int j = 0; j < segments; j++)
         if (allClose || depth == 0 || line.size() >= most || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
             line.push_back(Vec2d(u[j + 1], v[j + 1]));
         else
@@ -58,7 +58,7 @@ const int SAMPLES = 24;     // of a curve: a few registers
 int addSamples(const EpipolarCurve& curve, double tNear, double tFar, int samples, Projection& p)
 {
     double t[Projection::CAPACITY];
-    for (int i = 0; i < samples; ++i)
+    for (int i = 0; i < samples; i++)
         t[i] = tNear + (tFar - tNear)*i/(samples - 1);
     return p.add(curve, samples, t);
 }
@@ -72,20 +72,20 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
     root[0] = root[1];
     root[SAMPLES - 1] = root[SAMPLES - 2];
     share[0] = 0;
-    for (int i = 1; i < SAMPLES; ++i)
+    for (int i = 1; i < SAMPLES; i++)
         share[i] = share[i - 1] + root[i - 1] + root[i];
     // The chord of neighbours is two steps long, so its distance is four times a single step's. A little more than the estimate,
     // so that the check of the finished segments seldom has to split one.
     const double estimate = 0.5*share[SAMPLES - 1]/std::sqrt(4*tolerance);
     const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*estimate)));
     const double first = p.t()[samples], step = p.t()[samples + 1] - first, part = share[SAMPLES - 1]/segments;
-    for (int i = 0; i < SAMPLES - 1; ++i)
+    for (int i = 0; i < SAMPLES - 1; i++)
         slope[i] = step/std::max(share[i + 1] - share[i], DBL_MIN);
     nodes.push_back(first);
-    for (int j = 1, i = 0; j < segments; ++j)
+    for (int j = 1, i = 0; j < segments; j++)
     {
         while (i < SAMPLES - 2 && share[i + 1] < j*part)
-            ++i;
+            i++;
         nodes.push_back(first + i*step + (j*part - share[i])*slope[i]);
     }
     nodes.push_back(p.t()[samples + SAMPLES - 1]);
@@ -115,11 +115,11 @@ bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int
 {
     int first = begin, last = begin + samples - 1;
     while (first <= last && p.status(first) != REFRACT_OK)
-        ++first;
+        first++;
     if (first > last)
         return false;
     while (p.status(last) != REFRACT_OK)
-        --last;
+        last--;
     tNear = first == begin ? p.t()[first] : edgeOfVisibility(curve, p.camera(), p.t()[first], p.t()[first - 1]);
     tFar = last == begin + samples - 1 ? p.t()[last] : edgeOfVisibility(curve, p.camera(), p.t()[last], p.t()[last + 1]);
     return true;
@@ -182,10 +182,10 @@ void placeAllNodes(const Camera& to, std::vector<Track>& tracks, double toleranc
     {
         const int end = std::min(begin + TOGETHER, count);
         p.clear();
-        for (int i = begin; i < end; ++i)
+        for (int i = begin; i < end; i++)
             addSamples(tracks[i].curve, tracks[i].tNear, tracks[i].tFar, SAMPLES, p);
         p.run();
-        for (int i = begin; i < end; ++i)
+        for (int i = begin; i < end; i++)
         {
             Track& track = tracks[i];
             track.nodes = (int)nodes.size();
@@ -244,7 +244,7 @@ void writeLines(const std::vector<Polylines>& blocks, int count, int depth, Outp
     if (lines.fixedType())
         depth = CV_MAT_DEPTH(lines.type(-1));
     lines.create(count, 1, CV_MAKETYPE(depth, 2), -1, true);
-    for (int i = 0, begin = 0; i < count; ++i)
+    for (int i = 0, begin = 0; i < count; i++)
     {
         const Polylines& block = blocks[i/BLOCK];
         if (i % BLOCK == 0)
@@ -298,7 +298,7 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
         std::vector<Track> tracks;
         std::vector<double> nodes;
         tracks.reserve(n);
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             const Vec3d d(dx[i], dy[i], dz[i]);
             double muNear, muFar;

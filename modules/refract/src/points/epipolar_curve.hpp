@@ -33,7 +33,7 @@ public:
     //! The points at t, in the frame of the other camera, times w.
     void points(int n, const double* t, double* x, double* y, double* z, double* w) const
     {
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             w[i] = t[i]*unit_;
             x[i] = (1 - t[i])*direction_[0] + w[i]*origin_[0];
@@ -70,7 +70,7 @@ public:
         std::fill(status_, status_ + size_, (uchar)REFRACT_OK);
         for (int i = 0; i < size_; i += BLOCK)
             other_.project(std::min(size_ - i, BLOCK), x_ + i, y_ + i, z_ + i, w_ + i, u_ + i, v_ + i, status_ + i);
-        for (int i = 0; i < size_; ++i)
+        for (int i = 0; i < size_; i++)
             if (status_[i] != REFRACT_OK)
                 u_[i] = v_[i] = std::numeric_limits<double>::quiet_NaN();
     }

@@ -34,7 +34,7 @@ struct NewImage
     void toRaw(int n, const double* column, const double* row, double* u, double* v, uchar* status) const
     {
         double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK];
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             const Vec3d X = newToCamera*Vec3d(column[i], row[i], 1);
             x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
@@ -58,16 +58,16 @@ struct Weights
 
     Weights(double first, double step)
     {
-        for (int k = 0; k < NODES; ++k)
+        for (int k = 0; k < NODES; k++)
             node[k] = CENTRE + HALF*std::cos(nodeAngle(k));
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < N; i++)
         {
             place[i] = first + step*i;
             const double angle = std::acos((place[i] - CENTRE)/HALF);
-            for (int k = 0; k < NODES; ++k)
+            for (int k = 0; k < NODES; k++)
             {
                 double sum = 1;
-                for (int m = 1; m < NODES; ++m)
+                for (int m = 1; m < NODES; m++)
                     sum += 2*std::cos(m*nodeAngle(k))*std::cos(m*angle);
                 byNode[k][i] = byPlace[i][k] = sum/NODES;
             }
@@ -90,7 +90,7 @@ bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
     static_assert(GRID <= BLOCK, "one block");
     double column[ALL], row[ALL], u[ALL], v[ALL];
     uchar status[ALL];
-    for (int i = 0; i < ALL; ++i)
+    for (int i = 0; i < ALL; i++)
     {
         const int c = i - GRID;
         column[i] = tile.x + (c < 0 ? check.node[i % NODES] : check.place[c % 3]);
@@ -99,12 +99,12 @@ bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
     image.toRaw(GRID, column, row, u, v, status);
     image.toRaw(CHECKS, column + GRID, row + GRID, u + GRID, v + GRID, status + GRID);
     bool good = std::count(status, status + ALL, (uchar)REFRACT_OK) == ALL;
-    for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 3; r++)
     {
         double a[3], b[3];
         pointKernels().interpolate(u, check.byPlace[r], check.byNode[0], 3, a);
         pointKernels().interpolate(v, check.byPlace[r], check.byNode[0], 3, b);
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
             good = good && std::hypot(a[c] - u[GRID + 3*r + c], b[c] - v[GRID + 3*r + c]) < TOLERANCE;
     }
     std::copy(u, u + GRID, nodes.u);
@@ -124,7 +124,7 @@ void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u,
         std::transform(v, v + n, map2.ptr<float>(row) + column, [](double a) { return (float)a; });
     }
     else
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             const int a = saturate_cast<int>(u[i]*SIZE), b = saturate_cast<int>(v[i]*SIZE);
             map1.at<Vec2s>(row, column + i) = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
@@ -137,13 +137,13 @@ void solveRow(const NewImage& image, int row, int column, int n, double* u, doub
 {
     double columns[TILE], rows[TILE];
     uchar status[TILE];
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
     {
         columns[i] = column + i;
         rows[i] = row;
     }
     image.toRaw(n, columns, rows, u, v, status);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
         if (status[i] != REFRACT_OK)
             u[i] = v[i] = -1;
 }
@@ -154,7 +154,7 @@ void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
     static const PixelWeights pixels(0, 1);
     Nodes nodes;
     const bool smooth = findNodes(image, tile.tl(), nodes);
-    for (int r = 0; r < tile.height; ++r)
+    for (int r = 0; r < tile.height; r++)
     {
         double u[TILE], v[TILE];
         if (smooth)
@@ -218,7 +218,7 @@ void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, Inpu
     const int tileRows = (size.height + TILE - 1)/TILE;
     parallel_for_(Range(0, tileRows), [&](const Range& range)
     {
-        for (int t = range.start; t < range.end; ++t)
+        for (int t = range.start; t < range.end; t++)
             for (int column = 0; column < size.width; column += TILE)
                 mapTile(image, Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size), map1, map2);
     });

@@ -76,7 +76,7 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         cam.unproject(n, u, v, tau, dx, dy, dz, st);
         out.prepare(begin, n);
         meetPlane(cam.layers(), n, abc, planeD, tau, dx, dy, dz, x, y, z, mu, st);
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             x[i] /= mu[i]; y[i] /= mu[i]; z[i] /= mu[i];
         }

@@ -94,14 +94,14 @@ void interpolate(const double* values, const double* row, const double* columns,
     for (int c = 0; c < NODES; c += LANES)
     {
         Lanes sum = all(0);
-        for (int r = 0; r < NODES; ++r)
+        for (int r = 0; r < NODES; r++)
             sum += row[r]*load(values + NODES*r, Part{ c, NODES });
         store(sum, along, Part{ c, NODES });
     }
     eachRegister(n, [&](auto at)
     {
         Lanes sum = all(0);
-        for (int c = 0; c < NODES; ++c)
+        for (int c = 0; c < NODES; c++)
             sum += along[c]*load(columns + n*c, at);
         store(sum, out, at);
     });
@@ -138,7 +138,7 @@ void chainLinear(const double* A, int n, const double* px, const double* py, con
     {
         const Vector X = { load(px, at), load(py, at), load(pz, at) };
         const Vector moved = { dot(A, X), dot(A + 3, X), dot(A + 6, X) };
-        for (int row = 0; row < 2; ++row)
+        for (int row = 0; row < 2; row++)
             storeAt(dot(loadRow(byPoint, row, at), moved), out, row, 0, at);
     });
 }
@@ -149,7 +149,7 @@ void gaussNewton(int n, const double* R, const Columns& observed, const Columns&
     eachRegister(n, [&](auto at)
     {
         Vector J[4], A[3] = {}, g = {};     // A: J^T J by rows
-        for (int k = 0; k < 4; ++k)
+        for (int k = 0; k < 4; k++)
         {
             J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, at);
             if (k >= 2)

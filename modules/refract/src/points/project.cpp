@@ -46,10 +46,10 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
 //! The columns of a block's jacobian, computed side by side, as the rows u, v of each point; NaN where there is no answer.
 static void storeRows(const Columns& columns, int n, const uchar* status, double* rows)
 {
-    for (int i = 0; i < n; ++i)
-        for (int r = 0; r < 2; ++r, rows += columns.perRow)
+    for (int i = 0; i < n; i++)
+        for (int r = 0; r < 2; r++, rows += columns.perRow)
             if (status[i] == REFRACT_OK)
-                for (int c = 0; c < columns.perRow; ++c)
+                for (int c = 0; c < columns.perRow; c++)
                     rows[c] = columns.at(r, c)[i];
             else
                 std::fill(rows, rows + columns.perRow, std::numeric_limits<double>::quiet_NaN());
@@ -89,7 +89,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
             std::copy(x, x + n, X); std::copy(y, y + n, Y); std::copy(z, z + n, Z);
             pointKernels().transform(R.val, t.val, n, X, Y, Z);
             cam.projectJacobian(n, X, Y, Z, u, v, byPoint, columns.from(6), st);
-            for (int k = 0; k < 3; ++k)
+            for (int k = 0; k < 3; k++)
                 pointKernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
             if (!J.empty())
                 storeRows(columns, n, st, J.ptr<double>(2*begin));

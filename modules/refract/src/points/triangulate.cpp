@@ -59,7 +59,7 @@ uchar reproject(const Pair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& 
         return status;
     const Matx23d J2R = Matx23d(J2)*pair.R;
     e << u1[0] - p1[0], u1[1] - p1[1], u2[0] - p2[0], u2[1] - p2[1];
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; c++)
         J.col(c) << J1[c], J1[3 + c], J2R(0, c), J2R(1, c);
     return REFRACT_OK;
 }
@@ -75,13 +75,13 @@ uchar refine(const Pair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
     if (status != REFRACT_OK)
         return status;
     double last = DBL_MAX;
-    for (int iteration = 0; iteration < 100; ++iteration)
+    for (int iteration = 0; iteration < 100; iteration++)
     {
         const Eigen::Vector3d step = -J.colPivHouseholderQr().solve(e);
         Vec3d move(step[0], step[1], step[2]);
         const double moved = (J*step).norm();
         bool taken = false;
-        for (int cut = 0; cut < 40 && !taken; ++cut, move *= 0.5)
+        for (int cut = 0; cut < 40 && !taken; cut++, move *= 0.5)
         {
             taken = reproject(pair, X + move, p1, p2, eNew, JNew, NULL, NULL) == REFRACT_OK
                     && (moved < NEAR || eNew.squaredNorm() < e.squaredNorm());
@@ -126,7 +126,7 @@ void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
     std::fill(arrived, arrived + n, (uchar)false);
     std::fill(last, last + n, 1.);
     int missing = n;
-    for (int k = 0; k < STEPS && missing > 0; ++k)
+    for (int k = 0; k < STEPS && missing > 0; k++)
     {
         std::copy(x, x + n, x2); std::copy(y, y + n, y2); std::copy(z, z + n, z2);
         pointKernels().transform(pair.R.val, pair.T.val, n, x2, y2, z2);
@@ -134,7 +134,7 @@ void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
         pair.camera2.projectJacobian(n, x2, y2, z2, predicted + 2*BLOCK, predicted + 3*BLOCK, byPoint2, none, st);
         pointKernels().gaussNewton(n, pair.R.val, observed, prediction, byPoint1, byPoint2, x, y, z, moved);
         missing = 0;
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
         {
             // What is left after moves of a, then b: about b^2/a. Squares throughout.
             const bool shrinks = moved[i] <= 0.01*last[i] && st[i] == REFRACT_OK;
@@ -171,7 +171,7 @@ void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
     double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
     pair.camera1.unproject(n, block.pixel(0), block.pixel(1), tau1, dx1, dy1, dz1, block.status);
     pair.camera2.unproject(n, block.pixel(2), block.pixel(3), tau2, dx2, dy2, dz2, block.status);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
     {
         Vec3d X;
         if (block.status[i] == REFRACT_OK)
@@ -181,7 +181,7 @@ void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
     uchar arrived[BLOCK];
     if (!(flags & TRIANGULATE_MIDPOINT))
         refineTogether(pair, block, n, arrived);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; i++)
     {
         Vec3d X(block.x[i], block.y[i], block.z[i]);
         if (block.status[i] == REFRACT_OK && !(flags & TRIANGULATE_MIDPOINT) && !arrived[i])
@@ -243,14 +243,14 @@ private:
                                       const std::vector<double>& p2) const
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, count1_ + count2_ + 6);
-        for (int r = 0; r < 2; ++r)
+        for (int r = 0; r < 2; r++)
         {
-            for (int c = 0; c < count1_; ++c)
+            for (int c = 0; c < count1_; c++)
                 J(r, c) = p1[r*count1_ + c];
-            for (int c = 0; c < count2_; ++c)
+            for (int c = 0; c < count2_; c++)
                 J(2 + r, count1_ + c) = p2[r*count2_ + c];
             const Vec3d D = pair_.R*Vec3d(byPoint(2 + r, 0), byPoint(2 + r, 1), byPoint(2 + r, 2));
-            for (int c = 0; c < 3; ++c)
+            for (int c = 0; c < 3; c++)
             {
                 J(2 + r, count1_ + count2_ + c) = D.dot(dR_[c]*X);
                 J(2 + r, count1_ + count2_ + 3 + c) = D[c];
@@ -285,12 +285,12 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
         uchar status2[BLOCK];
         in1.load(begin, n, block.pixel(0), block.pixel(1), NULL, block.status);
         in2.load(begin, n, block.pixel(2), block.pixel(3), NULL, status2);
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < n; i++)
             if (block.status[i] == REFRACT_OK)
                 block.status[i] = status2[i];
         out.prepare(begin, n);
         triangulateBlock(pair, block, n, flags);
-        for (int i = 0; i < n && pointCovariance; ++i)
+        for (int i = 0; i < n && pointCovariance; i++)
             if (block.status[i] == REFRACT_OK)
                 pointCovariance->evaluate(Vec3d(block.x[i], block.y[i], block.z[i]), covariance.ptr<double>(begin + i));
         out.store(begin, n, block.x, block.y, block.z, block.status);

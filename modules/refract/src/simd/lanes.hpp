@@ -174,7 +174,7 @@ struct Group
     template<typename Step>
     void each(const Step& step)
     {
-        for (int g = 0; g < size; ++g)
+        for (int g = 0; g < size; g++)
             step(search[g], Part{ begin + g*LANES, n });
     }
     //! Whether test(search) holds for any lane.
@@ -182,7 +182,7 @@ struct Group
     bool some(const Test& test) const
     {
         Mask lanes = none();
-        for (int g = 0; g < size; ++g)
+        for (int g = 0; g < size; g++)
             lanes |= test(search[g]);
         return any(lanes);
     }

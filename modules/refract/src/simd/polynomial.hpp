@@ -12,7 +12,7 @@ template<int N, typename T>
 inline T polynomial(const double (&c)[N], T x)
 {
     T sum = c[N - 1] + T();
-    for (int k = N - 2; k >= 0; --k)
+    for (int k = N - 2; k >= 0; k--)
         sum = sum*x + c[k];
     return sum;
 }

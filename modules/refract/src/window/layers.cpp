@@ -23,7 +23,7 @@ static std::vector<Medium> mediaOf(const std::vector<double>& height, const std:
                                          [](const Medium& a, const Medium& b) { return a.index2 < b.index2; });
         return at != media.end() && at->index2 == empty.index2 ? *at : *media.insert(at, empty);
     };
-    for (size_t k = 0; k < height.size(); ++k)
+    for (size_t k = 0; k < height.size(); k++)
         medium(index[k]).height += height[k]*medium(index[k]).scale;
     medium(outer).isScene = true;
     return media;
@@ -32,7 +32,7 @@ static std::vector<Medium> mediaOf(const std::vector<double>& height, const std:
 Layers::Layers(const GlassWindow& window)
 {
     window.check();
-    normal_ = window.normal / cv::norm(window.normal);
+    normal_ = window.normal/cv::norm(window.normal);
     height_.reserve(1 + window.thickness.size());
     index_.reserve(1 + window.index.size());
     height_.assign(1, window.distance);
@@ -104,7 +104,7 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
 //! Newton's method from a ratio left of the root.
 static uchar climb(const Stack& stack, const Path<double>& path, double& ratio)
 {
-    for (int iteration = 0; iteration < 100; ++iteration)
+    for (int iteration = 0; iteration < 100; iteration++)
     {
         const PathFunction<double> F(stack, path, ratio);
         const double step = -F.value/F.slope;
@@ -138,11 +138,11 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
         layerKernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
         return;
     }
-    for (int r = 0; r < rows; ++r)
+    for (int r = 0; r < rows; r++)
     {
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; c++)
             std::copy(byDirection.at(r, c), byDirection.at(r, c) + n, byPoint.at(r, c));
-        for (int c = 0; c < (byWindow.data ? stack_.at.count : 0); ++c)
+        for (int c = 0; c < (byWindow.data ? stack_.at.count : 0); c++)
             std::fill(byWindow.at(r, c), byWindow.at(r, c) + n, 0.);
     }
 }

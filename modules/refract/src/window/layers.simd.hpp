@@ -27,7 +27,7 @@ bool traceOut(const Stack& stack, int n, const double* wx, const double* wy, con
         const Lanes qOut2 = (outer2 - inner2) + c2, qOut = s.inner == s.outer ? s.inner*c : sqrt(qOut2);
         Mask good = (c > 0) & (qOut2 > 0);
         Lanes sum = all(0);
-        for (int k = 0; k < s.count; ++k)
+        for (int k = 0; k < s.count; k++)
         {
             const Medium& medium = s.media[k];
             if (medium.isScene)
@@ -72,7 +72,7 @@ bool solveIn(const Stack& stack, int n, const double* px, const double* py, cons
             search.ratio = firstRatio(s, search.path);
         });
         bool more = true;
-        for (int k = 0; k < STEPS && more; ++k)
+        for (int k = 0; k < STEPS && more; k++)
         {
             group.each([&](Search& search, Part)
             {
@@ -110,7 +110,7 @@ struct PathDerivative
           inverseIn(inverseQ(s.inner)), inverseOut(inverseQ(s.outer)), hOut(U - s.total)
     {
         Lanes sum = hOut*slope(s.outer, inverseOut);
-        for (int k = 0; k < s.layers; ++k)
+        for (int k = 0; k < s.layers; k++)
             sum += s.heights[k]*slope(s.indices[k], inverseQ(s.indices[k]));
         const Lanes A = slope(s.inner, inverseIn)/sum;
         kappa = rho*inverseIn;
@@ -134,7 +134,7 @@ struct PathDerivative
 template<typename Put>
 inline void mediaDerivatives(const Stack& s, const PathDerivative& d, const Put& put)
 {
-    for (int k = 0; k < s.layers; ++k)
+    for (int k = 0; k < s.layers; k++)
     {
         const double index = s.indices[k];
         const Lanes inverse = d.inverseQ(index);
@@ -159,7 +159,7 @@ void chainWindow(const Stack& s, int rows, int n, const double* px, const double
         const Lanes U = dot(normal, X);
         const Vector r = { X.x - U*normal[0], X.y - U*normal[1], X.z - U*normal[2] };
         const PathDerivative d(s, U, dot(r, r), load(pRatio, at));
-        for (int row = 0; row < rows; ++row)
+        for (int row = 0; row < rows; row++)
         {
             const Vector D = loadRow(byDirection, row, at);
             const Lanes f = dot(D, r), g = d.byU*f - d.kappa*dot(normal, D), h = d.bend*f;

@@ -58,7 +58,7 @@ struct PathBounds
 {
     PathBounds(const Stack& s, const Path<T>& path) : rare(heightOf(s.media[0], path)), slope(rare), limit(T{})
     {
-        for (int k = 1; k < s.count; ++k)
+        for (int k = 1; k < s.count; k++)
         {
             const T h = heightOf(s.media[k], path);
             slope += h*s.media[k].slope;
@@ -94,7 +94,7 @@ struct PathFunction
         const T t2 = path.radius2*ratio*ratio;
         value = slope = heightOf(s.media[0], path);
         bend = T{};
-        for (int k = 1; k < s.count; ++k)
+        for (int k = 1; k < s.count; k++)
         {
             const Medium& medium = s.media[k];
             const double excess = medium.index2 - s.media[0].index2;
@@ -118,7 +118,7 @@ inline void direction(const Stack& s, const Path<T>& path, T ratio, T* d)
     T kappa = ratio;
     if (excess > 0)
         kappa *= s.rarest*inverseSqrt(inner2 + excess*path.radius2*ratio*ratio);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; k++)
         d[k] = s.normal[k] + kappa*path.radial[k];
 }
 

@@ -50,7 +50,7 @@ void GlassWindow::check() const
     if (thickness.size() != index.size())
         CV_Error_(Error::StsUnmatchedSizes, ("window.thickness has %d layers, window.index %d; they must agree",
                                              (int)thickness.size(), (int)index.size()));
-    for (size_t i = 0; i < thickness.size(); ++i)
+    for (size_t i = 0; i < thickness.size(); i++)
     {
         checkBetween("window.thickness", thickness[i], 0, MOST_LENGTH, (int)i);
         checkBetween("window.index", index[i], 1, MOST_INDEX, (int)i);
@@ -84,7 +84,7 @@ static std::vector<double> readSequence(const FileNode& map, const char* key)
     const FileNode node = map[key];
     if (node.isReal() || node.isInt())      // a single layer may be given without brackets
         return std::vector<double>(1, (double)node);
-    for (FileNodeIterator it = node.begin(); it != node.end(); ++it)
+    for (FileNodeIterator it = node.begin(); it != node.end(); it++)
     {
         const FileNode item = *it;
         if (!item.isReal() && !item.isInt())
