@@ -38,8 +38,9 @@ void commonCorners(const RigData& data, const std::vector<int>& moments, std::ve
 
 int pinholeCoefficients(const refract::RefractiveCamera& camera)
 {
-    if (camera.lensModel() == "fisheye")
-        throw Failure("cv::calibrateCamera knows no fisheye lens");
+    const String model = camera.lensModel();
+    if (model != "opencv" && model.find("LENSMODEL_") != 0)
+        throw Failure("cv::calibrateCamera knows no lens '" + model + "'");
     return camera.lensParameters().rows - 4;
 }
 

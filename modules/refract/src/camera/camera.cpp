@@ -106,24 +106,4 @@ RefractiveCamera::RefractiveCamera(const RefractiveCamera&) {}
 RefractiveCamera& RefractiveCamera::operator=(const RefractiveCamera&) { return *this; }
 RefractiveCamera::~RefractiveCamera() {}
 
-Ptr<RefractiveCamera> RefractiveCamera::create(InputArray cameraMatrix, InputArray distCoeffs,
-                                               const GlassWindow& window)
-{
-    return makePtr<Camera>(makeOpenCVLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
-                                          readDistCoeffs(distCoeffs, "distCoeffs")), window);
-}
-
-Ptr<RefractiveCamera> RefractiveCamera::createFisheye(InputArray cameraMatrix, InputArray distCoeffs,
-                                                      const GlassWindow& window)
-{
-    return makePtr<Camera>(makeFisheyeLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
-                                           readNumbers(distCoeffs, "distCoeffs")), window);
-}
-
-Ptr<RefractiveCamera> RefractiveCamera::createMrcal(const String& lensModel, InputArray intrinsics,
-                                                    const GlassWindow& window)
-{
-    return makePtr<Camera>(makeMrcalLens(lensModel, readNumbers(intrinsics, "intrinsics")), window);
-}
-
 }} // namespace

@@ -73,6 +73,9 @@ private:
     Size size_;
 };
 
+//! The lens that a file names, from its matrices.
+Ptr<Lens> makeLens(const String& model, const Mat& cameraMatrix, const Mat& distCoeffs);
+
 //! The implementation behind the public handle, which nobody else derives from; throws if it is empty, naming the argument.
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");
 

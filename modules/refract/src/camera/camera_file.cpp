@@ -29,30 +29,17 @@ void Camera::write(FileStorage& fs) const
     window_.write(fs);
 }
 
-static Ptr<Lens> readLens(const FileNode& node, const String& filename)
-{
-    const Mat K = readStoredMatrix(node, "camera_matrix", filename);
-    const Mat D = readStoredMatrix(node, "distortion_coefficients", filename);
-    if (K.empty())
-        CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
-    const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
-    const Matx33d cameraMatrix = readCameraMatrix(K, "camera_matrix");
-    if (model == "opencv")
-        return makeOpenCVLens(cameraMatrix, readDistCoeffs(D, "distortion_coefficients"));
-    if (model == "fisheye")
-        return makeFisheyeLens(cameraMatrix, readNumbers(D, "distortion_coefficients"));
-    std::vector<double> intrinsics = { cameraMatrix(0, 0), cameraMatrix(1, 1), cameraMatrix(0, 2), cameraMatrix(1, 2) };
-    const std::vector<double> d = readNumbers(D, "distortion_coefficients");
-    intrinsics.insert(intrinsics.end(), d.begin(), d.end());
-    return makeMrcalLens(model, intrinsics);
-}
-
 static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filename)
 {
     GlassWindow window;
     if (!node["glass_window"].empty())
         window.read(node["glass_window"]);
-    Ptr<RefractiveCamera> camera = makePtr<Camera>(readLens(node, filename), window);
+    const Mat K = readStoredMatrix(node, "camera_matrix", filename);
+    const Mat D = readStoredMatrix(node, "distortion_coefficients", filename);
+    if (K.empty())
+        CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
+    const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
+    Ptr<RefractiveCamera> camera = makePtr<Camera>(makeLens(model, K, D), window);
     if (node["image_width"].isInt() && node["image_height"].isInt())
         camera->setImageSize(Size((int)node["image_width"], (int)node["image_height"]));
     return camera;

@@ -17,7 +17,7 @@ struct FisheyeModel
     double fx, fy, cx, cy, alpha;
     double k[4];
     double thetaMax;
-    double inverse[TERMS];      //!< of theta in theta_d, as above
+    double inverse[TERMS];      //!< theta = theta_d (1 + theta_d^2 (inverse[0] + theta_d^2 (...))): where the search begins
 };
 
 const LensKernels<FisheyeModel>& fisheyeKernels();

@@ -13,8 +13,8 @@ namespace cv { namespace refract {
 /* What a lens is: a one-to-one map between directions and pixels. It knows nothing of windows.
 
 How to add one: derive from Lens in a lens_<model>.cpp of its own, state the formula and its domain of validity at the
-top, add a make function below, name it in camera.cpp (create...) and camera_file.cpp (read), and add it to the list of
-lenses in the tests (test/scenes.hpp), which run the same battery over all models.
+top, add a make function below, name it in camera/create.cpp, and add it to the list of lenses in the tests (test/scenes.hpp),
+which run the same battery over all models. With a vector form derive from KernelLens.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status. A
 direction or pixel outside the range where the model is one-to-one becomes REFRACT_OUTSIDE_LENS_MODEL. */

@@ -179,12 +179,12 @@ void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
         block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
     }
     uchar arrived[BLOCK];
-    if (!(flags & TRIANGULATE_MIDPOINT))
+    if (flags != TRIANGULATE_MIDPOINT)
         refineTogether(pair, block, n, arrived);
     for (int i = 0; i < n; i++)
     {
         Vec3d X(block.x[i], block.y[i], block.z[i]);
-        if (block.status[i] == REFRACT_OK && !(flags & TRIANGULATE_MIDPOINT) && !arrived[i])
+        if (block.status[i] == REFRACT_OK && flags != TRIANGULATE_MIDPOINT && !arrived[i])
         {
             block.status[i] = refine(pair, Vec2d(block.pixel(0)[i], block.pixel(1)[i]),
                                      Vec2d(block.pixel(2)[i], block.pixel(3)[i]), X);
