@@ -213,9 +213,7 @@ void print(const CheckResult& result, const Options& o, const CheckBasis& basis)
 int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
-        Options options;
-        addOptions(command.app, options);
-        command.parse();
+        const Options options = parsed(command, addOptions);
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, false, "");

@@ -168,9 +168,7 @@ void addOptions(CLI::App& app, Options& options)
 int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
-        Options options;
-        addOptions(command.app, options);
-        command.parse();
+        const Options options = parsed(command, addOptions);
         if (options.points.empty() == !options.target.given())
             throw Failure("give either --points=FILE or a target (--size, --square)");
 

@@ -378,10 +378,7 @@ void checkCombination(const Options& options, const Calibration& calibration)
 int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
-        Options options;
-        addOptions(command.app, options);
-        command.parse();
-
+        const Options options = parsed(command, addOptions);
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);

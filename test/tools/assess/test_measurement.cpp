@@ -71,6 +71,21 @@ void checkSpread(const RigModel& rig, const std::vector<Point2d>& pixels, unsign
         }
 }
 
+Target smallBoard()
+{
+    TargetOptions options;
+    options.size = "6x5";
+    options.square = 39;
+    return Target(options);
+}
+
+std::vector<Point2d> seenBy(const Ptr<RefractiveCamera>& camera, const Target& target)
+{
+    std::vector<Point2d> pixels;
+    refractiveProjectPoints(target.objectPoints(), Vec3d(0.2, 0.3, 0.1), Vec3d(-100, -80, 620), camera, pixels);
+    return pixels;
+}
+
 } // namespace
 
 TEST_CASE("Points on a plane carry the calibration's uncertainty", "[measurement]")
@@ -84,12 +99,8 @@ TEST_CASE("Points on a plane carry the calibration's uncertainty", "[measurement
 TEST_CASE("Points of a target of known shape carry the calibration's uncertainty", "[measurement]")
 {
     const RigModel rig = paperRig(1);
-    TargetOptions options;
-    options.size = "6x5";
-    options.square = 39;
-    const Target target(options);
-    std::vector<Point2d> pixels;
-    refractiveProjectPoints(target.objectPoints(), Vec3d(0.2, 0.3, 0.1), Vec3d(-100, -80, 620), rig.cameras[0], pixels);
+    const Target target = smallBoard();
+    const std::vector<Point2d> pixels = seenBy(rig.cameras[0], target);
     checkSpread(rig, pixels, 3021, [&target](const Calibration& c, const std::vector<Point2d>& p) {
         return measureTarget(c, target, p, PIXEL);
     });
@@ -221,12 +232,8 @@ TEST_CASE("Images noisier than the calibration's make all their points less cert
 TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[measurement]")
 {
     const RigModel rig = paperRig(1);
-    TargetOptions options;
-    options.size = "6x5";
-    options.square = 39;
-    const Target target(options);
-    std::vector<Point2d> pixels;
-    refractiveProjectPoints(target.objectPoints(), Vec3d(0.2, 0.3, 0.1), Vec3d(-100, -80, 620), rig.cameras[0], pixels);
+    const Target target = smallBoard();
+    std::vector<Point2d> pixels = seenBy(rig.cameras[0], target);
     scenes::Random random(3043);
     const Calibration c = calibrationOf(rig);
     const Measurement exact = measureTarget(c, target, pixels, PIXEL);

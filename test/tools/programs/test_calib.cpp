@@ -175,19 +175,25 @@ TEST_CASE("refract_calib finds the normal from pairs and says how well", "[calib
     CHECK(r.err.empty());
 }
 
-TEST_CASE("refract_calib takes the lens from the direct images and lives with missing corners", "[calib_tool]")
+//! fx that refract_calib finds from 14 moments without a lens from a file; the normal is checked here.
+static double focalLengthOf(SceneOptions options, unsigned salt, const std::string& more)
 {
     const TemporaryFolder f;
-    SceneOptions options;
     options.moments = 14;
-    options.missing = 0.15;
-    writeScene(f, options, 102);
-    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
+    writeScene(f, options, salt);
+    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4" + more));
     INFO(r.out << r.err);
     REQUIRE(r.code == 0);
     const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml");
     CHECK(degreesBetween(camera->window().normal, PaperRig().normal[0]) < 0.1);
-    CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.01));
+    return camera->cameraMatrix().at<double>(0, 0);
+}
+
+TEST_CASE("refract_calib takes the lens from the direct images and lives with missing corners", "[calib_tool]")
+{
+    SceneOptions options;
+    options.missing = 0.15;
+    CHECK(focalLengthOf(options, 102, "") == Approx(2438.).epsilon(0.01));
 }
 
 TEST_CASE("refract_calib ends with 2 if a limit is not met, and still writes the file", "[calib_tool]")
@@ -380,16 +386,7 @@ TEST_CASE("refract_calib calibrates two cameras behind one pane", "[calib_tool]"
 
 TEST_CASE("refract_calib refines the lens with --free=intrinsics", "[calib_tool]")
 {
-    const TemporaryFolder f;
-    SceneOptions options;
-    options.moments = 14;
-    writeScene(f, options, 109);
-    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4 --free=intrinsics"));
-    INFO(r.out << r.err);
-    REQUIRE(r.code == 0);
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::read(f / "calib.yml");
-    CHECK(degreesBetween(camera->window().normal, PaperRig().normal[0]) < 0.1);
-    CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(2438.).epsilon(0.005));
+    CHECK(focalLengthOf({}, 109, " --free=intrinsics") == Approx(2438.).epsilon(0.005));
 }
 
 TEST_CASE("refract_calib says that the images contradict a wrong thickness, and which would be right", "[calib_tool]")
@@ -421,6 +418,22 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     CHECK(mentions(right.out, "refined"));
 }
 
+namespace {
+
+//! What cannot be done, and a part of the one sentence that says so.
+struct Refusal { std::string command, says; };
+
+void checkRefusal(const Refusal& refusal)
+{
+    const ToolResult r = runTool(refusal.command);
+    INFO(refusal.command << "\n" << r.out << r.err);
+    CHECK(r.code == 1);
+    CHECK(mentions(r.err, refusal.says));
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+}
+
+} // namespace
+
 TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[calib_tool][slow]")
 {
     const TemporaryFolder f;
@@ -429,7 +442,7 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
     writeScene(f, options, 121);
     const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl";
     const std::string out = " --out=" + f / "calib.yml", board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
-    const struct { std::string command, says; } cases[] = {
+    const Refusal cases[] = {
         {board + " --square=3.9" + images + PANE + known + out, "in place of 3.9"},
         {board + " --square=39" + images + PANE + known + out + " --outer-index=1.333", "--outer-index=1 in place of 1.333"},
         {board + " --square=39 --direct=" + f / "glass1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "exchanged"},
@@ -444,13 +457,9 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
         other += c == 'v' ? 'w' : c;
     std::ofstream(f / "other.vnl") << other;
     const size_t before = f.count();
-    for (const auto& c : cases)
+    for (const Refusal& c : cases)
     {
-        const ToolResult r = runTool(c.command);
-        INFO(c.command << "\n" << r.out << r.err);
-        CHECK(r.code == 1);
-        CHECK(mentions(r.err, c.says));
-        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        checkRefusal(c);
         CHECK(f.count() == before);
     }
 }
@@ -463,7 +472,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
     std::ofstream(f / "random.yml") << "\x01\x02 this is no calibration";
     std::ofstream(f / "cut.png") << "\x89PNG\r\n";
     const size_t before = f.count();
-    const struct { std::string command, says; } cases[] = {
+    const Refusal cases[] = {
         {"refract_calib", "--size"},
         {inputs(f, lens(f)), "--thickness"},
         {inputs(f, PANE + lens(f) + " --free=distance"), "no effect"},
@@ -494,13 +503,9 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {std::string("refract_calib --size=6x5 --square=39 --image-size=640x480 --glass=") + f / "glass1.vnl" + " --out="
             + f / "calib.yml" + PANE + lens(f), "outside of an image of 640x480"},
     };
-    for (const auto& c : cases)
+    for (const Refusal& c : cases)
     {
-        const ToolResult r = runTool(c.command);
-        INFO(c.command << "\n" << r.out << r.err);
-        CHECK(r.code == 1);
-        CHECK(mentions(r.err, c.says));
-        CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+        checkRefusal(c);
         CHECK(f.count() == before);
     }
     const ToolResult r = runTool("refract_calib" + std::string(TARGET) + " --direct=" + f / "direct1.vnl" + " --glass="

@@ -401,6 +401,7 @@ TEST_CASE("refract_measure blames the right image, and knows a target of another
     cv::imwrite(folder / "small.png", cv::Mat(100, 100, CV_8U, cv::Scalar(90)));
     const std::string call = "refract_measure " + STEREO + "/truth.yml ";
     const struct { std::string arguments, expected; } cases[] = {
+        {"--nonsense", "there is no option --nonsense"},
         {(folder / "none.png") + TARGET, "there is no file '" + (folder / "none.png")},
         {"'" + (folder / "none*.png") + "'" + TARGET, "no file matches"},
         {"''" + TARGET, "an empty name"},

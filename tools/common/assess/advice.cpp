@@ -11,7 +11,6 @@
 
 using namespace cv;
 using namespace cv::refract;
-using Eigen::MatrixXd;
 
 namespace tools {
 

@@ -8,13 +8,9 @@
 #include <cmath>
 #include <limits>
 
-namespace tools {
+using namespace cv;
 
-using cv::Mat;
-using cv::Point2d;
-using cv::Point3d;
-using cv::Vec3d;
-using Eigen::MatrixXd;
+namespace tools {
 
 namespace {
 
@@ -40,11 +36,11 @@ public:
         : m_(m), sigma_(pixelSigma), R_(toEigen(Mat(calibration.R)))
     {
         Vec3d rvec;
-        cv::Rodrigues(calibration.R, rvec);
+        Rodrigues(calibration.R, rvec);
         const Vec3d tvecs[] = {Vec3d(), calibration.T}, rvecs[] = {Vec3d(), rvec};
         for (int c = 0; c < 2; c++)
         {
-            cv::refract::refractiveProjectPoints(m.points, rvecs[c], tvecs[c], calibration.cameras[c].camera, predicted_[c]);
+            refract::refractiveProjectPoints(m.points, rvecs[c], tvecs[c], calibration.cameras[c].camera, predicted_[c]);
             derivatives_[c] = differentiatePoints(calibration.cameras[c].camera, m.points, rvecs[c], tvecs[c]);
         }
         if (!calibration.covariance.empty())

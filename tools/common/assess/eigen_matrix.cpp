@@ -1,7 +1,6 @@
 #include "assess/eigen_matrix.hpp"
 
 using cv::Mat;
-using Eigen::MatrixXd;
 
 namespace tools {
 

@@ -6,9 +6,12 @@
 
 namespace tools {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 //! The same numbers.
-Eigen::MatrixXd toEigen(const cv::Mat& matrix);
-cv::Mat toMat(const Eigen::MatrixXd& matrix);
+MatrixXd toEigen(const cv::Mat& matrix);
+cv::Mat toMat(const MatrixXd& matrix);
 
 } // namespace tools
 

@@ -9,13 +9,9 @@
 #include <cmath>
 #include <limits>
 
-namespace tools {
+using namespace cv;
 
-using cv::Mat;
-using cv::Point2d;
-using cv::Point3d;
-using cv::Vec3d;
-using Eigen::MatrixXd;
+namespace tools {
 
 namespace {
 
@@ -39,7 +35,7 @@ double residualSigma(const std::vector<Point2d>& seenPixels, const std::vector<P
 {
     double squares = 0;
     for (size_t i = 0; i < seenPixels.size(); i++)
-        squares += std::pow(cv::norm(seenPixels[i] - predicted[i]), 2);
+        squares += std::pow(norm(seenPixels[i] - predicted[i]), 2);
     return std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
 }
 
@@ -70,8 +66,8 @@ Measurement measureStereo(const Calibration& calibration, const std::vector<Poin
     result.pixels1 = pixels1;
     result.pixels2 = pixels2;
     Mat covariance;
-    cv::refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.R,
-        calibration.T, pixels1, pixels2, result.points, result.status, cv::refract::TRIANGULATE_OPTIMAL,
+    refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.R,
+        calibration.T, pixels1, pixels2, result.points, result.status, refract::TRIANGULATE_OPTIMAL,
         pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
     result.sigma.assign(pixels1.size(), Vec3d::all(NOT_KNOWN));
     if (pixelSigma > 0)
@@ -85,13 +81,13 @@ Measurement measureStereo(const Calibration& calibration, const std::vector<Poin
 
 /* A point on a plane, X = X0 + B s with a 2-column basis B, is where its projection is the pixel:
     ds = (P B)^-1 (du - A dp)      P: pixel by point, A: pixel by lens and window */
-Measurement measureOnPlane(const Calibration& calibration, const std::vector<Point2d>& pixels, const cv::Vec4d& plane,
+Measurement measureOnPlane(const Calibration& calibration, const std::vector<Point2d>& pixels, const Vec4d& plane,
                            double pixelSigma)
 {
     const auto& camera = calibration.cameras[0].camera;
     Measurement result;
     result.pixels1 = pixels;
-    cv::refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
+    refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
     const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
     const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
     const MatrixXd B = Eigen::JacobiSVD<MatrixXd>(Eigen::RowVector3d(plane[0], plane[1], plane[2]),
@@ -112,7 +108,7 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
 {
     const auto& camera = calibration.cameras[0].camera;
     Vec3d rvec, tvec;
-    if (!cv::refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec))
+    if (!refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec))
         throw Failure("no pose of the target explains its points: check --size and --square");
     std::vector<Point3d> seenPoints;
     std::vector<Point2d> seenPixels, predicted;
@@ -123,7 +119,7 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
             seenPixels.push_back(pixels[i]);
         }
     Measurement result;
-    cv::refract::refractiveProjectPoints(seenPoints, rvec, tvec, camera, predicted);
+    refract::refractiveProjectPoints(seenPoints, rvec, tvec, camera, predicted);
     const double residual = residualSigma(seenPixels, predicted);
     if (!(residual <= pixelSigma))
         result.noise = residual;
@@ -135,9 +131,9 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
     const MatrixXd ofPose = pixelSigma*pixelSigma*inverse
         + byParameters*covarianceOfCamera1(calibration, byParameters.cols())*byParameters.transpose();
 
-    cv::Matx33d R;
+    Matx33d R;
     Mat jacobian;                               // 3x9: by rvec, of R row by row
-    cv::Rodrigues(rvec, R, jacobian);
+    Rodrigues(rvec, R, jacobian);
     const MatrixXd dR = toEigen(jacobian);
     result.pixels1 = pixels;
     for (const Point3d& point : target.objectPoints())
@@ -149,7 +145,7 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
         for (int row = 0; row < 3; row++)
             byPose.block(row, 0, 1, 3) = (dR.middleCols(3*row, 3)*Eigen::Vector3d(X[0], X[1], X[2])).transpose();
         result.sigma.push_back(deviations(byPose*ofPose*byPose.transpose()));
-        result.status.push_back(cv::refract::REFRACT_OK);
+        result.status.push_back(refract::REFRACT_OK);
     }
     return result;
 }
@@ -159,7 +155,7 @@ Calibration withoutWindows(const Calibration& calibration)
     Calibration bare = calibration;
     bare.covariance.release();      // it speaks of windows
     for (CameraCalibration& c : bare.cameras)
-        c.camera = copyWithWindow(c.camera, cv::refract::GlassWindow());
+        c.camera = copyWithWindow(c.camera, refract::GlassWindow());
     return bare;
 }
 

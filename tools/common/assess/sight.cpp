@@ -8,8 +8,6 @@
 
 using namespace cv;
 using namespace cv::refract;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace tools {
 

@@ -7,7 +7,6 @@
 
 using namespace cv;
 using namespace cv::refract;
-using Eigen::MatrixXd;
 
 namespace tools {
 

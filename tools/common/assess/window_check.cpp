@@ -11,8 +11,6 @@
 
 using namespace cv;
 using namespace cv::refract;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace tools {
 

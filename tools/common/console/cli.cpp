@@ -33,6 +33,15 @@ std::string oneLine(const std::string& text)
     return result;
 }
 
+//! Of what is left over after parsing; empty if there is none.
+std::string unknownOption(const CLI::App& app)
+{
+    for (const std::string& left : app.remaining())
+        if (left.size() > 1 && left[0] == '-')
+            return "there is no option " + left;
+    return "";
+}
+
 } // namespace
 
 Command::Command(int argc, char** argv, const std::string& manual)
@@ -78,7 +87,10 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     }
     catch (const CLI::ParseError& e)
     {
-        error = oneLine(e.what()) + " (see " + command.app.get_name() + " --help)";
+        error = unknownOption(command.app);     // which may be why something else is missing
+        if (error.empty())
+            error = oneLine(e.what());
+        error += " (see " + command.app.get_name() + " --help)";
     }
     catch (const cv::Exception& e)
     {

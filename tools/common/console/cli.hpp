@@ -59,6 +59,16 @@ private:
     bool quiet_ = false;
 };
 
+//! The options of a command line; add() declares them.
+template<typename Options>
+Options parsed(Command& command, void (*add)(CLI::App& app, Options& options))
+{
+    Options options;
+    add(command.app, options);
+    command.parse();
+    return options;
+}
+
 //! Runs the body; turns every exception into exit code 1 and one sentence on stderr.
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body);
 

@@ -6,12 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
 
-namespace tools {
+using namespace cv;
 
-using cv::Mat;
-using cv::Point2d;
-using cv::Point2f;
-using cv::Size;
+namespace tools {
 
 namespace {
 
@@ -24,17 +21,17 @@ std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
 }
 
 //! Brightness in the middle of each square between the corners.
-cv::Mat_<double> squaresOf(const std::vector<Point2d>& points, Size size, const Mat& grey)
+Mat_<double> squaresOf(const std::vector<Point2d>& points, Size size, const Mat& grey)
 {
-    cv::Mat_<double> squares(size.height - 1, size.width - 1);
+    Mat_<double> squares(size.height - 1, size.width - 1);
     for (int row = 0; row < squares.rows; row++)
         for (int column = 0; column < squares.cols; column++)
         {
             const int i = row*size.width + column;
             const Point2d centre = 0.25*(points[i] + points[i + 1] + points[i + size.width] + points[i + size.width + 1]);
             Mat patch;
-            cv::getRectSubPix(grey, Size(3, 3), Point2f(centre), patch);
-            squares(row, column) = cv::mean(patch)[0];
+            getRectSubPix(grey, Size(3, 3), Point2f(centre), patch);
+            squares(row, column) = mean(patch)[0];
         }
     return squares;
 }
@@ -43,11 +40,11 @@ cv::Mat_<double> squaresOf(const std::vector<Point2d>& points, Size size, const 
 the corners of a board of another size. */
 bool isAlternating(const std::vector<Point2d>& points, Size size, const Mat& grey)
 {
-    const cv::Mat_<double> squares = squaresOf(points, size, grey);
+    const Mat_<double> squares = squaresOf(points, size, grey);
     int inTurn[2] = {0, 0}, all = 0;            // by which comes first
     for (int row = 0; row < squares.rows; row++)
         for (int column = 0; column < squares.cols; column++)
-            for (const cv::Point step : {cv::Point(1, 0), cv::Point(0, 1)})
+            for (const Point step : {Point(1, 0), Point(0, 1)})
                 if (column + step.x < squares.cols && row + step.y < squares.rows)
                 {
                     const bool lighter = squares(row, column) > squares(row + step.y, column + step.x);
@@ -73,8 +70,8 @@ std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size)
 {
     return searchLimited(SECONDS_OF_OLD_DETECTOR, size.area(), [&] {
         std::vector<Point2f> corners;
-        const bool found = cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH
-                                                     | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
+        const bool found = findChessboardCorners(grey, size, corners, CALIB_CB_ADAPTIVE_THRESH
+                                                     | CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_FAST_CHECK);
         return found ? corners : std::vector<Point2f>();
     });
 }
@@ -83,7 +80,7 @@ std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size)
 
 double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, const Mat& grey)
 {
-    const cv::Mat_<double> squares = squaresOf(points, size, grey);
+    const Mat_<double> squares = squaresOf(points, size, grey);
     double contrast = 0;
     for (int row = 0; row < squares.rows; row++)
         for (int column = 0; column < squares.cols; column++)
@@ -97,7 +94,7 @@ a wide-angle lens: so a glance at a small copy of the image goes before it, and 
 std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
 {
     std::vector<Point2f> corners;
-    if (!cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE)
+    if (!findChessboardCornersSB(grey, size, corners, CALIB_CB_EXHAUSTIVE)
         || !isChessboard(toDouble(corners), size, grey))
     {
         const Size glance = lookForChessboard(grey);

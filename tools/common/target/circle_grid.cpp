@@ -4,12 +4,9 @@
 #include <opencv2/features2d.hpp>
 #include <algorithm>
 
-namespace tools {
+using namespace cv;
 
-using cv::Mat;
-using cv::Point2d;
-using cv::Point2f;
-using cv::Size;
+namespace tools {
 
 namespace {
 
@@ -18,17 +15,17 @@ const int SECONDS = 20;     // of processor time: the detector may take minutes 
 //! The largest dot that can fit decides the blob detector's limits.
 std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
 {
-    cv::SimpleBlobDetector::Params limits;
+    SimpleBlobDetector::Params limits;
     limits.maxArea = std::max(limits.maxArea, (float)(grey.total()/size.area()));
-    const int flags = asymmetric ? cv::CALIB_CB_ASYMMETRIC_GRID : cv::CALIB_CB_SYMMETRIC_GRID;
+    const int flags = asymmetric ? CALIB_CB_ASYMMETRIC_GRID : CALIB_CB_SYMMETRIC_GRID;
     for (const uchar colour : {0, 255})
     {
         limits.blobColor = colour;
-        const auto detector = cv::SimpleBlobDetector::create(limits);
-        for (const int extra : {0, (int)cv::CALIB_CB_CLUSTERING})
+        const auto detector = SimpleBlobDetector::create(limits);
+        for (const int extra : {0, (int)CALIB_CB_CLUSTERING})
         {
             std::vector<Point2f> centres;
-            if (cv::findCirclesGrid(grey, size, centres, flags | extra, detector))
+            if (findCirclesGrid(grey, size, centres, flags | extra, detector))
                 return centres;
         }
     }

@@ -48,8 +48,7 @@ bool bearingOf(const Lens& lens, const Point2d& point, Vec3d& bearing, Matx32d& 
         return false;
     Vec2d pixel;
     Matx23d J;
-    std::vector<double> byLens(2*lens.parameters().size());
-    if (lens.projectJacobian(bearing, pixel, J.val, byLens.data()) != REFRACT_OK)
+    if (lens.projectJacobian(bearing, pixel, J.val, NULL) != REFRACT_OK)
         return false;
     dBearing = J.t()*(J*J.t()).inv();
     return true;

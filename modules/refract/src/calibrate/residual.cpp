@@ -24,7 +24,7 @@ Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 
 ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights,
                              const Image& image)
-    : rig_(camera), points_(points), rootWeights_(rootWeights), refracted_(image.refracted)
+    : camera_(camera), points_(points), rootWeights_(rootWeights), refracted_(image.refracted)
 {
     set_num_residuals(2*(int)points.pixel.size());
     std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
@@ -63,13 +63,13 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
     if (wanted(0))
     {
         RowsMap<6> pose = rowsOf<6>(jacobians[0], i);
-        pose.rightCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.R);
+        pose.rightCols<3>() = point.byPoint*eigen(camera_.extrinsics.rotation.R);
         pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(object.derivativeOf(point.inObject));
     }
     if (wanted(extrinsics_))
     {
         RowsMap<6> rows = rowsOf<6>(jacobians[extrinsics_], i);
-        rows.leftCols<3>() = point.byPoint*eigen(rig_.extrinsics.rotation.derivativeOf(point.inCamera1));
+        rows.leftCols<3>() = point.byPoint*eigen(camera_.extrinsics.rotation.derivativeOf(point.inCamera1));
         rows.rightCols<3>() = point.byPoint;
     }
     const int lensCount = parameter_block_sizes()[lens_];
@@ -78,14 +78,14 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
     if (!refracted_)
         return;
 
-    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount + rig_.at().normal);     // and distance
-    if (rig_.window)
+    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount + camera_.at().normal);     // and distance
+    if (camera_.window)
     {
         if (wanted(extrinsics_))
-            rowsOf<6>(jacobians[extrinsics_], i) += byWindow*rig_.window->byCamera;
+            rowsOf<6>(jacobians[extrinsics_], i) += byWindow*camera_.window->byCamera;
         if (wanted(owner_))
-            rowsOf<6>(jacobians[owner_], i) = byWindow*rig_.window->byOwner;
-        byWindow *= rig_.window->byWindow;
+            rowsOf<6>(jacobians[owner_], i) = byWindow*camera_.window->byOwner;
+        byWindow *= camera_.window->byWindow;
     }
     if (wanted(normal_))
         rowsOf<3>(jacobians[normal_], i) = byWindow.leftCols<3>();
@@ -93,7 +93,7 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
         return;
     const int mediaCount = parameter_block_sizes()[media_];
     RowsMap<Eigen::Dynamic> media = rowsOf<Eigen::Dynamic>(jacobians[media_], i, mediaCount);
-    const WindowLayout& at = rig_.at();
+    const WindowLayout& at = camera_.at();
     media = point.byParameters.middleCols(lensCount + at.media, mediaCount);
     media.col(at.distance - at.media) = byWindow.col(3);
 }
@@ -106,7 +106,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
     // Known windows and lenses do without the derivatives by camera parameters.
     const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes.size(),
                                           [](const double* jacobian) { return jacobian != nullptr; }) ||
-                              (rig_.window && extrinsics_ >= 0 && jacobians[extrinsics_]);
+                              (camera_.window && extrinsics_ >= 0 && jacobians[extrinsics_]);
     const int SMALL = 32, count = camera.parameterCount();      // so many points' derivatives stay in the cache
     AutoBuffer<double, 2*32*SMALL> buffer(2*(3 + count)*SMALL);
     const Columns byPoint = { buffer.data(), 3, SMALL };
@@ -145,7 +145,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
 void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
                                 uchar* status) const
 {
-    const Extrinsics& toCamera = rig_.extrinsics;
+    const Extrinsics& toCamera = camera_.extrinsics;
     const Matx33d R = toCamera.rotation.R*R1;
     const Vec3d t = toCamera.apply(t1);
     for (int k = 0; k < n; k++)
@@ -184,7 +184,7 @@ bool ImageResidual::project(const Camera& camera, const double* pose, double* re
 
 bool ImageResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
 {
-    const Camera* camera = rig_.camera(refracted_);
+    const Camera* camera = camera_.camera(refracted_);
     if (!camera)
         return false;
     return jacobians ? linearize(*camera, parameters[0], residuals, jacobians)

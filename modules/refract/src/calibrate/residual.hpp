@@ -49,7 +49,7 @@ private:
     bool writeResidual(int i, double u, double v, uchar status, double* residuals) const;
     void writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const;
 
-    const RigCamera& rig_;
+    const RigCamera& camera_;
     const ImagePoints& points_;
     const std::vector<double>& rootWeights_;
     bool refracted_;

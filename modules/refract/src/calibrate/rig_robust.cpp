@@ -25,7 +25,7 @@ class RobustFit
 {
 public:
     RobustFit(RigProblem& rig, int seenCount, const TermCriteria& criteria)
-        : rig_(rig), seenCount_(seenCount), criteria_(criteria),
+        : problem_(rig), seenCount_(seenCount), criteria_(criteria),
           status_(rig.images().size(), (uchar)GLASS_IMAGE_USED), scale_(0) {}
 
     RobustOutcome run()
@@ -45,7 +45,7 @@ public:
     }
 
 private:
-    const std::vector<RigImage>& images() const { return rig_.images(); }
+    const std::vector<RigImage>& images() const { return problem_.images(); }
 
     std::vector<double> imageScales(const std::vector<std::vector<double> >& errors) const;
     void graduate();
@@ -56,7 +56,7 @@ private:
 
     void checkMajority(int count) const;
 
-    RigProblem& rig_;
+    RigProblem& problem_;
     const int seenCount_;
     const TermCriteria criteria_;
     std::vector<uchar> status_;
@@ -89,7 +89,7 @@ void RobustFit::graduate()
     {
         std::vector<std::vector<double> > errors;
         for (const RigImage& image : images())
-            errors.push_back(rig_.pixelErrors(image, rig_.pose(image.view)));
+            errors.push_back(problem_.pixelErrors(image, problem_.pose(image.view)));
         const std::vector<double> scales = imageScales(errors);
         const double sum = std::accumulate(scales.begin(), scales.end(), 0.);
         if (sum > 0.99*last)
@@ -100,9 +100,9 @@ void RobustFit::graduate()
             std::vector<double> rootWeights;
             for (double r : errors[i])
                 rootWeights.push_back(std::max(0., 1 - std::pow(r/(TUKEY*scales[i]), 2)));
-            rig_.setRootWeights(i, rootWeights);
+            problem_.setRootWeights(i, rootWeights);
         }
-        rig_.solve(few);
+        problem_.solve(few);
     }
 }
 
@@ -112,17 +112,17 @@ void RobustFit::estimateScale()
     std::vector<double> all, scales;
     for (const RigImage& image : images())
     {
-        const std::vector<double> errors = rig_.pixelErrors(image, rig_.pose(image.view));
+        const std::vector<double> errors = problem_.pixelErrors(image, problem_.pose(image.view));
         scales.push_back(scaleOf(errors));
         all.insert(all.end(), errors.begin(), errors.end());
     }
-    const double inflation = std::sqrt(rig_.equationCount()/std::max((double)rig_.freedom(), 1.));
+    const double inflation = std::sqrt(problem_.equationCount()/std::max((double)problem_.freedom(), 1.));
     scale_ = truncatedScale(all, median(scales), 3)*inflation;
 }
 
 void RobustFit::leaveOutMovedImages()
 {
-    for (int i : findMovedImages(rig_, scale_))
+    for (int i : findMovedImages(problem_, scale_))
         status_[i] = GLASS_IMAGE_MOVED;
 }
 
@@ -136,7 +136,7 @@ bool RobustFit::chooseInliers()
         std::vector<double> rootWeights(image.points.pixel.size(), 0.);
         if (status_[i] == GLASS_IMAGE_USED)
         {
-            const std::vector<double> errors = rig_.pixelErrors(image, rig_.pose(image.view));
+            const std::vector<double> errors = problem_.pixelErrors(image, problem_.pose(image.view));
             for (size_t k = 0; k < errors.size(); k++)
                 rootWeights[k] = errors[k] < CUT*scale_;
             const double kept = (double)std::count(rootWeights.begin(), rootWeights.end(), 1.);
@@ -147,7 +147,7 @@ bool RobustFit::chooseInliers()
             }
         }
         changed = changed || rootWeights != image.rootWeights;
-        rig_.setRootWeights(i, rootWeights);
+        problem_.setRootWeights(i, rootWeights);
     }
     return changed;
 }
@@ -165,10 +165,10 @@ bool RobustFit::decide()
     bool converged = false;
     for (int round = 0; round < ROUNDS && chooseInliers(); round++)
     {
-        checkMajority(rig_.pointCount());
-        converged = rig_.solve(criteria_);
-        if (rig_.freedom() > 0)
-            scale_ = std::max(std::sqrt(rig_.squaredError()/(rig_.freedom()*truncationFactor(CUT))), LEAST_SCALE);
+        checkMajority(problem_.pointCount());
+        converged = problem_.solve(criteria_);
+        if (problem_.freedom() > 0)
+            scale_ = std::max(std::sqrt(problem_.squaredError()/(problem_.freedom()*truncationFactor(CUT))), LEAST_SCALE);
     }
     return converged;
 }

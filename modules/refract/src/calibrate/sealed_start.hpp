@@ -7,6 +7,7 @@
 
 #include "calibrate/rig_fit.hpp"
 #include "calibrate/rig_start.hpp"
+#include "calibrate/window_start.hpp"
 
 namespace cv { namespace refract {
 

@@ -4,7 +4,7 @@
 
 /* Starts of the windows. */
 
-#include "calibrate/rig_start.hpp"
+#include "calibrate/window_start.hpp"
 #include "calibrate/calibrate_normal.hpp"
 
 namespace cv { namespace refract {

@@ -33,8 +33,6 @@ public:
                 model.lensModel = string();
             else if (key == "intrinsics")
                 model.intrinsics = numbers();
-            else if (key == "extrinsics")
-                model.extrinsics = numbers();
             else if (key == "imagersize")
                 size = numbers();
             else

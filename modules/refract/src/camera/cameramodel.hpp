@@ -14,7 +14,6 @@ struct CameraModel
 {
     String lensModel;                   //!< LENSMODEL_...
     std::vector<double> intrinsics;
-    std::vector<double> extrinsics;     //!< rvec, tvec, reference -> camera
     Size imageSize;
 };
 

@@ -1,0 +1,41 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_WINDOW_START_HPP
+#define OPENCV_REFRACT_WINDOW_START_HPP
+
+#include "calibrate/rig_problem.hpp"
+
+namespace cv { namespace refract {
+
+//! A second minimum of the cost of a window that only images through it tell of.
+struct OtherMinimum
+{
+    Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the owner's frame
+    //! Root of the difference of the squared errors, in standard deviations of a pixel.
+    double excess = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** Start of every window: its normal and, if free, its distance; the rest as given.
+
+From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
+with the lens known, some views are fitted from the best few of a ring of tilts, as the cost through the window alone has
+more than one minimum, and all views from each distinct one of these; the least cost wins. Else the given window.
+A window of unknown distance that is shared is described from now on in the frame of the camera nearest to it (rig.owner): its
+distance has a bound at 0, so that no camera comes to lie beyond. Where the start puts one there, the window moves out.
+@return one per camera; only the given owner's may hold a minimum */
+std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags);
+
+/** The given normal for a window whose start hides what was seen through it: noisy pairs through a thin window have their least
+error anywhere. */
+void keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig);
+
+//! The distance of every window from its owner.
+void setDistances(Rig& rig, double distance);
+//! The normal of the window of an owner, in its frame.
+void setNormal(Rig& rig, int owner, const Vec3d& normal);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_WINDOW_START_HPP
