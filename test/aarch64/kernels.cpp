@@ -56,7 +56,7 @@ Points scene(const Kernels& kernels)
         interleaved[3*i + 2] = 560.f + 9*i;
     }
     Points points;
-    print("load", kernels.arrays.load(interleaved.data(), true, N, points.x.data(), points.y.data(), points.z.data()));
+    print("load", kernels.array.load(interleaved.data(), true, N, points.x.data(), points.y.data(), points.z.data()));
     return points;
 }
 
@@ -79,10 +79,10 @@ Points throughWindow(const Kernels& kernels, const Points& points)
                           { 1, 0, 3, 3, 4, 5, 6, 7, 8 } };
     Points inner, outer;
     Array tau;
-    print("solveIn", kernels.layers.solveIn(stack, N, points.x.data(), points.y.data(), points.z.data(), nullptr,
+    print("solveIn", kernels.layer.solveIn(stack, N, points.x.data(), points.y.data(), points.z.data(), nullptr,
                                      inner.x.data(), inner.y.data(), inner.z.data(), nullptr));
     normalize(inner);
-    print("traceOut", kernels.layers.traceOut(stack, N, inner.x.data(), inner.y.data(), inner.z.data(),
+    print("traceOut", kernels.layer.traceOut(stack, N, inner.x.data(), inner.y.data(), inner.z.data(),
                                        tau.data(), outer.x.data(), outer.y.data(), outer.z.data()));
     print("inner", inner);
     print("tau", tau);
@@ -93,7 +93,7 @@ Points throughWindow(const Kernels& kernels, const Points& points)
         Points behind = points;
         behind.z[missing] = -behind.z[missing];
         const std::string name = "behind" + std::to_string(missing);
-        print(name, kernels.layers.solveIn(stack, N, behind.x.data(), behind.y.data(), behind.z.data(), nullptr,
+        print(name, kernels.layer.solveIn(stack, N, behind.x.data(), behind.y.data(), behind.z.data(), nullptr,
                                     outer.x.data(), outer.y.data(), outer.z.data(), nullptr));
         for (int i = 0; i < N; i++)
             print(name + "[" + std::to_string(i) + "]", !std::isnan(outer.x[i]));
