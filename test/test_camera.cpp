@@ -394,6 +394,18 @@ TEST_CASE("A file that nests without end is refused", "[camera]")
     }
 }
 
+TEST_CASE("A file may nest 256 deep", "[camera]")
+{
+    for (int levels : { 256, 257 })
+    {
+        const TemporaryFile file(".yml", "%YAML:1.0\n---\na: " + std::string(levels, '[') + std::string(levels, ']') + "\n");
+        const std::string sentence = thrown([&] { RefractiveCamera::read(file.path); });
+        CAPTURE(sentence);
+        CHECK_THAT(sentence, Contains(file.path));
+        CHECK(Contains("nest").match(sentence) == (levels > 256));
+    }
+}
+
 TEST_CASE("A matrix takes no more memory than its numbers", "[camera]")
 {
     for (const char* rows : { "2000000000", "-3", "three", "4" })

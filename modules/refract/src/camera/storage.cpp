@@ -15,7 +15,7 @@ static int nestingOf(std::istream& text)
     for (char c; text.get(c); before = c)
     {
         if (c == '[' || c == '{' || (before == '<' && std::isalpha((unsigned char)c)))
-            deepest = std::max(deepest, level++);
+            deepest = std::max(deepest, ++level);
         else if (c == ']' || c == '}' || (before == '<' && c == '/') || (before == '/' && c == '>'))
             level = std::max(0, level - 1);
     }
