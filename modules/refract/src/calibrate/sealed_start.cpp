@@ -15,8 +15,7 @@ const size_t FINALISTS = 6;
 const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
-// Windows that differ by less are one minimum: radians, part of the distance.
-const double SAME_ANGLE = 0.01, ROUGHLY_SAME_ANGLE = 0.05, SAME_DISTANCE = 0.05;
+const double ROUGHLY_SAME_ANGLE = 0.05, SAME_DISTANCE = 0.05;   // as SAME_ANGLE: before the end of a fit; part of the distance
 const double PLAUSIBLE = 10;    // standard deviations that some views leave a minimum behind the best
 
 //! So many of the views, evenly.
@@ -118,7 +117,7 @@ std::vector<Rig> tilted(const std::vector<Rig>& rigs, int owner)
 //! A fit to some views, and what it leaves.
 struct Trial
 {
-    Rig rig;
+    Rig start, rig;
     double cost;            //!< infinite where a point has no image
     int freedom;
     bool converged;
@@ -127,7 +126,7 @@ struct Trial
 
 Trial fitSome(const Rig& rig, const RigViews& views, const TermCriteria& criteria, int flags)
 {
-    const Trial failure = { rig, std::numeric_limits<double>::infinity(), 0, false };
+    const Trial failure = { rig, rig, std::numeric_limits<double>::infinity(), 0, false };
     try
     {
         std::vector<Pose> poses(views.count());
@@ -135,7 +134,7 @@ Trial fitSome(const Rig& rig, const RigViews& views, const TermCriteria& criteri
         checkPoses(views, poses);
         RigProblem problem(rig, views, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
         const bool converged = problem.solve(criteria);
-        const Trial trial = { problem.rig(), problem.squaredError(), problem.freedom(), converged };
+        const Trial trial = { rig, problem.rig(), problem.squaredError(), problem.freedom(), converged };
         return std::isfinite(trial.cost) ? trial : failure;     // it is sorted by
     }
     catch (const cv::Exception&)
@@ -154,19 +153,15 @@ std::vector<Trial> fitEach(const std::vector<Rig>& starts, const RigViews& views
     return trials;
 }
 
-//! Standard deviations of a pixel by which the second is worse.
-double excessOf(const Trial& best, const Trial& other)
-{
-    return std::sqrt((other.cost - best.cost)*best.freedom/std::max(best.cost, DBL_MIN));
-}
+//! By which the second is worse.
+double excessOver(const Trial& best, const Trial& other) { return excessOf(other.cost, best.cost, best.freedom); }
 
 double angleOfNormals(const Rig& a, const Rig& b, int c)
 {
-    const Vec3d p = a.cameras[c].layers().normal(), q = b.cameras[c].layers().normal();
-    return std::atan2(norm(p.cross(q)), p.dot(q));
+    return angleBetween(a.cameras[c].layers().normal(), b.cameras[c].layers().normal());
 }
 
-bool areSame(const Rig& a, const Rig& b, double angle = SAME_ANGLE)
+bool areSame(const Rig& a, const Rig& b, double angle)
 {
     for (int c = 0; c < a.count(); c++)
     {
@@ -178,27 +173,25 @@ bool areSame(const Rig& a, const Rig& b, double angle = SAME_ANGLE)
     return true;
 }
 
-/** The starts, as they are, whose fits are the best so far, the best first; of those that lead to one place the best, as all that
+//! Of those that end in one place the best.
+std::vector<Trial> distinct(const std::vector<Trial>& sorted, double angle)
+{
+    std::vector<Trial> places;
+    for (const Trial& trial : sorted)
+        if (std::none_of(places.begin(), places.end(), [&](const Trial& p) { return areSame(p.rig, trial.rig, angle); }))
+            places.push_back(trial);
+    return places;
+}
+
+/** The starts, as they are, whose fits are the best so far, the best first; one of those that lead to one place, as all that
 lead to the best of some views would leave no room for the best of all. */
 std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const RigViews& views, const TermCriteria& criteria,
                             int flags)
 {
-    std::vector<Trial> trials;
-    std::vector<size_t> order;
-    for (size_t i = 0; i < starts.size(); i++)
-    {
-        trials.push_back(fitSome(starts[i], views, criteria, flags));
-        order.push_back(i);
-    }
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return trials[a] < trials[b]; });
-    std::vector<Rig> best, led;
-    for (size_t i : order)
-        if (best.size() < atMost &&
-            std::none_of(led.begin(), led.end(), [&](const Rig& m) { return areSame(m, trials[i].rig, ROUGHLY_SAME_ANGLE); }))
-        {
-            best.push_back(starts[i]);
-            led.push_back(trials[i].rig);
-        }
+    std::vector<Rig> best;
+    for (const Trial& trial : distinct(fitEach(starts, views, criteria, flags), ROUGHLY_SAME_ANGLE))
+        if (best.size() < atMost)
+            best.push_back(trial.start);
     return best;
 }
 
@@ -206,9 +199,8 @@ std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const
 std::vector<Rig> plausibleMinima(const std::vector<Trial>& sorted)
 {
     std::vector<Rig> minima;
-    for (const Trial& trial : sorted)
-        if (std::isfinite(trial.cost) && excessOf(sorted[0], trial) < PLAUSIBLE &&
-            std::none_of(minima.begin(), minima.end(), [&](const Rig& m) { return areSame(m, trial.rig); }))
+    for (const Trial& trial : distinct(sorted, SAME_ANGLE))
+        if (std::isfinite(trial.cost) && excessOver(sorted[0], trial) < PLAUSIBLE)
             minima.push_back(trial.rig);
     return minima;
 }
@@ -233,6 +225,8 @@ std::vector<Rig> otherSides(const Rig& rig, const Rig& middle, int flags)
         for (int i = 2; i < (int)lens.size(); i++)
             if (isFree[i])
                 lens[i] = i < 4 ? 2*around[i] - lens[i] : 0;
+        if (lens == rig.cameras[c].lens().parameters())
+            continue;
         others.push_back(rig);
         others.back().cameras[c].setLensParameters(Mat(lens));
     }
@@ -245,8 +239,9 @@ of several windows, nor minima that some views do not have.
 void turnOver(const Rig& middle, std::vector<Trial>& sorted, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     const double BETTER = 1e-6;
+    const int ROUNDS = 10;      // perfect data have ever smaller rounding errors
     double before = std::numeric_limits<double>::infinity();
-    while (sorted[0].cost < (1 - BETTER)*before)
+    for (int round = 0; round < ROUNDS && sorted[0].cost < (1 - BETTER)*before; round++)
     {
         before = sorted[0].cost;
         for (const Rig& other : otherSides(sorted[0].rig, middle, flags))
@@ -260,13 +255,13 @@ void describeOther(const std::vector<Trial>& sorted, std::vector<OtherMinimum>& 
 {
     for (const Trial& trial : sorted)
     {
-        if (!trial.converged || areSame(sorted[0].rig, trial.rig))
+        if (!trial.converged || areSame(sorted[0].rig, trial.rig, SAME_ANGLE))
             continue;
         for (int c = 0; c < trial.rig.count(); c++)
             if (trial.rig.owns(c) && angleOfNormals(sorted[0].rig, trial.rig, c) > SAME_ANGLE)
             {
                 others[c].normal = trial.rig.cameras[c].layers().normal();
-                others[c].excess = excessOf(sorted[0], trial);
+                others[c].excess = excessOver(sorted[0], trial);
             }
         return;
     }

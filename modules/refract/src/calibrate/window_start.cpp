@@ -13,8 +13,7 @@ namespace {
 
 // The first search needs the rough shape of the cost only.
 const int SEARCH_VIEWS = 8, SEARCH_FITS = 4;
-// Windows that differ by less are one minimum: radians, part of the distance to the target.
-const double SAME_ANGLE = 0.01, SAME_DISTANCE = 0.01;
+const double SAME_DISTANCE = 0.01;     // as SAME_ANGLE: part of the distance to the target
 
 //! The given normal first, then tilts from the optical axis.
 std::vector<Vec3d> candidateNormals(const Vec3d& given)
@@ -115,8 +114,6 @@ Candidate fitWindow(const Camera& camera, const RigViews& views, const Candidate
     return fitted;
 }
 
-double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
-
 bool areSame(const Candidate& a, const Candidate& b)
 {
     return angleBetween(a.window.normal, b.window.normal) < SAME_ANGLE &&
@@ -148,7 +145,7 @@ OtherMinimum secondOf(const std::vector<Candidate>& minima, const RigViews& view
         if (angleBetween(minima[i].window.normal, minima[0].window.normal) > SAME_ANGLE)
         {
             other.normal = minima[i].window.normal;
-            other.excess = std::sqrt((minima[i].cost - minima[0].cost)*freedom/std::max(minima[0].cost, DBL_MIN));
+            other.excess = excessOf(minima[i].cost, minima[0].cost, freedom);
         }
     return other;
 }
@@ -327,6 +324,13 @@ void giveToNearest(Rig& rig)
 }
 
 } // namespace
+
+double excessOf(double cost, double best, int freedom)
+{
+    return std::sqrt((cost - best)*freedom/std::max(best, DBL_MIN));
+}
+
+double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
 
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags)
 {

@@ -17,6 +17,13 @@ struct OtherMinimum
     double excess = std::numeric_limits<double>::quiet_NaN();
 };
 
+//! OtherMinimum::excess of a fit whose squared error is `cost`.
+double excessOf(double cost, double best, int freedom);
+
+//! Windows whose normals differ by less are one minimum: radians.
+const double SAME_ANGLE = 0.01;
+double angleBetween(const Vec3d& a, const Vec3d& b);
+
 /** Start of every window: its normal and, if free, its distance; the rest as given.
 
 From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
