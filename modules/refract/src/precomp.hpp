@@ -9,7 +9,8 @@
 #if CV_VERSION_MAJOR < 5
 #include "opencv2/calib3d.hpp"
 #else
-#include "opencv2/geometry.hpp"     // the part of calib3d that is used here
+#include "opencv2/geometry.hpp"     // the parts of calib3d that are used here
+#include "opencv2/stereo.hpp"
 #endif
 
 #ifdef __OPENCV_BUILD

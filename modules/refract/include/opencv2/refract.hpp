@@ -62,6 +62,11 @@ enum TriangulateFlags {
     TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
 };
 
+//! Flags of refractiveStereoRectify
+enum RectifyFlags {
+    RECTIFY_ZERO_DISPARITY = 1024   //!< both new images have one principal point; cv::CALIB_ZERO_DISPARITY's value
+};
+
 /** @brief Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free.
 
 With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is estimated, also where they start at 0: a lens
@@ -423,6 +428,141 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         InputArray R, InputArray T, InputArray points1, InputArray points2,
         OutputArray points3D, OutputArray status, int flags,
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+
+/** @brief cv::stereoRectify for cameras behind windows, in any mix: in air, in water, one shared wall, none.
+
+Each camera is replaced by a pinhole at its *virtual centre*, a point of the axis through its centre of projection along the
+window's normal, that is chosen so that over depthRange the rows of both new images differ least; on one plane in the middle
+of it, z = 2/(1/near + 1/far), they agree exactly. With maps for that plane any matcher finds most of the scene; with maps for
+the depths that it found (refractiveRectifiedDepth) rows agree everywhere. refractiveReprojectImageTo3D is exact whatever the
+rows do.
+
+The *rectified frame* is that of camera 1 turned by R1; P1 and P2 project points of it, so that their last columns hold the
+virtual centres (and, as calib3d has it, in P2 the base line).
+
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param imageSize of the raw images.
+@param depthRange z of the scene, near and far, in the frame of camera 1; far may be infinity.
+@param R1 3x3 rotation camera 1 -> rectified frame.
+@param R2 3x3 rotation camera 2 -> rectified frame.
+@param P1 3x4, rectified frame -> new image 1.
+@param P2 3x4, rectified frame -> new image 2.
+@param Q 4x4, (x, y, disparity, 1) -> rectified frame, for cv::reprojectImageTo3D: nearly right on maps for a plane, right on
+maps for a depth per pixel.
+@param flags RECTIFY_ZERO_DISPARITY or 0.
+@param alpha as cv::stereoRectify: 0 all new pixels are valid, 1 no raw pixel is lost, negative: neither is asked for.
+@param newImageSize of the new images; Size(): imageSize.
+@param validPixROI1 rectangle of the new image 1 in which all pixels are valid.
+@param validPixROI2 the same of the new image 2.
+@return RMS and largest difference of rows (columns, if the cameras stand one above the other) over the common view and
+depthRange with maps for the plane, in pixels.
+
+Two cameras without windows and with OpenCV's lenses get what cv::stereoRectify answers. Throws if both cameras together see no
+point of depthRange beyond their windows.
+*/
+CV_EXPORTS_W Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, Size imageSize, const Vec2d& depthRange,
+        OutputArray R1, OutputArray R2, OutputArray P1, OutputArray P2, OutputArray Q,
+        int flags = RECTIFY_ZERO_DISPARITY, double alpha = -1, Size newImageSize = Size(),
+        CV_OUT Rect* validPixROI1 = 0, CV_OUT Rect* validPixROI2 = 0);
+
+//! @overload
+CV_EXPORTS_W Vec2d refractiveStereoRectify(InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, Size imageSize, const Vec2d& depthRange,
+        OutputArray R1, OutputArray R2, OutputArray P1, OutputArray P2, OutputArray Q,
+        int flags = RECTIFY_ZERO_DISPARITY, double alpha = -1, Size newImageSize = Size(),
+        CV_OUT Rect* validPixROI1 = 0, CV_OUT Rect* validPixROI2 = 0);
+
+/** @brief Maps for cv::remap that turn a raw image into one of a rectified pair.
+@param camera lens and window.
+@param depth what the new image shows: one number, the plane z = depth; four, the plane (a, b, c, d); or an array of the new
+image's size, CV_32F or CV_64F, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and empty as
+in initRefractiveUndistortRectifyMap.
+@param R R1 or R2 of refractiveStereoRectify.
+@param P P1 or P2.
+@param T translation camera 1 -> camera; empty for camera 1.
+@param size of the new image.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param map1 first map; pixels with no answer, as those whose depth is NaN, map to (-1, -1).
+@param map2 second map; empty for CV_32FC2.
+*/
+CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth,
+        InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
+
+//! @overload
+CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputArray depth, InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
+
+/** @brief From a first disparity, which may be coarse and have gaps, to a smooth depth of every pixel of both rectified images,
+for the maps of a second pass.
+@param disparity of the new image 1, or of both new images made smaller by one factor; CV_8U, CV_16S, CV_32S or CV_32F, in its
+own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN: unknown.
+@param P1 of the full size.
+@param P2 of the full size.
+@param size full size.
+@param depth1 z of each pixel of the new image 1, rectified frame, CV_32F.
+@param depth2 the same of the new image 2.
+@param handleMissingValues the smallest value of disparity means that it is unknown, as StereoMatcher marks it.
+*/
+CV_EXPORTS_W void refractiveRectifiedDepth(InputArray disparity, InputArray P1, InputArray P2, Size size,
+        OutputArray depth1, OutputArray depth2, bool handleMissingValues = false);
+
+/** @brief cv::reprojectImageTo3D for cameras behind windows: the most likely point of each pair of raw pixels.
+
+Rectified pixels are taken back to the raw ones and these triangulated (triangulateRefractive), so that what the rectification
+left of row errors has no part in the result.
+
+@param disparity of the new image 1; types as cv::reprojectImageTo3D, without fractional bits. NaN: none.
+@param _3dImage points of the rectified frame, three channels; multiply by R1's inverse for the frame of camera 1. NaN where
+there is none.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param R1 of refractiveStereoRectify.
+@param R2 of refractiveStereoRectify.
+@param P1 of refractiveStereoRectify.
+@param P2 of refractiveStereoRectify.
+@param depth1 with which the map of image 1 was made.
+@param depth2 with which the map of image 2 was made.
+@param handleMissingValues the smallest value of disparity means that there is none, as StereoMatcher marks it.
+@param ddepth CV_32F or CV_64F; -1: CV_32F.
+@param status one CV_8U a pixel, see RefractiveStatus; REFRACT_NOT_FINITE where there is no disparity.
+*/
+CV_EXPORTS_W void refractiveReprojectImageTo3D(InputArray disparity, OutputArray _3dImage,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T,
+        InputArray R1, InputArray R2, InputArray P1, InputArray P2, InputArray depth1, InputArray depth2,
+        bool handleMissingValues = false, int ddepth = -1, OutputArray status = noArray());
+
+/** @brief refractiveReprojectImageTo3D with the covariance of each point.
+@param disparity as above.
+@param _3dImage as above.
+@param camera1 as above.
+@param camera2 as above.
+@param R as above.
+@param T as above.
+@param R1 as above.
+@param R2 as above.
+@param P1 as above.
+@param P2 as above.
+@param depth1 as above.
+@param depth2 as above.
+@param handleMissingValues as above.
+@param ddepth as above.
+@param status as above.
+@param disparitySigma standard deviation of the disparity, one number or one per pixel.
+@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
+@param covariance 9 channels CV_64F: the 3x3 covariance of each point row by row, rectified frame.
+*/
+CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImageTo3D(InputArray disparity, OutputArray _3dImage,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T,
+        InputArray R1, InputArray R2, InputArray P1, InputArray P2, InputArray depth1, InputArray depth2,
+        bool handleMissingValues, int ddepth, OutputArray status,
+        InputArray disparitySigma, InputArray calibrationCovariance, OutputArray covariance);
 
 /** @brief The window's normal from image pairs taken without and with the window, the board not moved
 (@cite Plate2024, section 3.1.1).

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "arrays/arrays.hpp"
-#include "camera/camera.hpp"
+#include "points/map.hpp"
 #include "arrays/array_kernels.hpp"
 #include "points/point_kernels.hpp"
 #include "points/plane.hpp"
@@ -22,28 +21,6 @@ namespace {
 
 const int TILE = 64;
 const double TOLERANCE = 1e-7;
-
-//! The new image, and the plane that it shows.
-struct NewImage
-{
-    const Camera& camera;
-    Matx33d newToCamera;
-    Vec4d plane;
-
-    //! Pixel -> direction -> homogeneous point on the plane -> raw pixel; at most a block.
-    void toRaw(int n, const double* column, const double* row, double* u, double* v, uchar* status) const
-    {
-        double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK];
-        for (int i = 0; i < n; i++)
-        {
-            const Vec3d X = newToCamera*Vec3d(column[i], row[i], 1);
-            x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
-            w[i] = (plane[0]*x[i] + plane[1]*y[i] + plane[2]*z[i])/plane[3];
-            status[i] = w[i] >= 0 && std::isfinite(w[i]) ? REFRACT_OK : REFRACT_NO_INTERSECTION;
-        }
-        camera.project(n, x, y, z, w, u, v, status);
-    }
-};
 
 double nodeAngle(int k) { return CV_PI*(k + 0.5)/NODES; }
 
@@ -83,7 +60,7 @@ typedef Weights<3> CheckWeights;
 struct Nodes { double u[NODES*NODES], v[NODES*NODES]; };
 
 //! False if the polynomial through the nodes is not the map of this tile.
-bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
+bool findNodes(const PinholeView& view, Point tile, Nodes& nodes)
 {
     static const CheckWeights check(-1, PixelWeights::HALF);
     enum { GRID = NODES*NODES, CHECKS = 9, ALL = GRID + CHECKS };
@@ -96,8 +73,8 @@ bool findNodes(const NewImage& image, Point tile, Nodes& nodes)
         column[i] = tile.x + (c < 0 ? check.node[i % NODES] : check.place[c % 3]);
         row[i] = tile.y + (c < 0 ? check.node[i/NODES] : check.place[c/3]);
     }
-    image.toRaw(GRID, column, row, u, v, status);
-    image.toRaw(CHECKS, column + GRID, row + GRID, u + GRID, v + GRID, status + GRID);
+    view.toRaw(GRID, column, row, NULL, u, v, status);
+    view.toRaw(CHECKS, column + GRID, row + GRID, NULL, u + GRID, v + GRID, status + GRID);
     bool good = std::count(status, status + ALL, (uchar)REFRACT_OK) == ALL;
     for (int r = 0; r < 3; r++)
     {
@@ -132,8 +109,8 @@ void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u,
         }
 }
 
-//! One run of a tile's row, every pixel by itself; (-1, -1) where there is no answer.
-void solveRow(const NewImage& image, int row, int column, int n, double* u, double* v)
+//! One run of a row, every pixel by itself; (-1, -1) where there is no answer. planeD: of each pixel, or null.
+void solveRow(const PinholeView& view, int row, int column, int n, const double* planeD, double* u, double* v)
 {
     double columns[TILE], rows[TILE];
     uchar status[TILE];
@@ -142,18 +119,18 @@ void solveRow(const NewImage& image, int row, int column, int n, double* u, doub
         columns[i] = column + i;
         rows[i] = row;
     }
-    image.toRaw(n, columns, rows, u, v, status);
+    view.toRaw(n, columns, rows, planeD, u, v, status);
     for (int i = 0; i < n; i++)
         if (status[i] != REFRACT_OK)
             u[i] = v[i] = -1;
 }
 
-//! A tile, or what of it is in the image.
-void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
+//! A tile, or what of it is in the new image.
+void mapTile(const PinholeView& view, const Rect& tile, Mat& map1, Mat& map2)
 {
     static const PixelWeights pixels(0, 1);
     Nodes nodes;
-    const bool smooth = findNodes(image, tile.tl(), nodes);
+    const bool smooth = findNodes(view, tile.tl(), nodes);
     for (int r = 0; r < tile.height; r++)
     {
         double u[TILE], v[TILE];
@@ -163,65 +140,116 @@ void mapTile(const NewImage& image, const Rect& tile, Mat& map1, Mat& map2)
             pointKernels().interpolate(nodes.v, pixels.byPlace[r], pixels.byNode[0], TILE, v);
         }
         else
-            solveRow(image, tile.y + r, tile.x, tile.width, u, v);
+            solveRow(view, tile.y + r, tile.x, tile.width, NULL, u, v);
         storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
     }
 }
 
+//! The maps to fill, of the types that m1type means.
+struct Maps
+{
+    Maps(Size size, int m1type, OutputArray first_, OutputArray second_)
+    {
+        if (m1type <= 0)
+            m1type = CV_16SC2;
+        if (m1type != CV_16SC2 && m1type != CV_32FC1 && m1type != CV_32FC2)
+            CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
+                                                    typeToString(m1type).c_str()));
+        if (size.width < 0 || size.height < 0)
+            CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
+        first_.create(size, m1type);
+        first = first_.getMat();
+        if (m1type == CV_32FC2)
+            second_.release();
+        else
+        {
+            second_.create(size, m1type == CV_32FC1 ? CV_32FC1 : CV_16UC1);
+            second = second_.getMat();
+        }
+    }
+    Mat first, second;
+};
+
 } // namespace
 
-//! The scene of the map: one number z, or four numbers of a plane.
-static Vec4d scenePlane(InputArray depth, bool isNeeded)
+void PinholeView::toRaw(int n, const double* column, const double* row, const double* planeD, double* u, double* v,
+                        uchar* status) const
 {
-    const double infinity = std::numeric_limits<double>::infinity();
-    const DepthReader d(depth, "depth", 1, isNeeded);
-    if (d.size() == 1)
-        return planeOfDepth(d.at(0), "depth");
-    if (d.size() != 4)
-        CV_Error_(Error::StsBadSize, ("depth has %d values; it must have 1 (z) or 4 (a plane)", d.size()));
-    const Vec4d plane(d.at(0), d.at(1), d.at(2), d.at(3));
-    checkPlane(plane, "depth");
-    return plane[3] == -infinity ? -plane : plane;
+    double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK];
+    const Vec3d abc(plane[0], plane[1], plane[2]);
+    const double atCentre = abc.dot(centre);
+    for (int i = 0; i < n; i++)
+    {
+        const Vec3d direction = newToCamera*Vec3d(column[i], row[i], 1);
+        w[i] = abc.dot(direction)/((planeD ? planeD[i] : plane[3]) - atCentre);
+        x[i] = direction[0] + w[i]*centre[0];
+        y[i] = direction[1] + w[i]*centre[1];
+        z[i] = direction[2] + w[i]*centre[2];
+        status[i] = w[i] >= 0 && std::isfinite(w[i]) ? REFRACT_OK : REFRACT_NO_INTERSECTION;
+    }
+    camera.project(n, x, y, z, w, u, v, status);
 }
 
-void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R_,
-                                       InputArray newCameraMatrix, Size size, int m1type,
-                                       OutputArray map1_, OutputArray map2_)
+void mapPlane(const PinholeView& view, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
-    CV_INSTRUMENT_REGION();
-
-    const Camera& cam = cameraOf(camera);
-    if (m1type <= 0)
-        m1type = CV_16SC2;
-    if (m1type != CV_16SC2 && m1type != CV_32FC1 && m1type != CV_32FC2)
-        CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
-                                                typeToString(m1type).c_str()));
-    if (size.width < 0 || size.height < 0)
-        CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
-    const Vec4d plane = scenePlane(depth, cam.refracts());
-    const Matx33d R = readRotation(R_, "R");
-    const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
-                                              : readProjection(newCameraMatrix, "newCameraMatrix");
-    if (determinant(K) == 0)
-        CV_Error(Error::StsBadArg, "newCameraMatrix is singular");
-    const NewImage image = { cam, R.t()*K.inv(), plane };
-
-    map1_.create(size, m1type);
-    Mat map1 = map1_.getMat(), map2;
-    if (m1type == CV_32FC2)
-        map2_.release();
-    else
-    {
-        map2_.create(size, m1type == CV_32FC1 ? CV_32FC1 : CV_16UC1);
-        map2 = map2_.getMat();
-    }
+    Maps maps(size, m1type, map1, map2);
     const int tileRows = (size.height + TILE - 1)/TILE;
     parallel_for_(Range(0, tileRows), [&](const Range& range)
     {
         for (int t = range.start; t < range.end; t++)
             for (int column = 0; column < size.width; column += TILE)
-                mapTile(image, Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size), map1, map2);
+                mapTile(view, Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size), maps.first, maps.second);
     });
+}
+
+void mapSurface(const PinholeView& view, const PlaneReader& planeD, Size size, int m1type, OutputArray map1, OutputArray map2)
+{
+    Maps maps(size, m1type, map1, map2);
+    parallel_for_(Range(0, size.height), [&](const Range& range)
+    {
+        for (int row = range.start; row < range.end; row++)
+            for (int column = 0; column < size.width; column += TILE)
+            {
+                const int n = std::min(TILE, size.width - column);
+                double d[TILE], u[TILE], v[TILE];
+                planeD(row, column, n, d);
+                solveRow(view, row, column, n, d, u, v);
+                storeMap(maps.first, maps.second, row, column, n, u, v);
+            }
+    });
+}
+
+Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name)
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    const DepthReader d(depth, name, 1, isNeeded);
+    if (d.size() == 1)
+        return planeOfDepth(d.at(0), name);
+    if (d.size() != 4)
+        CV_Error_(Error::StsBadSize, ("%s has %d values; it must have 1 (z) or 4 (a plane)", name, d.size()));
+    const Vec4d plane(d.at(0), d.at(1), d.at(2), d.at(3));
+    checkPlane(plane, name);
+    return plane[3] == -infinity ? -plane : plane;
+}
+
+Matx33d inverseCameraMatrix(const Matx33d& K, const char* name)
+{
+    if (determinant(K) == 0)
+        CV_Error_(Error::StsBadArg, ("%s is singular", name));
+    return K.inv();
+}
+
+void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R,
+                                       InputArray newCameraMatrix, Size size, int m1type, OutputArray map1, OutputArray map2)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Camera& cam = cameraOf(camera);
+    const Vec4d plane = scenePlane(depth, cam.refracts(), "depth");
+    const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
+                                              : readProjection(newCameraMatrix, "newCameraMatrix");
+    const PinholeView view = { cam, readRotation(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
+    mapPlane(view, size, m1type, map1, map2);
 }
 
 void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "arrays/arrays.hpp"
-#include "camera/camera.hpp"
+#include "points/triangulate.hpp"
 #include "points/point_kernels.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Dense>
@@ -17,16 +16,6 @@ namespace {
 
 typedef Eigen::Matrix<double, 4, 1> Residual;
 typedef Eigen::Matrix<double, 4, 3> Jacobian;
-
-struct Pair
-{
-    Pair(const Camera& c1, const Camera& c2, InputArray R_, InputArray T_)
-        : camera1(c1), camera2(c2), R(readRotation(R_, "R")), T(readVec3(T_, "T")) {}
-    const Camera& camera1;
-    const Camera& camera2;
-    const Matx33d R;
-    const Vec3d T;
-};
 
 //! Rays in the frame of camera 1.
 struct Rays
@@ -47,7 +36,7 @@ uchar midpoint(const Rays& r, Vec3d& X)
 }
 
 //! Both pixels of X minus the observed ones, and their derivative by X; parameters may be null.
-uchar reproject(const Pair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& p2, Residual& e, Jacobian& J,
+uchar reproject(const StereoPair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& p2, Residual& e, Jacobian& J,
                 double* parameters1, double* parameters2)
 {
     Vec2d u1, u2;
@@ -66,7 +55,7 @@ uchar reproject(const Pair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& 
 
 /* Far from the minimum a step must reduce the cost; near it full Gauss-Newton steps converge, and the cost, whose
 changes drown in rounding there, is not asked. */
-uchar refine(const Pair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
+uchar refine(const StereoPair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
 {
     const double NEAR = 1e-3, DONE = 1e-11, ROUNDING = 1e-6;        // pixels that a step moves the two images
     Residual e, eNew;
@@ -99,19 +88,10 @@ uchar refine(const Pair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
     return REFRACT_NOT_CONVERGED;
 }
 
-//! A block of pixel pairs on its way to points.
-struct Block
-{
-    double pixels[4*BLOCK];             //!< u1, v1, u2, v2
-    double x[BLOCK], y[BLOCK], z[BLOCK];
-    uchar status[BLOCK];
-    double* pixel(int k) { return pixels + k*BLOCK; }
-};
-
 /* Full Gauss-Newton steps of all lanes side by side. They converge at a rate that the sum of squares leaves small; a lane
 whose moves shrink so fast that less than DONE pixels are left has arrived, any other is left where it was, for refine().
 Returns which lanes have arrived. */
-void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
+void refineTogether(const StereoPair& pair, PixelPairs& block, int n, uchar* arrived)
 {
     const double DONE = 1e-11;
     const int STEPS = 6;
@@ -153,20 +133,91 @@ void refineTogether(const Pair& pair, Block& block, int n, uchar* arrived)
 }
 
 //! The point of one pair of rays: its midpoint, by which the search begins.
-uchar meet(const Pair& pair, double tau1, const Vec3d& d1, double tau2, const Vec3d& d2, Vec3d& X)
+uchar meet(const StereoPair& pair, double tau1, const Vec3d& d1, double tau2, const Vec3d& d2, Vec3d& X)
 {
     const Matx33d Rt = pair.R.t();
     const Rays rays = { tau1*pair.camera1.layers().normal(), d1, Rt*(tau2*pair.camera2.layers().normal() - pair.T), Rt*d2 };
     return midpoint(rays, X);
 }
 
-bool isBeyondBoth(const Pair& pair, const Vec3d& X)
+bool isBeyondBoth(const StereoPair& pair, const Vec3d& X)
 {
     const Vec3d X2 = pair.R*X + pair.T;
     return pair.camera1.layers().isBeyond(X[0], X[1], X[2]) && pair.camera2.layers().isBeyond(X2[0], X2[1], X2[2]);
 }
 
-void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
+} // namespace
+
+/* Covariance of the maximum-likelihood point: J^+ S J^+^T from the pixels' covariance S, plus G C G^T, G = -J^+ J_parameters, from
+the calibration's covariance C. */
+struct PointCovariance::Calibration
+{
+    Eigen::MatrixXd covariance;     //!< empty: exact
+    Matx33d dR[3];
+};
+
+PointCovariance::PointCovariance(const StereoPair& pair, InputArray calibration)
+    : pair_(pair), calibration_(makePtr<Calibration>())
+{
+    const int count = pair.camera1.parameterCount() + pair.camera2.parameterCount() + 6;
+    const std::vector<double> c = readNumbers(calibration, "calibrationCovariance");
+    if (c.empty())
+        return;
+    if ((int)c.size() != count*count)
+        CV_Error_(Error::StsBadSize, ("calibrationCovariance has %d values; it must be %dx%d", (int)c.size(), count, count));
+    calibration_->covariance = Eigen::Map<const Eigen::MatrixXd>(c.data(), count, count);
+    rotationMatrix(rotationVector(pair.R), calibration_->dR);
+}
+
+//! byPoint: reproject's derivative by X; its lower rows are those by the point in camera 2, times R.
+static Eigen::MatrixXd parameterJacobian(const StereoPair& pair, const Matx33d* dR, const Vec3d& X, const Jacobian& byPoint,
+                                         const std::vector<double>& p1, const std::vector<double>& p2)
+{
+    const int count1 = pair.camera1.parameterCount(), count2 = pair.camera2.parameterCount();
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, count1 + count2 + 6);
+    for (int r = 0; r < 2; r++)
+    {
+        for (int c = 0; c < count1; c++)
+            J(r, c) = p1[r*count1 + c];
+        for (int c = 0; c < count2; c++)
+            J(2 + r, count1 + c) = p2[r*count2 + c];
+        const Vec3d D = pair.R*Vec3d(byPoint(2 + r, 0), byPoint(2 + r, 1), byPoint(2 + r, 2));
+        for (int c = 0; c < 3; c++)
+        {
+            J(2 + r, count1 + count2 + c) = D.dot(dR[c]*X);
+            J(2 + r, count1 + count2 + 3 + c) = D[c];
+        }
+    }
+    return J;
+}
+
+void PointCovariance::evaluate(const Vec3d& X, const Matx44d& pixels, double* covariance) const
+{
+    Residual e;
+    Jacobian J;
+    std::vector<double> p1(2*pair_.camera1.parameterCount()), p2(2*pair_.camera2.parameterCount());
+    if (reproject(pair_, X, Vec2d(), Vec2d(), e, J, p1.data(), p2.data()) != REFRACT_OK)
+    {
+        std::fill(covariance, covariance + 9, std::numeric_limits<double>::quiet_NaN());
+        return;
+    }
+    const Eigen::Matrix<double, 3, 4> pseudoInverse = (J.transpose()*J).inverse()*J.transpose();
+    Eigen::Matrix3d C = pseudoInverse*Eigen::Matrix4d(pixels.val)*pseudoInverse.transpose();
+    if (calibration_->covariance.size())
+    {
+        const Eigen::MatrixXd G = pseudoInverse*parameterJacobian(pair_, calibration_->dR, X, J, p1, p2);
+        C += G*calibration_->covariance*G.transpose();
+    }
+    std::copy(C.data(), C.data() + 9, covariance);
+}
+
+void checkSigma(double sigma, const char* name)
+{
+    if (!(sigma >= 0) || !std::isfinite(sigma))
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must not be negative", name, sigma));
+}
+
+void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags)
 {
     double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
     pair.camera1.unproject(n, block.pixel(0), block.pixel(1), tau1, dx1, dy1, dz1, block.status);
@@ -195,80 +246,9 @@ void triangulateBlock(const Pair& pair, Block& block, int n, int flags)
     }
 }
 
-/* Covariance of the maximum-likelihood point: sigma^2 (J^T J)^-1 from the pixels, plus G C G^T, G = -J^+ J_parameters,
-from the calibration's covariance C. */
-class PointCovariance
-{
-public:
-    PointCovariance(const Pair& pair, double sigma, InputArray calibration) : pair_(pair), sigma_(sigma)
-    {
-        if (!(sigma >= 0) || !std::isfinite(sigma))
-            CV_Error_(Error::StsOutOfRange, ("pixelSigma is %g; it must not be negative", sigma));
-        count1_ = pair.camera1.parameterCount();
-        count2_ = pair.camera2.parameterCount();
-        const int count = count1_ + count2_ + 6;
-        const std::vector<double> c = readNumbers(calibration, "calibrationCovariance");
-        if (c.empty())
-            return;
-        if ((int)c.size() != count*count)
-            CV_Error_(Error::StsBadSize, ("calibrationCovariance has %d values; it must be %dx%d", (int)c.size(),
-                                          count, count));
-        calibration_ = Eigen::Map<const Eigen::MatrixXd>(c.data(), count, count);
-        rotationMatrix(rotationVector(pair.R), dR_);
-    }
-
-    void evaluate(const Vec3d& X, double* covariance) const
-    {
-        Residual e;
-        Jacobian J;
-        std::vector<double> p1(2*count1_), p2(2*count2_);
-        if (reproject(pair_, X, Vec2d(), Vec2d(), e, J, p1.data(), p2.data()) != REFRACT_OK)
-        {
-            std::fill(covariance, covariance + 9, std::numeric_limits<double>::quiet_NaN());
-            return;
-        }
-        const Eigen::Matrix3d inverse = (J.transpose()*J).inverse();
-        Eigen::Matrix3d C = sigma_*sigma_*inverse;
-        if (calibration_.size())
-        {
-            const Eigen::MatrixXd G = inverse*J.transpose()*parameterJacobian(X, J, p1, p2);
-            C += G*calibration_*G.transpose();
-        }
-        std::copy(C.data(), C.data() + 9, covariance);
-    }
-
-private:
-    //! byPoint: reproject's derivative by X; its lower rows are those by the point in camera 2, times R.
-    Eigen::MatrixXd parameterJacobian(const Vec3d& X, const Jacobian& byPoint, const std::vector<double>& p1,
-                                      const std::vector<double>& p2) const
-    {
-        Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, count1_ + count2_ + 6);
-        for (int r = 0; r < 2; r++)
-        {
-            for (int c = 0; c < count1_; c++)
-                J(r, c) = p1[r*count1_ + c];
-            for (int c = 0; c < count2_; c++)
-                J(2 + r, count1_ + c) = p2[r*count2_ + c];
-            const Vec3d D = pair_.R*Vec3d(byPoint(2 + r, 0), byPoint(2 + r, 1), byPoint(2 + r, 2));
-            for (int c = 0; c < 3; c++)
-            {
-                J(2 + r, count1_ + count2_ + c) = D.dot(dR_[c]*X);
-                J(2 + r, count1_ + count2_ + 3 + c) = D[c];
-            }
-        }
-        return J;
-    }
-
-    const Pair& pair_;
-    double sigma_;
-    int count1_, count2_;
-    Eigen::MatrixXd calibration_;
-    Matx33d dR_[3];
-};
-
 //! pointCovariance may be null, else its results go into covariance, one row a point.
-void triangulate(const Pair& pair, InputArray points1, InputArray points2, OutputArray points3D, OutputArray status,
-                 int flags, const PointCovariance* pointCovariance, Mat& covariance)
+static void triangulate(const StereoPair& pair, InputArray points1, InputArray points2, OutputArray points3D, OutputArray status,
+                        int flags, const PointCovariance* pointCovariance, double sigma, Mat& covariance)
 {
     const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
     if (in1.size() != in2.size())
@@ -281,7 +261,7 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
     StatusWriter outStatus(status, in1.size());
     forEachBlock(in1.size(), [&](int begin, int n)
     {
-        Block block;
+        PixelPairs block;
         uchar status2[BLOCK];
         in1.load(begin, n, block.pixel(0), block.pixel(1), NULL, block.status);
         in2.load(begin, n, block.pixel(2), block.pixel(3), NULL, status2);
@@ -292,13 +272,11 @@ void triangulate(const Pair& pair, InputArray points1, InputArray points2, Outpu
         triangulateBlock(pair, block, n, flags);
         for (int i = 0; i < n && pointCovariance; i++)
             if (block.status[i] == REFRACT_OK)
-                pointCovariance->evaluate(Vec3d(block.x[i], block.y[i], block.z[i]), covariance.ptr<double>(begin + i));
+                pointCovariance->evaluate(Vec3d(block.x[i], block.y[i], block.z[i]), sigma*sigma*Matx44d::eye(), covariance.ptr<double>(begin + i));
         out.store(begin, n, block.x, block.y, block.z, block.status);
         outStatus.store(begin, n, block.status);
     });
 }
-
-} // namespace
 
 void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
                            InputArray R, InputArray T, InputArray points1, InputArray points2,
@@ -306,9 +284,9 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    const Pair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
+    const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
     Mat none;
-    triangulate(pair, points1, points2, points3D, status, flags, NULL, none);
+    triangulate(pair, points1, points2, points3D, status, flags, NULL, 0, none);
 }
 
 void triangulateRefractive(InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -328,10 +306,11 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    const Pair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
-    const PointCovariance pointCovariance(pair, pixelSigma, calibrationCovariance);
+    const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
+    checkSigma(pixelSigma, "pixelSigma");
+    const PointCovariance pointCovariance(pair, calibrationCovariance);
     Mat C;
-    triangulate(pair, points1, points2, points3D, status, flags, &pointCovariance, C);
+    triangulate(pair, points1, points2, points3D, status, flags, &pointCovariance, pixelSigma, C);
     if (covariance.needed())
         C.copyTo(covariance);
 }

@@ -1,0 +1,57 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_TRIANGULATE_HPP
+#define OPENCV_REFRACT_TRIANGULATE_HPP
+
+#include "arrays/arrays.hpp"
+#include "camera/camera.hpp"
+
+namespace cv { namespace refract {
+
+//! Two cameras, X2 = R X1 + T.
+struct StereoPair
+{
+    StereoPair(const Camera& c1, const Camera& c2, InputArray R_, InputArray T_)
+        : camera1(c1), camera2(c2), R(readRotation(R_, "R")), T(readVec3(T_, "T")) {}
+    const Camera& camera1;
+    const Camera& camera2;
+    const Matx33d R;
+    const Vec3d T;
+};
+
+//! A block of pixel pairs on its way to points in the frame of camera 1.
+struct PixelPairs
+{
+    double pixels[4*BLOCK];             //!< u1, v1, u2, v2
+    double x[BLOCK], y[BLOCK], z[BLOCK];
+    uchar status[BLOCK];
+    double* pixel(int k) { return pixels + k*BLOCK; }
+};
+
+//! pixels -> x, y, z, where status is REFRACT_OK; flags: TriangulateFlags.
+void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags);
+
+//! Covariance of a maximum-likelihood point.
+class PointCovariance
+{
+public:
+    //! calibration: empty, or as stereoCalibrateGlass returns it.
+    PointCovariance(const StereoPair& pair, InputArray calibration);
+    /** @param pixels covariance of u1, v1, u2, v2
+    @param covariance 3x3 by rows; NaN where a camera does not see X */
+    void evaluate(const Vec3d& X, const Matx44d& pixels, double* covariance) const;
+
+private:
+    struct Calibration;
+    const StereoPair& pair_;
+    Ptr<Calibration> calibration_;
+};
+
+//! Throws unless it is finite and not negative.
+void checkSigma(double sigma, const char* name);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_TRIANGULATE_HPP

@@ -1,0 +1,159 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "stereo/disparity.hpp"
+#include "points/map.hpp"
+#include "opencv2/imgproc.hpp"
+
+/* From a first, coarse disparity with gaps to the depth of every pixel of both rectified images, for maps that leave next to no
+error of rows. What counts is that it is smooth, as maps that jump tear the images, and right to some percent.
+
+All of it is done with the inverse of the distance from the pinholes, in which disparity is linear, in cells of some pixels. */
+
+namespace cv { namespace refract {
+
+namespace {
+
+const int CELL = 4;     // pixels of the disparity
+
+//! What P1 and P2 say of a pair: disparity = focal base/z + shift.
+struct Geometry
+{
+    Geometry(InputArray P1, InputArray P2)
+    {
+        const Matx34d first = read(P1, "P1"), second = read(P2, "P2");
+        focal = first(0, 0);
+        const Vec3d c1 = centreOf(first), c2 = centreOf(second), between = c2 - c1;
+        axis = std::abs(between[0]) >= std::abs(between[1]) ? 0 : 1;
+        base = between[axis];
+        shift = first(axis, 2) - second(axis, 2);
+        centreZ = c1[2];
+        if (base == 0)
+            CV_Error(Error::StsBadArg, "P1 and P2 are those of one pinhole");
+    }
+    double focal, base, shift, centreZ;
+    int axis;
+
+private:
+    static Matx34d read(InputArray P, const char* name)
+    {
+        const std::vector<double> p = readNumbers(P, name);
+        if (p.size() != 12)
+            CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 3x4", name, (int)p.size()));
+        return Matx34d(p.data());
+    }
+    static Vec3d centreOf(const Matx34d& P)
+    { return -(inverseCameraMatrix(P.get_minor<3, 3>(0, 0), "P")*Vec3d(P(0, 3), P(1, 3), P(2, 3))); }
+};
+
+//! The median of each cell that a quarter of its pixels have a value of; else 0.
+Mat cellMedians(const Mat& inverse)
+{
+    Mat cells((inverse.rows + CELL - 1)/CELL, (inverse.cols + CELL - 1)/CELL, CV_32F);
+    parallel_for_(Range(0, cells.rows), [&](const Range& range)
+    {
+        std::vector<float> values;
+        for (int y = range.start; y < range.end; y++)
+            for (int x = 0; x < cells.cols; x++)
+            {
+                const Mat cell = inverse(Rect(x*CELL, y*CELL, CELL, CELL) & Rect(Point(), inverse.size()));
+                values.clear();
+                for (int r = 0; r < cell.rows; r++)
+                    std::copy_if(cell.ptr<float>(r), cell.ptr<float>(r) + cell.cols, std::back_inserter(values),
+                                 [](float v) { return v > 0; });
+                const size_t middle = values.size()/2;
+                const bool enough = values.size()*4 >= cell.total();
+                if (enough)
+                    std::nth_element(values.begin(), values.begin() + middle, values.end());
+                cells.at<float>(y, x) = enough ? values[middle] : 0;
+            }
+    });
+    return cells;
+}
+
+//! What is not positive gets the mean of its neighbours, from the borders inwards.
+void fill(Mat& cells)
+{
+    if (countNonZero(cells > 0) == 0)
+        CV_Error(Error::StsBadArg, "disparity: no part of it has values enough to tell a depth from");
+    for (Mat known = cells > 0; countNonZero(known) < (int)known.total(); known = cells > 0)
+    {
+        Mat sum, count, one;
+        known.convertTo(one, CV_32F, 1./255);
+        boxFilter(cells, sum, CV_32F, Size(3, 3), Point(-1, -1), false, BORDER_CONSTANT);
+        boxFilter(one, count, CV_32F, Size(3, 3), Point(-1, -1), false, BORDER_CONSTANT);
+        Mat(sum/count).copyTo(cells, (count > 0) & ~known);
+    }
+}
+
+void smooth(Mat& cells)
+{
+    Mat median;
+    medianBlur(cells, median, 5);
+    GaussianBlur(median, cells, Size(), 1, 1, BORDER_REPLICATE);
+}
+
+//! The same surface as the other image sees it; pixelsOf: disparity in cells of a unit of inverse distance.
+Mat inOtherImage(const Mat& cells, double perUnit, double shift, int axis)
+{
+    Mat other = Mat::zeros(cells.size(), CV_32F);
+    for (int y = 0; y < cells.rows; y++)
+        for (int x = 0; x < cells.cols; x++)
+        {
+            const float value = cells.at<float>(y, x);
+            const double place = (axis == 0 ? x : y) - (perUnit*value + shift);
+            for (int k = cvFloor(place); k <= cvFloor(place) + 1; k++)
+            {
+                const Point p = axis == 0 ? Point(k, y) : Point(x, k);
+                if (Rect(Point(), cells.size()).contains(p))
+                    other.at<float>(p) = std::max(other.at<float>(p), value);     // the nearer one hides the other
+            }
+        }
+    return other;
+}
+
+//! Of every pixel, from cells that are CELL/scale pixels wide.
+void writeDepth(const Mat& cells, double scale, double centreZ, Size size, OutputArray depth)
+{
+    if (!depth.needed())
+        return;
+    // The last cells may reach beyond the image.
+    const Size covered(cvRound(cells.cols*CELL/scale), cvRound(cells.rows*CELL/scale));
+    Mat inverse, result;
+    resize(cells, inverse, covered, 0, 0, INTER_LINEAR);
+    divide(1., inverse(Rect(Point(), size)), result);
+    result += centreZ;
+    result.copyTo(depth);
+}
+
+} // namespace
+
+void refractiveRectifiedDepth(InputArray disparity_, InputArray P1, InputArray P2, Size size, OutputArray depth1,
+                              OutputArray depth2, bool handleMissingValues)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Disparity disparity(disparity_, handleMissingValues);
+    const Size coarse = disparity.size();
+    const Geometry geometry(P1, P2);
+    if (coarse.empty() || size.width < coarse.width || size.height < coarse.height)
+        CV_Error_(Error::StsBadSize, ("disparity is %dx%d; it must not be empty, nor larger than size %dx%d", coarse.width,
+                                      coarse.height, size.width, size.height));
+    const double scale = (double)coarse.width/size.width;
+    if (std::abs(scale*size.height - coarse.height) >= 1)
+        CV_Error_(Error::StsBadSize, ("disparity is %dx%d; it must have the proportions of size %dx%d", coarse.width, coarse.height,
+                                      size.width, size.height));
+    // disparity = perUnit inverse distance + shift, in pixels of the coarse image
+    const double perUnit = geometry.focal*geometry.base*scale, shift = geometry.shift*scale;
+    Mat cells = cellMedians((disparity.image() - shift)/perUnit);
+    fill(cells);
+    smooth(cells);
+    Mat other = inOtherImage(cells, perUnit/CELL, shift/CELL, geometry.axis);
+    fill(other);
+    smooth(other);
+    writeDepth(cells, scale, geometry.centreZ, size, depth1);
+    writeDepth(other, scale, geometry.centreZ, size, depth2);
+}
+
+}} // namespace

@@ -1,0 +1,219 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "stereo/disparity.hpp"
+#include "stereo/rectified_view.hpp"
+#include "points/triangulate.hpp"
+
+/* Disparity -> points: rectified pixels -> the raw pixels that the maps took them from -> two rays -> the most likely point.
+Whatever error the rectification leaves, it costs matches, not accuracy. */
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! A pair with its rectification.
+struct RectifiedPair
+{
+    StereoPair pair;
+    RectifiedView first, second;
+    int axis;               //!< of the disparity
+};
+
+//! A run of pixels of one row that have a disparity.
+struct Run
+{
+    int size, column[BLOCK];
+    double x1[BLOCK], y1[BLOCK], x2[BLOCK], y2[BLOCK];
+    PixelPairs pairs;
+    uchar status2[BLOCK];
+};
+
+//! Raw pixels of places in a rectified image.
+void toRaw(const RectifiedView& view, int n, const double* x, const double* y, double* u, double* v, uchar* status)
+{
+    double planeD[BLOCK];
+    for (int i = 0; i < n; i++)
+        planeD[i] = view.planeD(x[i], y[i]);
+    view.pinhole().toRaw(n, x, y, planeD, u, v, status);
+}
+
+class Reprojector
+{
+public:
+    //! Without covariance, sigma plays no part.
+    Reprojector(const RectifiedPair& rectified, const PointCovariance* covariance, const Mat& sigma)
+        : rectified_(rectified), covariance_(covariance), sigma_(sigma) {}
+
+    void row(int y, int columns, const float* disparity, Mat& points, Mat& status, Mat& covariance) const
+    {
+        Run run;
+        run.size = 0;
+        for (int x = 0; x < columns; x++)
+        {
+            if (std::isfinite(disparity[x]))
+                add(run, x, y, disparity[x]);
+            else
+                status.at<uchar>(y, x) = REFRACT_NOT_FINITE;
+            if (run.size == BLOCK || (x == columns - 1 && run.size > 0))
+            {
+                solve(run);
+                store(run, y, points, status, covariance);
+                run.size = 0;
+            }
+        }
+    }
+
+private:
+    void add(Run& run, int x, int y, double disparity) const
+    {
+        const int i = run.size++;
+        run.column[i] = x;
+        run.x1[i] = x;
+        run.y1[i] = y;
+        run.x2[i] = x - (rectified_.axis == 0 ? disparity : 0);
+        run.y2[i] = y - (rectified_.axis == 1 ? disparity : 0);
+    }
+
+    void solve(Run& run) const
+    {
+        PixelPairs& p = run.pairs;
+        toRaw(rectified_.first, run.size, run.x1, run.y1, p.pixel(0), p.pixel(1), p.status);
+        toRaw(rectified_.second, run.size, run.x2, run.y2, p.pixel(2), p.pixel(3), run.status2);
+        for (int i = 0; i < run.size; i++)
+            if (p.status[i] == REFRACT_OK)
+                p.status[i] = run.status2[i];
+        triangulateBlock(rectified_.pair, p, run.size, TRIANGULATE_OPTIMAL);
+    }
+
+    void store(const Run& run, int y, Mat& points, Mat& status, Mat& covariance) const
+    {
+        const PixelPairs& p = run.pairs;
+        const Matx33d& R1 = rectified_.first.R();
+        for (int i = 0; i < run.size; i++)
+        {
+            const int x = run.column[i];
+            status.at<uchar>(y, x) = p.status[i];
+            if (p.status[i] != REFRACT_OK)
+                continue;
+            const Vec3d X(p.x[i], p.y[i], p.z[i]), rectified = R1*X;
+            if (points.depth() == CV_32F)
+                points.at<Vec3f>(y, x) = rectified;
+            else
+                points.at<Vec3d>(y, x) = rectified;
+            if (covariance_)
+                storeCovariance(X, run, i, y, covariance);
+        }
+    }
+
+    void storeCovariance(const Vec3d& X, const Run& run, int i, int y, Mat& covariance) const
+    {
+        typedef Vec<double, 9> Vec9d;
+        Matx33d C;
+        covariance_->evaluate(X, pixelCovariance(run, i, sigmaAt(y, run.column[i])), C.val);
+        const Matx33d& R1 = rectified_.first.R();
+        covariance.at<Vec9d>(y, run.column[i]) = Vec9d((R1*C*R1.t()).val);
+    }
+
+    double sigmaAt(int y, int x) const { return sigma_.total() == 1 ? sigma_.at<double>(0, 0) : sigma_.at<double>(y, x); }
+
+    //! Of a disparity whose partner in image 2 is off by sigma; the pixel of image 1 is the one that was asked.
+    Matx44d pixelCovariance(const Run& run, int i, double disparitySigma) const
+    {
+        const RectifiedView& view = rectified_.second;
+        const double x = run.x2[i] + (rectified_.axis == 0), y = run.y2[i] + (rectified_.axis == 1);
+        const double planeD = view.planeD(run.x2[i], run.y2[i]);
+        double u, v;
+        uchar status = REFRACT_OK;
+        view.pinhole().toRaw(1, &x, &y, &planeD, &u, &v, &status);
+        const double* raw = run.pairs.pixels + i;
+        const Vec4d step(0, 0, u - raw[2*BLOCK], v - raw[3*BLOCK]);     // of a pixel of disparity
+        return disparitySigma*disparitySigma*step*step.t();
+    }
+
+    const RectifiedPair& rectified_;
+    const PointCovariance* covariance_;
+    Mat sigma_;
+};
+
+//! One number, which Python hands over as (sigma, 0, 0, 0), or one a pixel; CV_64F.
+Mat readSigma(InputArray sigma, Size size)
+{
+    Mat values;
+    sigma.getMat().convertTo(values, CV_64F);
+    const bool isScalar = values.total() == 4 && values.size() != size && countNonZero(values) <= 1 && values.at<double>(0) != 0;
+    if (values.channels() != 1 || !(values.total() == 1 || isScalar || values.size() == size))
+        CV_Error_(Error::StsBadSize, ("disparitySigma is %dx%d; it must be one number, or one for each pixel of disparity (%dx%d)",
+                                      values.cols, values.rows, size.width, size.height));
+    if (!checkRange(values, true, NULL, 0, DBL_MAX))
+        CV_Error(Error::StsOutOfRange, "disparitySigma must not be negative anywhere, nor NaN");
+    return values.size() == size ? values : values.reshape(1, (int)values.total()).row(0).clone();
+}
+
+void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<RefractiveCamera>& camera1,
+               const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T, InputArray R1, InputArray R2, InputArray P1,
+               InputArray P2, InputArray depth1, InputArray depth2, bool handleMissingValues, int ddepth, OutputArray status_,
+               const _InputArray* sigma, InputArray calibrationCovariance, OutputArray covariance_)
+{
+    const Disparity disparity(disparity_, handleMissingValues);
+    const Size size = disparity.size();
+    const Camera& cam1 = cameraOf(camera1, "camera1");
+    const Camera& cam2 = cameraOf(camera2, "camera2");
+    if (ddepth == -1)
+        ddepth = _3dImage.fixedType() ? _3dImage.depth() : CV_32F;
+    if (ddepth != CV_32F && ddepth != CV_64F)
+        CV_Error_(Error::StsUnsupportedFormat, ("ddepth is %s; it must be CV_32F or CV_64F", depthToString(ddepth)));
+    RectifiedPair rectified = { StereoPair(cam1, cam2, R, T), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
+                                RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0 };
+    checkRectification(rectified.first.R(), rectified.second.R(), rectified.pair.R);
+    const Vec3d base = rectified.second.centre() - rectified.first.centre();
+    rectified.axis = std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
+    const PointCovariance pointCovariance(rectified.pair, calibrationCovariance);
+    const Reprojector reprojector(rectified, sigma ? &pointCovariance : NULL, sigma ? readSigma(*sigma, size) : Mat());
+
+    const Scalar none = Scalar::all(std::numeric_limits<double>::quiet_NaN());
+    _3dImage.create(size, CV_MAKETYPE(ddepth, 3));
+    Mat points = _3dImage.getMat(), status(size, CV_8U), covariance;
+    points.setTo(none);
+    if (sigma)
+    {
+        covariance_.create(size, CV_64FC(9));
+        covariance = covariance_.getMat();
+        covariance.reshape(1).setTo(none);
+    }
+    parallel_for_(Range(0, size.height), [&](const Range& range)
+    {
+        for (int y = range.start; y < range.end; y++)
+            reprojector.row(y, size.width, disparity.row(y), points, status, covariance);
+    });
+    if (status_.needed())
+        status.copyTo(status_);
+}
+
+} // namespace
+
+void refractiveReprojectImageTo3D(InputArray disparity, OutputArray _3dImage, const Ptr<RefractiveCamera>& camera1,
+                                  const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T, InputArray R1, InputArray R2,
+                                  InputArray P1, InputArray P2, InputArray depth1, InputArray depth2, bool handleMissingValues,
+                                  int ddepth, OutputArray status)
+{
+    CV_INSTRUMENT_REGION();
+
+    reproject(disparity, _3dImage, camera1, camera2, R, T, R1, R2, P1, P2, depth1, depth2, handleMissingValues, ddepth, status,
+              NULL, noArray(), noArray());
+}
+
+void refractiveReprojectImageTo3D(InputArray disparity, OutputArray _3dImage, const Ptr<RefractiveCamera>& camera1,
+                                  const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T, InputArray R1, InputArray R2,
+                                  InputArray P1, InputArray P2, InputArray depth1, InputArray depth2, bool handleMissingValues,
+                                  int ddepth, OutputArray status, InputArray disparitySigma, InputArray calibrationCovariance,
+                                  OutputArray covariance)
+{
+    CV_INSTRUMENT_REGION();
+
+    reproject(disparity, _3dImage, camera1, camera2, R, T, R1, R2, P1, P2, depth1, depth2, handleMissingValues, ddepth, status,
+              &disparitySigma, calibrationCovariance, covariance);
+}
+
+}} // namespace

@@ -1,0 +1,48 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_VIRTUAL_CENTRES_HPP
+#define OPENCV_REFRACT_VIRTUAL_CENTRES_HPP
+
+#include "points/triangulate.hpp"
+
+namespace cv { namespace refract {
+
+/* All rays of a camera meet the axis of its window, C + tau n, each at a tau of its own. A pinhole at one well chosen tau, its
+virtual centre, that shows one plane exactly, shows what lies before and behind it nearly so: a pair of such pinholes is
+rectified to first order in all that varies with depth. */
+
+//! A pair of pinholes at virtual centres, turned so that one's rows (or columns) are the other's.
+struct VirtualPair
+{
+    VirtualPair(const StereoPair& pair, const Vec2d& tau);
+    Matx33d R1, R2;         //!< camera -> rectified
+    int axis;               //!< along which disparity is: 0 x, 1 y
+    Vec3d centre1, centre2; //!< rectified frame, whose origin is the centre of projection of camera 1
+};
+
+//! What the two cameras see of points all over their common view, from near to far.
+class RowSamples
+{
+public:
+    //! depthRange: z in the frame of camera 1; throws if no point of it is seen by both.
+    RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& depthRange);
+
+    /** Differences of the points' rows (columns) in the images of the pinholes that show the plane z = depth of the rectified
+    frame, at focal length 1; NaN where a pinhole does not see one. */
+    std::vector<double> differences(const VirtualPair& virtualPair, double depth) const;
+
+private:
+    const StereoPair& pair_;
+    struct Ray { Vec3d origin, direction; };
+    std::vector<Ray> rays1_, rays2_;    //!< each in the frame of its camera
+};
+
+/** Taus of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones nearest to
+those of rays along the normals. */
+Vec2d bestVirtualCentres(const StereoPair& pair, const RowSamples& samples, double depth);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_VIRTUAL_CENTRES_HPP
