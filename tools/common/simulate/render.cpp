@@ -8,17 +8,14 @@ namespace tools {
 
 using cv::Mat;
 using cv::Matx33d;
-using cv::Point2d;
 using cv::Size;
 using cv::Vec2d;
 using cv::Vec3d;
 
 namespace {
 
-const int FINE = 2;         // samples per pixel, each way
 const int PARTS = 8;        // points per sample at an edge, each way
 const int DRAWING = 240;    // pixels per square of a ChArUco board's drawing
-const int PAD = 8;          // pixels rendered around the image, so that the blur has no border
 
 //! Grey level of the target's plane at (s, t) in units of --square, (0, 0) the first point.
 class Paint
@@ -68,7 +65,7 @@ private:
 //! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.
 Mat traceTarget(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera)
 {
-    const Size size = camera->imageSize() + Size(2*PAD, 2*PAD);
+    const Size size = paddedSize(camera->imageSize());
     Mat pixels(size, CV_64FC2);
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < size.width; x++)
@@ -131,35 +128,13 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
     return levels;
 }
 
-void vignette(Mat& levels, double loss)
-{
-    const Point2d centre(0.5*(levels.cols - 1), 0.5*(levels.rows - 1));
-    for (int y = 0; y < levels.rows; y++)
-        for (int x = 0; x < levels.cols; x++)
-        {
-            const Point2d offset = Point2d(x, y) - centre;
-            levels.at<float>(y, x) *= (float)(1 - loss*offset.dot(offset)/centre.dot(centre));
-        }
-}
-
 } // namespace
 
 Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
            const Exposure& exposure, uint64_t seed)
 {
     Mat levels = paintFine(Paint(target, exposure), traceTarget(target, pose, camera));
-    if (exposure.blur > 0)
-        cv::GaussianBlur(levels, levels, Size(), exposure.blur*FINE);
-    cv::resize(levels, levels, levels.size()/FINE, 0, 0, cv::INTER_AREA);
-    levels = levels(cv::Rect(cv::Point(PAD, PAD), camera->imageSize())).clone();
-    vignette(levels, exposure.vignetting);
-    Mat noise(levels.size(), CV_32F);
-    cv::RNG rng(seed);
-    rng.fill(noise, cv::RNG::NORMAL, 0., exposure.noise);
-    levels += noise;
-    Mat image;
-    levels.convertTo(image, CV_8U);
-    return image;
+    return expose(levels, exposure, seed);
 }
 
 BoardPose inSecondCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)

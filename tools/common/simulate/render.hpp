@@ -1,6 +1,7 @@
 #ifndef REFRACT_TOOLS_RENDER_HPP
 #define REFRACT_TOOLS_RENDER_HPP
 
+#include "simulate/exposure.hpp"
 #include "target/target.hpp"
 #include <opencv2/refract.hpp>
 
@@ -10,15 +11,6 @@ namespace tools {
 struct BoardPose
 {
     cv::Vec3d rvec, tvec;
-};
-
-//! What a camera adds to the light that reaches it. Grey levels 0 ... 255.
-struct Exposure
-{
-    double dark = 35., light = 205., background = 110.;
-    double blur = 0.7;          //!< standard deviation of the lens's point spread, pixels, 0 ... 2
-    double noise = 2.;          //!< standard deviation, grey levels
-    double vignetting = 0.;     //!< loss of light in the image's corners, 0 ... 1
 };
 
 /* Ray tracing, not warping: every pixel's ray is followed through the lens and the window to the target's plane, and

@@ -1,5 +1,6 @@
 #include "simulate/scene_file.hpp"
 #include "calibrate/rig_model.hpp"
+#include "simulate/keys.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -15,45 +16,6 @@ using cv::Vec3d;
 using cv::refract::GlassWindow;
 
 namespace {
-
-//! The keys of one map of the file; an error names the map and the key.
-class Keys
-{
-public:
-    Keys(const FileNode& node, const std::string& name) : node_(node), name_(name) {}
-
-    double number(const std::string& key, double least, double most, double otherwise = NAN) const
-    {
-        const FileNode node = node_[key];
-        if (node.empty() && !std::isnan(otherwise))
-            return otherwise;
-        const double value = node.isReal() || node.isInt() ? (double)node : NAN;
-        if (!(value >= least && value <= most))
-            throw Failure(name_ + ": '" + key + "' must be a number" + cv::format(" from %g to %g", least, most));
-        return value;
-    }
-    std::string text(const std::string& key, const std::string& otherwise) const
-    {
-        const FileNode node = node_[key];
-        if (!node.empty() && !node.isString())
-            throw Failure(name_ + ": '" + key + "' must be a text");
-        return node.empty() ? otherwise : (std::string)node;
-    }
-    std::vector<double> numbers(const std::string& key, size_t count) const
-    {
-        std::vector<double> values;
-        if (node_[key].isSeq())
-            node_[key] >> values;
-        if (values.size() != count || !cv::checkRange(values))
-            throw Failure(name_ + ": '" + key + "' must be a list of " + std::to_string(count) + " numbers");
-        return values;
-    }
-    const std::string& name() const { return name_; }
-
-private:
-    FileNode node_;
-    std::string name_;
-};
 
 Exposure readExposure(const FileNode& node)
 {

@@ -1,0 +1,65 @@
+#include "simulate/keys.hpp"
+#include "console/cli.hpp"
+
+#include <algorithm>
+
+namespace tools {
+
+using cv::FileNode;
+
+Keys::Keys(const FileNode& node, const std::string& name) : node_(node), name_(name)
+{
+    if (!node.empty() && !node.isMap())
+        throw Failure(name + " must be keys with values, as in { key: value }");
+}
+
+double Keys::number(const std::string& key, double least, double most, double otherwise) const
+{
+    const FileNode node = node_[key];
+    if (node.empty() && !std::isnan(otherwise))
+        return otherwise;
+    const double value = node.isReal() || node.isInt() ? (double)node : NAN;
+    if (!(value >= least && value <= most))
+        throw Failure(name_ + ": '" + key + "' must be a number" + cv::format(" from %g to %g", least, most));
+    return value;
+}
+
+std::string Keys::text(const std::string& key, const std::string& otherwise) const
+{
+    const FileNode node = node_[key];
+    if (!node.empty() && !node.isString())
+        throw Failure(name_ + ": '" + key + "' must be a text");
+    return node.empty() ? otherwise : (std::string)node;
+}
+
+std::vector<double> Keys::numbers(const std::string& key, size_t count) const
+{
+    std::vector<double> values;
+    if (node_[key].isSeq())
+        node_[key] >> values;
+    if (values.size() != count || !cv::checkRange(values))
+        throw Failure(name_ + ": '" + key + "' must be a list of " + std::to_string(count) + " numbers");
+    return values;
+}
+
+cv::Vec3d Keys::vector(const std::string& key) const
+{
+    return cv::Vec3d(numbers(key, 3).data());
+}
+
+cv::Vec3d Keys::vector(const std::string& key, const cv::Vec3d& otherwise) const
+{
+    return has(key) ? vector(key) : otherwise;
+}
+
+void Keys::allowOnly(const std::vector<std::string>& known) const
+{
+    std::string names;
+    for (const std::string& name : known)
+        names += (names.empty() ? "" : ", ") + name;
+    for (const std::string& key : node_.keys())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            throw Failure(name_ + ": there is no key '" + key + "'; it takes " + names);
+}
+
+} // namespace tools

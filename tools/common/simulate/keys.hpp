@@ -1,0 +1,36 @@
+#ifndef REFRACT_TOOLS_KEYS_HPP
+#define REFRACT_TOOLS_KEYS_HPP
+
+#include <opencv2/core.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+//! The keys of one map of a file. Throws Failure that names the map and the key.
+class Keys
+{
+public:
+    //! @param node a map, or empty: then it has no keys
+    Keys(const cv::FileNode& node, const std::string& name);
+
+    const std::string& name() const { return name_; }
+    bool has(const std::string& key) const { return !node_[key].empty(); }
+    double number(const std::string& key, double least, double most, double otherwise = NAN) const;
+    std::string text(const std::string& key, const std::string& otherwise) const;
+    std::vector<double> numbers(const std::string& key, size_t count) const;
+    cv::Vec3d vector(const std::string& key) const;
+    cv::Vec3d vector(const std::string& key, const cv::Vec3d& otherwise) const;
+
+    //! Any other key is a slip of the pen.
+    void allowOnly(const std::vector<std::string>& known) const;
+
+private:
+    cv::FileNode node_;
+    std::string name_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_KEYS_HPP
