@@ -1,0 +1,94 @@
+#include "simulate/render_scene.hpp"
+
+#include <cmath>
+#include <functional>
+
+namespace tools {
+
+using cv::Mat;
+using cv::Point2d;
+using cv::Size;
+using cv::Vec3d;
+using cv::Vec3f;
+
+namespace {
+
+const Vec3d LAMP = cv::normalize(Vec3d(-0.5, -0.6, -0.8));      // towards it
+const double AMBIENT = 0.35;                                    // share of the light that comes from everywhere
+
+//! What a sample sees: no surface, or one, and where.
+struct Sight
+{
+    const Surface* surface = nullptr;
+    Meeting meeting;
+};
+
+Sight firstSurface(const TexturedScene& scene, const SceneRay& ray)
+{
+    Sight sight;
+    if (!std::isnan(ray.direction[0]))
+        for (const auto& surface : scene.surfaces)
+            if (surface->meet(ray, sight.meeting))
+                sight.surface = surface.get();
+    return sight;
+}
+
+using PixelOfSample = std::function<Point2d(int x, int y)>;
+using Visit = std::function<void(int x, int y, const SceneRay& ray, const Sight& sight)>;
+
+//! Row by row, as unprojecting wants many pixels at a time.
+void lookAlong(const TexturedScene& scene, const Viewpoint& view, Size samples, const PixelOfSample& pixelOf, const Visit& visit)
+{
+    cv::parallel_for_(cv::Range(0, samples.height), [&](const cv::Range& range) {
+        std::vector<Point2d> pixels(samples.width);
+        for (int y = range.start; y < range.end; y++)
+        {
+            for (int x = 0; x < samples.width; x++)
+                pixels[x] = pixelOf(x, y);
+            const std::vector<SceneRay> rays = raysOf(pixels, view);
+            for (int x = 0; x < samples.width; x++)
+                visit(x, y, rays[x], firstSurface(scene, rays[x]));
+        }
+    });
+}
+
+//! Share of the light that a surface sends back, whichever of its sides is seen.
+double lambert(const Meeting& meeting, const Vec3d& direction)
+{
+    const double towards = meeting.normal.dot(LAMP)*(meeting.normal.dot(direction) > 0 ? -1 : 1);
+    return AMBIENT + (1 - AMBIENT)*std::max(0., towards);
+}
+
+} // namespace
+
+Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view)
+{
+    Mat depth(view.camera->imageSize(), CV_32F);
+    lookAlong(scene, view, depth.size(), [](int x, int y) { return Point2d(x, y); },
+              [&](int x, int y, const SceneRay& ray, const Sight& sight) {
+        depth.at<float>(y, x) = sight.surface ? (float)view.depthOf(ray.at(sight.meeting.s)) : NAN;
+    });
+    return depth;
+}
+
+Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed)
+{
+    const SolidTexture texture(scene.texture, scene.seed);
+    const double spacing = pixelAngle(view)/FINE;       // of samples, at range 1
+    Mat levels(paddedSize(view.camera->imageSize())*FINE, CV_32FC3);
+    lookAlong(scene, view, levels.size(), pixelOfSample,
+              [&](int x, int y, const SceneRay& ray, const Sight& sight) {
+        Vec3f& level = levels.at<Vec3f>(y, x);
+        level = Vec3f::all((float)exposure.background);
+        if (!sight.surface)
+            return;
+        const double s = sight.meeting.s;
+        const double light = texture.at(ray.at(s), s*spacing)*lambert(sight.meeting, ray.direction);
+        const Vec3d& color = sight.surface->color();
+        for (int channel = 0; channel < 3; channel++)
+            level[channel] = (float)(exposure.dark + (exposure.light - exposure.dark)*light*color[2 - channel]);
+    });
+    return expose(levels, exposure, seed);
+}
+
+} // namespace tools

@@ -1,0 +1,74 @@
+#ifndef REFRACT_TOOLS_SURFACE_HPP
+#define REFRACT_TOOLS_SURFACE_HPP
+
+#include <opencv2/core.hpp>
+#include <limits>
+
+/* What rays meet. All in the frame of the scene, which is that of camera 1. */
+namespace tools {
+
+struct SceneRay
+{
+    cv::Vec3d origin, direction;    //!< direction of unit length; NaN where a pixel has no ray
+    double least;                   //!< only points origin + s direction with s > least are beyond the window
+
+    cv::Vec3d at(double s) const { return origin + s*direction; }
+};
+
+//! Where a ray meets a surface.
+struct Meeting
+{
+    double s = std::numeric_limits<double>::infinity();
+    cv::Vec3d normal;               //!< unit vector, to either side
+};
+
+class Surface
+{
+public:
+    explicit Surface(const cv::Vec3d& color) : color_(color) {}
+    virtual ~Surface() = default;
+
+    //! Red, green, blue of its brightest grains, 0 ... 1.
+    const cv::Vec3d& color() const { return color_; }
+
+    //! Replaces `first` if the ray meets this surface before; returns whether.
+    virtual bool meet(const SceneRay& ray, Meeting& first) const = 0;
+
+private:
+    cv::Vec3d color_;
+};
+
+class Sphere : public Surface
+{
+public:
+    Sphere(const cv::Vec3d& center, double radius, const cv::Vec3d& color)
+        : Surface(color), center_(center), radius_(radius) {}
+    bool meet(const SceneRay& ray, Meeting& first) const override;
+
+private:
+    cv::Vec3d center_;
+    double radius_;
+};
+
+class Plane : public Surface
+{
+public:
+    //! Endless.
+    Plane(const cv::Vec3d& point, const cv::Vec3d& normal, const cv::Vec3d& color);
+
+    /** A rectangle round the point.
+    @param right the direction in which it is 2 half.width long; what of it is along the normal is left out
+    @param half half its sides */
+    Plane(const cv::Vec3d& point, const cv::Vec3d& normal, const cv::Vec3d& right, const cv::Size2d& half,
+          const cv::Vec3d& color);
+
+    bool meet(const SceneRay& ray, Meeting& first) const override;
+
+private:
+    cv::Vec3d point_, normal_, right_, down_;
+    cv::Size2d half_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SURFACE_HPP
