@@ -1,6 +1,7 @@
 #include "simulate/scene_file.hpp"
 #include "calibrate/rig_model.hpp"
 #include "simulate/keys.hpp"
+#include "simulate/surfaces_file.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -115,6 +116,8 @@ private:
     double roll_, margin_;
 };
 
+using PosesByName = std::map<std::string, std::vector<NamedPose>>;
+
 std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, const Calibration& rig, uint64_t seed)
 {
     const std::string name = node.name();
@@ -141,14 +144,43 @@ std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, con
     return poses;
 }
 
-ImageSet readSet(const FileNode& node, const std::map<std::string, std::vector<NamedPose>>& poses)
+//! The target and all its poses; none of both if the file has no target.
+PosesByName readTarget(const FileStorage& fs, Scene& scene, const std::string& filename)
+{
+    PosesByName poses;
+    if (fs["target"].empty())
+    {
+        if (!fs["poses"].empty())
+            throw Failure("'" + filename + "': the 'poses' are of a 'target', which it has not");
+        return poses;
+    }
+    const Keys target(fs["target"], "target");
+    scene.target.pattern = target.text("pattern", "chessboard");
+    scene.target.size = target.text("size", "");
+    scene.target.square = target.number("square", 1e-9, 1e9);
+    scene.target.marker = target.number("marker", 0, 1e9, 0);
+    scene.target.dictionary = target.text("dictionary", scene.target.dictionary);
+
+    const Target points(scene.target);
+    uint64_t seed = scene.seed;     // of each kind of pose, so that one more at the end leaves the others as they were
+    for (const FileNode& node : fs["poses"])
+        poses[node.name()] = readPoses(node, points, scene.cameras, ++seed*0x9E3779B97F4A7C15ull);
+    return poses;
+}
+
+ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& poses)
 {
     ImageSet set;
     set.name = node.name();
     const Keys keys(node, "sets: " + set.name);
     set.window = keys.number("window", 0, 1, 1) != 0;
-    if (set.name.find('/') != std::string::npos || !node["poses"].isSeq() || node["poses"].size() == 0)
-        throw Failure(keys.name() + ": 'poses' must be a list of names of poses, and the set's name a folder's");
+    set.scene = keys.number("scene", 0, 1, 0) != 0;
+    const bool posesNamed = node["poses"].isSeq() && node["poses"].size() > 0;
+    if (set.name.find('/') != std::string::npos || (set.scene ? keys.has("poses") : !posesNamed))
+        throw Failure(keys.name() + ": either 'poses' must be a list of names of poses, or 'scene' 1; and the set's name a "
+                      "folder's");
+    if (set.scene && scene.surfaces.surfaces.empty())
+        throw Failure(keys.name() + ": 'scene: 1' renders the 'scene' of the file, which has none");
     for (const FileNode& name : node["poses"])
     {
         const auto found = poses.find((std::string)name);
@@ -157,6 +189,14 @@ ImageSet readSet(const FileNode& node, const std::map<std::string, std::vector<N
         set.poses.insert(set.poses.end(), found->second.begin(), found->second.end());
     }
     return set;
+}
+
+void requireWindowsOf(const Scene& scene, const std::string& filename)
+{
+    const bool needed = std::any_of(scene.sets.begin(), scene.sets.end(), [](const ImageSet& set) { return set.window; });
+    for (const CameraCalibration& c : scene.cameras.cameras)
+        if (needed && !c.windowGiven)
+            throw Failure("'" + filename + "': sets with 'window: 1' need a glass_window of each camera");
 }
 
 } // namespace
@@ -175,28 +215,18 @@ Scene readScene(const std::string& filename)
         if (c.camera->imageSize().empty())
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
     const FileStorage fs(filename, FileStorage::READ);
-    if (fs["target"].empty())
-        throw Failure("'" + filename + "' has no 'target' and so says nothing to render (see refract_simulate --help)");
-    const Keys target(fs["target"], "target"), top(fs.root(), filename);
-    scene.target.pattern = target.text("pattern", "chessboard");
-    scene.target.size = target.text("size", "");
-    scene.target.square = target.number("square", 1e-9, 1e9);
-    scene.target.marker = target.number("marker", 0, 1e9, 0);
-    scene.target.dictionary = target.text("dictionary", scene.target.dictionary);
+    if (fs["target"].empty() && fs["scene"].empty())
+        throw Failure("'" + filename + "' has no 'target' and no 'scene' and so says nothing to render (see refract_simulate "
+                      "--help)");
     scene.exposure = readExposure(fs["exposure"]);
-    scene.seed = (uint64_t)top.number("seed", 0, 2147483647, 1);
-
-    const Target points(scene.target);
-    std::map<std::string, std::vector<NamedPose>> poses;
-    uint64_t seed = scene.seed;     // of each kind of pose, so that one more at the end leaves the others as they were
-    for (const FileNode& node : fs["poses"])
-        poses[node.name()] = readPoses(node, points, scene.cameras, ++seed*0x9E3779B97F4A7C15ull);
+    scene.seed = (uint64_t)Keys(fs.root(), filename).number("seed", 0, 2147483647, 1);
+    if (!fs["scene"].empty())
+        scene.surfaces = readSurfaces(fs["scene"], fs["texture"], filename, scene.meshes);
+    scene.surfaces.seed = scene.seed;
+    const PosesByName poses = readTarget(fs, scene, filename);
     for (const FileNode& node : fs["sets"])
-        scene.sets.push_back(readSet(node, poses));
-    const bool windowNeeded = std::any_of(scene.sets.begin(), scene.sets.end(), [](const ImageSet& set) { return set.window; });
-    for (const CameraCalibration& c : scene.cameras.cameras)
-        if (windowNeeded && !c.windowGiven)
-            throw Failure("'" + filename + "': sets with 'window: 1' need a glass_window of each camera");
+        scene.sets.push_back(readSet(node, scene, poses));
+    requireWindowsOf(scene, filename);
     if (scene.sets.empty())
         throw Failure("'" + filename + "': 'sets' names no images to render (see refract_simulate --help)");
     return scene;

@@ -3,6 +3,7 @@
 
 #include "calibrate/calib_file.hpp"
 #include "simulate/render.hpp"
+#include "simulate/render_scene.hpp"
 
 /* RIG.yml, what refract_simulate renders (cv::FileStorage):
 
@@ -19,8 +20,12 @@
     sets:                                    # folder <name> (two cameras: <name>1, <name>2)
       direct: { window: 0, poses: [ pair ] }
       glass: { window: 1, poses: [ pair ] }
+      room: { window: 1, scene: 1 }          # the textured scene, which surfaces_file.hpp tells, in place of the target
+    scene: ...
+    texture: ...
 
-Drawn poses keep every point of the target `margin` pixels inside all images, with and without window. */
+There is a target, a scene, or both. Drawn poses keep every point of the target `margin` pixels inside all images, with and
+without window. */
 namespace tools {
 
 struct NamedPose
@@ -33,12 +38,15 @@ struct ImageSet
 {
     std::string name;
     bool window = true;
+    bool scene = false;             //!< of the textured scene; then it has no poses
     std::vector<NamedPose> poses;
 };
 
 struct Scene
 {
-    TargetOptions target;
+    TargetOptions target;           //!< given() or not
+    TexturedScene surfaces;         //!< none, if the file has no scene
+    std::vector<std::string> meshes;    //!< files that were read
     Calibration cameras;
     Exposure exposure;
     uint64_t seed = 1;
