@@ -6,14 +6,17 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>
+#include <memory>
 
-static const char MANUAL[] = R"(Renders images of a calibration target seen through flat windows, and the truth.
+static const char MANUAL[] = R"(Renders images of a calibration target, or of a textured scene, seen through flat windows, and the truth.
 
   refract_simulate RIG.yml --out-dir=DIR
 
 Each pixel's ray is traced through lens and window to the target; edges are anti-aliased; then blur, vignetting, noise
 and 8 bits. Writes DIR/SET/STEM.png (two cameras: DIR/SET1, DIR/SET2) and DIR/truth.yml: target, cameras, R and T as
 given, and for each image the pose of the target in camera 1 and the exact pixels of its points.
+Of a scene: DIR/SET/scene.png, in colour, and DIR/SET/scene_depth.tiff, float32: z in the frame of the image's camera of
+what the pixel's centre sees; NaN where it sees nothing.
 The same RIG.yml gives the same images.
 
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
@@ -28,9 +31,17 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
   poses:                 # of the target in camera 1, by name: given, or drawn so that all cameras see all points
     board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] } ]
     pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }
+  scene:                 # in place of target and poses, or beside them; in the frame of camera 1
+    - { shape: plane, point: [0., 0., 1000.], normal: [0., 0., 1.] }      # endless; a rectangle with
+                         # right: [1., 0., 0.], half_size: [200., 100.]
+    - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] }     # red, green, blue, 0 ... 1
+    - { shape: mesh, file: part.ply, rvec: [0., 0., 0.], tvec: [0., 0., 600.], scale: 1. }    # or .obj; beside RIG.yml
+  texture: { size: 60., contrast: 0.8, octaves: 8 }      # of the scene: size of its coarsest grains, each octave halves
+                         # it; the finest should be a pixel where the scene is nearest
   sets:                  # what to render; equal poses get equal file names
     direct: { window: 0, poses: [ pair ] }
-    glass: { window: 1, poses: [ pair, board ] })";
+    glass: { window: 1, poses: [ pair, board ] }
+    room: { window: 1, scene: 1 })";
 
 namespace {
 
@@ -44,7 +55,11 @@ struct Job
     std::string set, stem;
     int camera;
     bool window;
-    BoardPose pose;         // in camera 1
+    BoardPose pose;         // of the target in camera 1
+    std::string depthPath;  // of a textured scene; empty: it is of the target
+    cv::Mat depth;
+
+    bool isOfScene() const { return !depthPath.empty(); }
 };
 
 std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
@@ -52,12 +67,14 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
     std::vector<Job> jobs;
     for (const ImageSet& set : scene.sets)
         for (int camera = 0; camera < (int)scene.cameras.cameras.size(); camera++)
+        {
+            const std::string folder = set.name + (scene.cameras.stereo() ? std::to_string(camera + 1) : "") + "/";
+            if (set.scene)
+                jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {},
+                                folder + "scene_depth.tiff", {}});
             for (const NamedPose& pose : set.poses)
-            {
-                const std::string folder = set.name + (scene.cameras.stereo() ? std::to_string(camera + 1) : "");
-                jobs.push_back({folder + "/" + pose.stem + "." + extension, set.name, pose.stem, camera, set.window,
-                                pose.pose});
-            }
+                jobs.push_back({folder + pose.stem + "." + extension, set.name, pose.stem, camera, set.window, pose.pose, "", {}});
+        }
     return jobs;
 }
 
@@ -75,62 +92,125 @@ BoardPose poseOf(const Scene& scene, const Job& job)
     return job.camera ? inSecondCamera(job.pose, scene.cameras.R, scene.cameras.T) : job.pose;
 }
 
-void writeTruth(const std::string& path, const Scene& scene, const Target& target, const std::vector<Job>& jobs,
+Viewpoint viewOf(const Scene& scene, const Job& job)
+{
+    Viewpoint view{cameraOf(scene, job), cv::Matx33d::eye(), cv::Vec3d()};
+    if (job.camera == 1)
+    {
+        view.R = scene.cameras.R;
+        view.T = scene.cameras.T;
+    }
+    return view;
+}
+
+//! Before anything is written, as a camera that sees nothing is a mistake in the file.
+void traceDepths(const std::string& rig, const Scene& scene, std::vector<Job>& jobs)
+{
+    for (Job& job : jobs)
+    {
+        if (!job.isOfScene())
+            continue;
+        job.depth = depthOfScene(scene.surfaces, viewOf(scene, job));
+        if (cv::countNonZero(job.depth == job.depth) == 0)
+            throw Failure("'" + rig + "': set '" + job.set + "': camera " + std::to_string(job.camera + 1) + " sees nothing of "
+                          "the 'scene'; move its shapes into view, beyond the window, or turn the camera");
+    }
+}
+
+void writeTarget(FileStorage& fs, const TargetOptions& options, const Target& target)
+{
+    fs << "target" << "{" << "pattern" << options.pattern << "size" << options.size << "square" << options.square;
+    if (target.pattern() == Target::CHARUCO)
+        fs << "marker" << options.marker << "dictionary" << options.dictionary;
+    fs << "}";
+}
+
+void writeCameras(FileStorage& fs, const Calibration& rig)
+{
+    if (!rig.stereo())
+    {
+        rig.cameras[0].camera->write(fs);
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+    {
+        fs << "camera" + std::to_string(i + 1) << "{";
+        rig.cameras[i].camera->write(fs);
+        fs << "}";
+    }
+    fs << "R" << cv::Mat(rig.R) << "T" << cv::Mat(rig.T);
+}
+
+//! The list of all views of the target, or of all of the scene.
+void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const std::vector<Job>& jobs)
+{
+    fs << (target ? "views" : "scene_views") << "[";
+    for (const Job& job : jobs)
+    {
+        if (job.isOfScene() == (target != nullptr))
+            continue;
+        fs << "{" << "file" << job.path << "set" << job.set << "stem" << job.stem << "camera" << job.camera + 1
+           << "window" << (int)job.window;
+        if (job.isOfScene())
+            fs << "depth" << job.depthPath;
+        else
+        {
+            const std::vector<cv::Point2d> pixels = projectTarget(*target, poseOf(scene, job), cameraOf(scene, job));
+            fs << "rvec" << job.pose.rvec << "tvec" << job.pose.tvec << "pixels" << cv::Mat(pixels).reshape(1);
+        }
+        fs << "}";
+    }
+    fs << "]";
+}
+
+void writeTruth(const std::string& path, const Scene& scene, const Target* target, const std::vector<Job>& jobs,
                 const std::string& command)
 {
     OutputFile file(path);
     FileStorage fs(file.temporary(), FileStorage::WRITE);
-    fs << "command" << command << "target" << "{" << "pattern" << scene.target.pattern << "size" << scene.target.size
-       << "square" << scene.target.square;
-    if (target.pattern() == Target::CHARUCO)
-        fs << "marker" << scene.target.marker << "dictionary" << scene.target.dictionary;
-    fs << "}";
-    if (scene.cameras.stereo())
-    {
-        for (int i = 0; i < 2; i++)
-        {
-            fs << "camera" + std::to_string(i + 1) << "{";
-            scene.cameras.cameras[i].camera->write(fs);
-            fs << "}";
-        }
-        fs << "R" << cv::Mat(scene.cameras.R) << "T" << cv::Mat(scene.cameras.T);
-    }
-    else
-        scene.cameras.cameras[0].camera->write(fs);
-    fs << "views" << "[";
-    for (const Job& job : jobs)
-    {
-        const std::vector<cv::Point2d> pixels = projectTarget(target, poseOf(scene, job), cameraOf(scene, job));
-        fs << "{" << "file" << job.path << "set" << job.set << "stem" << job.stem << "camera" << job.camera + 1
-           << "window" << (int)job.window << "rvec" << job.pose.rvec << "tvec" << job.pose.tvec
-           << "pixels" << cv::Mat(pixels).reshape(1) << "}";
-    }
-    fs << "]";
+    fs << "command" << command;
+    if (target)
+        writeTarget(fs, scene.target, *target);
+    writeCameras(fs, scene.cameras);
+    if (target)
+        writeViews(fs, scene, target, jobs);
+    if (!scene.surfaces.surfaces.empty())
+        writeViews(fs, scene, nullptr, jobs);
     fs.release();
     file.commit();
 }
 
-void renderAll(const std::string& folder, const Scene& scene, const Target& target, const std::vector<Job>& jobs,
+void renderAll(const std::string& folder, const Scene& scene, const Target* target, const std::vector<Job>& jobs,
                const std::vector<int>& parameters, bool quiet)
 {
     Progress progress("rendering", (int)jobs.size(), quiet);
     for (size_t i = 0; i < jobs.size(); i++)
     {
-        progress.at(jobs[i].path);
-        const cv::Mat image = render(target, poseOf(scene, jobs[i]), cameraOf(scene, jobs[i]), scene.exposure,
-                                     scene.seed*1000003 + i + 1);
-        writeImage(folder + "/" + jobs[i].path, image, parameters);
+        const Job& job = jobs[i];
+        progress.at(job.path);
+        const uint64_t seed = scene.seed*1000003 + i + 1;
+        const cv::Mat image = job.isOfScene() ? renderScene(scene.surfaces, viewOf(scene, job), scene.exposure, seed) :
+                              render(*target, poseOf(scene, job), cameraOf(scene, job), scene.exposure, seed);
+        writeImage(folder + "/" + job.path, image, parameters);
+        if (job.isOfScene())
+            writeImage(folder + "/" + job.depthPath, job.depth);
         progress.step();
     }
 }
 
 //! DIR/truth.yml is a scene too, and may be the one that is read.
-void refuseOverwriting(const std::string& rig, const std::string& folder, const std::vector<Job>& jobs)
+void refuseOverwriting(const std::string& rig, const Scene& scene, const std::string& folder, const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs = {{"--out-dir", folder + "/truth.yml", OUTPUT_IN_FOLDER}};
     for (const Job& job : jobs)
+    {
         outputs.push_back({"--out-dir", folder + "/" + job.path, OUTPUT_IN_FOLDER});
-    checkOutputs(outputs, {rig});
+        if (job.isOfScene())
+            outputs.push_back({"--out-dir", folder + "/" + job.depthPath, OUTPUT_IN_FOLDER});
+    }
+    std::vector<std::string> inputs = scene.meshes;
+    inputs.push_back(rig);
+    checkOutputs(outputs, inputs);
 }
 
 } // namespace
@@ -149,16 +229,19 @@ int main(int argc, char** argv)
         command.parse();
 
         const Scene scene = readScene(rig);
-        const Target target(scene.target);
-        const std::vector<Job> jobs = listJobs(scene, extension);
-        refuseOverwriting(rig, folder, jobs);
+        std::unique_ptr<const Target> target;
+        if (scene.target.given())
+            target = std::make_unique<Target>(scene.target);
+        std::vector<Job> jobs = listJobs(scene, extension);
+        refuseOverwriting(rig, scene, folder, jobs);
+        traceDepths(rig, scene, jobs);
         for (const Job& job : jobs)
             makeFolder(folder + "/" + job.path.substr(0, job.path.find('/')));
         std::vector<int> parameters;
         if (extension != "png")
             parameters = {extension == "jpg" ? (int)cv::IMWRITE_JPEG_QUALITY : (int)cv::IMWRITE_WEBP_QUALITY, quality};
-        renderAll(folder, scene, target, jobs, parameters, command.quiet());
-        writeTruth(folder + "/truth.yml", scene, target, jobs, command.line());
+        renderAll(folder, scene, target.get(), jobs, parameters, command.quiet());
+        writeTruth(folder + "/truth.yml", scene, target.get(), jobs, command.line());
         if (!command.quiet())
             std::cout << jobs.size() << " images and truth.yml written to " << folder << std::endl;
         return DONE;
