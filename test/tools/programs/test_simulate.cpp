@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/refract.hpp>
 
 namespace {
 
@@ -45,6 +46,27 @@ void write(const std::string& path, const std::string& text)
 {
     std::ofstream(path, std::ios::binary) << text;
 }
+
+//! Two small cameras behind panes and what they see; lines of `shapes` and `sets` as in the file.
+std::string texturedScene(const std::string& shapes, const std::string& sets, int seed = 1)
+{
+    const auto camera = [](const std::string& name, const std::string& normal) {
+        return name + R"(:
+   image_width: 160
+   image_height: 120
+   camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ 200., 0., 80., 0., 200., 60., 0., 0., 1. ] }
+   distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: [ -0.2, 0.1, 0.001, 0. ] }
+   glass_window: { normal: )" + normal + R"(, distance: 50., thickness: [ 25. ], index: [ 1.517 ], inner_index: 1., outer_index: 1. }
+)";
+    };
+    return "%YAML:1.0\n---\n" + camera("camera1", "[ -0.2, 0.1, 0.97 ]") + camera("camera2", "[ 0.15, -0.15, 0.97 ]")
+        + "R: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. ]\nT: [ -150., 0., 0. ]\nseed: " + std::to_string(seed)
+        + "\ntexture: { size: 60., contrast: 0.8, octaves: 8 }\nscene:\n" + shapes + "sets:\n" + sets;
+}
+
+const char* const SHAPES = "   - { shape: plane, point: [ 0., 0., 1100. ], normal: [ 0.1, 0., -1. ] }\n"
+                           "   - { shape: sphere, center: [ 50., 0., 700. ], radius: 100., color: [ 1., 0.7, 0.5 ] }\n";
+const char* const SCENE_SETS = "   direct: { window: 0, scene: 1 }\n   glass: { window: 1, scene: 1 }\n";
 
 } // namespace
 
@@ -136,6 +158,146 @@ TEST_CASE("the same scene gives the same images, another seed gives others", "[t
     for (const auto& view : a)
         for (const cv::Point2d& p : view.second.pixels)
             CHECK(cv::Rect2d(20, 20, 600, 472).contains(p));
+}
+
+TEST_CASE("a textured scene: images and depth of each camera, with window and without", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    write(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
+    const ToolResult rendered = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
+    INFO(rendered.err);
+    REQUIRE(rendered.code == 0);
+    CHECK(rendered.out.find("4 images") != std::string::npos);
+    const cv::FileStorage truth(folder / "out/truth.yml", cv::FileStorage::READ);
+    CHECK(truth["views"].empty());
+    CHECK(truth["target"].empty());
+    REQUIRE(truth["scene_views"].size() == 4);
+    std::map<std::string, cv::Mat> images, depths;
+    for (const cv::FileNode& view : truth["scene_views"])
+    {
+        const std::string name = (std::string)view["set"] + std::to_string((int)view["camera"]);
+        CHECK((std::string)view["file"] == name + "/scene.png");
+        CHECK((std::string)view["depth"] == name + "/scene_depth.tiff");
+        CHECK((int)view["window"] == (name[0] == 'g'));
+        images[name] = cv::imread(folder/("out/" + name + "/scene.png"), cv::IMREAD_UNCHANGED);
+        depths[name] = cv::imread(folder/("out/" + name + "/scene_depth.tiff"), cv::IMREAD_UNCHANGED);
+        REQUIRE(images[name].type() == CV_8UC3);
+        REQUIRE(depths[name].type() == CV_32F);
+        CHECK(images[name].size() == cv::Size(160, 120));
+        CHECK(depths[name].size() == cv::Size(160, 120));
+        CHECK(cv::checkRange(depths[name], true, nullptr, 500, 1400));
+    }
+    CHECK(cv::norm(images["glass1"], images["direct1"], cv::NORM_INF) > 30);
+    CHECK(cv::norm(depths["glass1"], depths["direct1"], cv::NORM_INF) > 5);
+
+    // The cameras are parallel: a sphere's nearest point is that of both.
+    double nearest1, nearest2;
+    cv::minMaxLoc(depths["direct1"], &nearest1);
+    cv::minMaxLoc(depths["direct2"], &nearest2);
+    CHECK(std::abs(nearest1 - nearest2) < 0.2);
+    CHECK(nearest1 < 602);
+
+    // What refract_simulate wrote is a calibration, too.
+    const auto camera1 = cv::refract::RefractiveCamera::read(folder / "out/truth.yml", "camera1");
+    std::vector<cv::Point2d> pixel = {{10, 10}}, normalized;
+    const double z = depths["glass1"].at<float>(10, 10);
+    cv::refract::refractiveUndistortPoints(pixel, normalized, camera1, std::vector<double>{z});
+    CHECK(std::abs(0.1*z*normalized[0].x - (z - 1100)) < 1e-3);
+}
+
+TEST_CASE("the same textured scene gives the same bytes, another seed another texture", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    write(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
+    write(folder / "other.yml", texturedScene(SHAPES, SCENE_SETS, 2));
+    for (const std::string name : {"a", "b"})
+        REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder/name)).code == 0);
+    REQUIRE(runTool("refract_simulate " + (folder / "other.yml") + " --out-dir=" + (folder / "c")).code == 0);
+    for (const std::string file : {"glass1/scene.png", "glass1/scene_depth.tiff", "direct2/scene.png"})
+        CHECK(readFile(folder/("a/" + file)) == readFile(folder/("b/" + file)));
+    const cv::Mat a = cv::imread(folder / "a/direct1/scene.png"), c = cv::imread(folder / "c/direct1/scene.png");
+    CHECK(cv::norm(a, c, cv::NORM_L1)/(a.total()*3) > 10);
+    CHECK(readFile(folder / "a/glass1/scene_depth.tiff") == readFile(folder / "c/glass1/scene_depth.tiff"));
+}
+
+TEST_CASE("target and scene stand in one file, and a mesh beside it", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    write(folder / "part.obj", "v -100 -100 0\nv 100 -100 0\nv 0 120 0\nf 1 2 3\n");
+    std::string text = scene(CHESSBOARD, "   glass: { window: 1, poses: [ fixed ] }\n   room: { window: 1, scene: 1 }\n");
+    text += "texture: { size: 60. }\nscene:\n   - { shape: mesh, file: part.obj, tvec: [ 0., 0., 600. ] }\n";
+    write(folder / "rig.yml", text);
+    REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --format=jpg --out-dir=" + (folder / "out")).code == 0);
+    CHECK(readTruth(folder / "out").size() == 3);
+    const cv::FileStorage truth(folder / "out/truth.yml", cv::FileStorage::READ);
+    REQUIRE(truth["scene_views"].size() == 1);
+    CHECK((std::string)truth["scene_views"][0]["file"] == "room/scene.jpg");
+    const cv::Mat depth = cv::imread(folder / "out/room/scene_depth.tiff", cv::IMREAD_UNCHANGED);
+    const int seen = cv::countNonZero(cv::abs(depth - 600) < 1e-3), missed = 640*512 - cv::countNonZero(depth == depth);
+    CHECK(seen + missed == 640*512);
+    CHECK((seen > 60000 && missed > 60000));
+    CHECK(!cv::imread(folder / "out/room/scene.jpg").empty());
+}
+
+TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one sentence", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    write(folder / "points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                                 "end_header\n0 0 0\n");
+    const std::string good = texturedScene(SHAPES, SCENE_SETS);
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const auto shape = [](const std::string& keys) { return texturedScene("   - { " + keys + " }\n", SCENE_SETS); };
+    struct Case { std::string text, expected; };
+    for (const Case& c : {Case{replaced("scene:\n", "scenery:\n"), "no 'target' and no 'scene'"},
+                          Case{replaced("texture:", "textur:"), "'texture: { size"},
+                          Case{replaced("size: 60.", "size: 0."), "texture: 'size'"},
+                          Case{replaced("size: 60., ", ""), "texture: 'size'"},
+                          Case{replaced("contrast: 0.8", "contrast: 1.8"), "'contrast'"},
+                          Case{replaced("octaves: 8", "octaves: 0"), "'octaves'"},
+                          Case{replaced("octaves: 8", "octave: 8"), "no key 'octave'; it takes size, contrast, octaves"},
+                          Case{texturedScene("   3\n", SCENE_SETS), "'scene' must be a list"},
+                          Case{texturedScene("   - 3\n", SCENE_SETS), "scene, shape 1 must be keys"},
+                          Case{shape("shape: cube"), "'shape' must be plane, sphere or mesh"},
+                          Case{shape("shape: 1"), "'shape' must be a text"},
+                          Case{shape("shape: plane, point: [ 0., 0., 900. ]"), "shape 1: 'normal' must be a list of 3"},
+                          Case{shape("shape: plane, point: [ 0., 900. ], normal: [ 0., 0., 1. ]"), "'point'"},
+                          Case{shape("shape: plane, point: [ 0., 0., 900. ], normal: [ 0., 0., 0. ]"), "'normal' must not be 0"},
+                          Case{shape("shape: plane, point: [ 0., 0., 900. ], normal: [ 0., 0., 1. ], half_size: [ 1., 1. ]"),
+                               "'right' and 'half_size'"},
+                          Case{shape("shape: plane, point: [ 0., 0., 900. ], normal: [ 0., 0., 1. ], half_size: [ 1., -1. ], "
+                                     "right: [ 1., 0., 0. ]"), "'half_size' must be"},
+                          Case{shape("shape: plane, point: [ 0., 0., 900. ], normal: [ 0., 0., 1. ], half_size: [ 1., 1. ], "
+                                     "right: [ 0., 0., 2. ]"), "'right' must not be along"},
+                          Case{shape("shape: sphere, center: [ 0., 0., 900. ], radius: -1."), "'radius'"},
+                          Case{shape("shape: sphere, center: [ 0., 0., 900. ], radus: 1."), "no key 'radus'"},
+                          Case{shape("shape: sphere, center: [ 0., 0., 900. ], radius: 9., color: [ 1., 2., 0. ]"), "'color'"},
+                          Case{shape("shape: mesh"), "'file' must name a mesh"},
+                          Case{shape("shape: mesh, file: none.ply"), "there is no file"},
+                          Case{shape("shape: mesh, file: rig.yml"), ".ply or .obj"},
+                          Case{shape("shape: mesh, file: points.ply"), "no triangle"},
+                          Case{shape("shape: mesh, file: points.ply, scale: 0."), "'scale'"},
+                          Case{shape("shape: sphere, center: [ 0., 0., -900. ], radius: 9."), "set 'direct': camera 1 sees nothing"},
+                          Case{shape("shape: plane, point: [ 0., 0., 20. ], normal: [ 0., 0., 1. ]"),
+                               "set 'glass': camera 1 sees nothing"},
+                          Case{shape("shape: sphere, center: [ -300., 0., 900. ], radius: 9."), "camera 2 sees nothing"},
+                          Case{texturedScene(SHAPES, "   direct: { window: 0, scene: 1, poses: [ a ] }\n"), "either 'poses'"},
+                          Case{texturedScene(SHAPES, "   direct: { window: 0, scene: 0 }\n"), "either 'poses'"},
+                          Case{texturedScene(SHAPES, "   direct: 1\n"), "sets: direct must be keys"},
+                          Case{texturedScene(SHAPES, "   direct: { window: 0, poses: [ a ] }\n"), "no poses called 'a'"},
+                          Case{good + "poses:\n   a: [ { rvec: [ 0., 0., 0. ], tvec: [ 0., 0., 600. ] } ]\n", "are of a 'target'"},
+                          Case{scene(CHESSBOARD, "   room: { window: 1, scene: 1 }\n"), "renders the 'scene' of the file"}})
+    {
+        write(folder / "rig.yml", c.text);
+        const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
+        CAPTURE(c.text, c.expected, result.err);
+        CHECK(result.code == 1);
+        CHECK(result.err.find(c.expected) != std::string::npos);
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        CHECK(!std::filesystem::exists(folder / "out"));        // no depth without its image either
+    }
 }
 
 TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence", "[tools][simulate]")

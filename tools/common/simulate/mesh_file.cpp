@@ -21,6 +21,15 @@ std::string extensionOf(const std::string& path)
     return extension;
 }
 
+bool namesItsVertices(const aiMesh& mesh)
+{
+    for (unsigned i = 0; i < mesh.mNumFaces; i++)
+        for (unsigned corner = 0; corner < mesh.mFaces[i].mNumIndices; corner++)
+            if (mesh.mFaces[i].mIndices[corner] >= mesh.mNumVertices)
+                return false;
+    return true;
+}
+
 void addTriangles(const aiMesh& mesh, std::vector<Triangle>& triangles)
 {
     for (unsigned i = 0; i < mesh.mNumFaces; i++)
@@ -54,9 +63,13 @@ std::vector<Triangle> readTriangles(const std::string& path, const std::string& 
     if (!std::filesystem::is_regular_file(path))
         throw Failure(name + ": there is no file '" + path + "'");
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate);
+    const aiScene* scene = importer.ReadFile(path, 0);
     if (!scene)
         throw Failure(name + ": cannot read '" + path + "': " + importer.GetErrorString());
+    for (unsigned i = 0; i < scene->mNumMeshes; i++)        // before anything follows them
+        if (!namesItsVertices(*scene->mMeshes[i]))
+            throw Failure(name + ": '" + path + "' is no mesh: a face names a vertex that is not there");
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
     std::vector<Triangle> triangles;
     for (unsigned i = 0; i < scene->mNumMeshes; i++)
         addTriangles(*scene->mMeshes[i], triangles);

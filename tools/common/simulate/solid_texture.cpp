@@ -13,6 +13,7 @@ namespace {
 /* With w the weight along one axis and g a gradient whose components are uniform in -1 ... 1, the noise has the variance
 8/3 3 (integral w^2)^2 (integral w^2 t^2) = 0.03646. */
 const double GRAIN_STD = 0.190944;
+const double GAIN = 0.65;       // at 1 the tanh that keeps the sum in bounds would flatten the lightest and darkest places
 const double FAR = 1e12;        // grains: beyond, a double does not tell points of one grain apart
 
 uint64_t mixed(uint64_t bits)
@@ -68,7 +69,7 @@ double shown(double spacing, double size)
 } // namespace
 
 SolidTexture::SolidTexture(const TextureOptions& options, uint64_t seed)
-    : contrast_(options.contrast), scale_(1/(GRAIN_STD*std::sqrt((double)options.octaves)))
+    : contrast_(options.contrast), scale_(GAIN/(GRAIN_STD*std::sqrt((double)options.octaves)))
 {
     cv::Rodrigues(Vec3d(0.5, 0.7, 0.3), turn_);
     double size = options.size;
