@@ -1,5 +1,6 @@
 #!/bin/sh
-# Remakes the bundled images and their truth from samples/data/stereo/rig.yml:  tools/make_sample_data.sh [BUILD_DIR]
+# Remakes the bundled images and their truth from samples/data/*/rig.yml:  tools/make_sample_data.sh [BUILD_DIR]
+# Leaves the depth of the scene beside its images, too large to be bundled.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$(cd "${1:-$root/build}" && pwd)
@@ -7,6 +8,8 @@ if [ ! -x "$build/bin/refract_simulate" ]; then
     echo "$0: there is no $build/bin/refract_simulate: build the tools first, or name the build folder" >&2
     exit 1
 fi
-cd "$root/samples/data/stereo"
 PATH="$build/bin:$PATH"
+cd "$root/samples/data/stereo"
 refract_simulate rig.yml --out-dir=. --format=jpg --quality=88
+cd "$root/samples/data/scene"
+refract_simulate rig.yml --out-dir=. --format=jpg --quality=92
