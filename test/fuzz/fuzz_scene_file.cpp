@@ -10,6 +10,9 @@ void fuzz::tryFile(const std::string& path)
     const tools::Scene scene = tools::readScene(path);
     promise(!scene.sets.empty(), "a scene has images to render");
     for (const tools::ImageSet& set : scene.sets)
+    {
+        promise(set.scene ? !scene.surfaces.surfaces.empty() : !set.poses.empty(), "a set has something to render");
         for (const tools::NamedPose& pose : set.poses)
             promise(cv::checkRange(pose.pose.rvec) && cv::checkRange(pose.pose.tvec), "poses are finite");
+    }
 }
