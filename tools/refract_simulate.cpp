@@ -8,7 +8,7 @@
 #include <iostream>
 #include <memory>
 
-static const char MANUAL[] = R"(Renders images of a calibration target, or of a textured scene, seen through flat windows, and the truth.
+static const char MANUAL[] = R"(Renders images of a calibration target or a textured scene seen through flat windows, and the truth.
 
   refract_simulate RIG.yml --out-dir=DIR
 
@@ -73,7 +73,8 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
                 jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {},
                                 folder + "scene_depth.tiff", {}});
             for (const NamedPose& pose : set.poses)
-                jobs.push_back({folder + pose.stem + "." + extension, set.name, pose.stem, camera, set.window, pose.pose, "", {}});
+                jobs.push_back({folder + pose.stem + "." + extension, set.name, pose.stem, camera, set.window, pose.pose,
+                                "", {}});
         }
     return jobs;
 }

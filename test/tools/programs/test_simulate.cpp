@@ -56,7 +56,7 @@ std::string texturedScene(const std::string& shapes, const std::string& sets, in
    image_height: 120
    camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ 200., 0., 80., 0., 200., 60., 0., 0., 1. ] }
    distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: [ -0.2, 0.1, 0.001, 0. ] }
-   glass_window: { normal: )" + normal + R"(, distance: 50., thickness: [ 25. ], index: [ 1.517 ], inner_index: 1., outer_index: 1. }
+   glass_window: { normal: )" + normal + R"(, distance: 50., thickness: [ 25. ], index: [ 1.517 ] }
 )";
     };
     return "%YAML:1.0\n---\n" + camera("camera1", "[ -0.2, 0.1, 0.97 ]") + camera("camera2", "[ 0.15, -0.15, 0.97 ]")
@@ -273,13 +273,14 @@ TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one s
                                      "right: [ 0., 0., 2. ]"), "'right' must not be along"},
                           Case{shape("shape: sphere, center: [ 0., 0., 900. ], radius: -1."), "'radius'"},
                           Case{shape("shape: sphere, center: [ 0., 0., 900. ], radus: 1."), "no key 'radus'"},
-                          Case{shape("shape: sphere, center: [ 0., 0., 900. ], radius: 9., color: [ 1., 2., 0. ]"), "'color'"},
+                          Case{shape("shape: sphere, center: [ 0., 0., 9. ], radius: 9., color: [ 1., 2., 0. ]"), "'color'"},
                           Case{shape("shape: mesh"), "'file' must name a mesh"},
                           Case{shape("shape: mesh, file: none.ply"), "there is no file"},
                           Case{shape("shape: mesh, file: rig.yml"), ".ply or .obj"},
                           Case{shape("shape: mesh, file: points.ply"), "no triangle"},
                           Case{shape("shape: mesh, file: points.ply, scale: 0."), "'scale'"},
-                          Case{shape("shape: sphere, center: [ 0., 0., -900. ], radius: 9."), "set 'direct': camera 1 sees nothing"},
+                          Case{shape("shape: sphere, center: [ 0., 0., -900. ], radius: 9."),
+                               "set 'direct': camera 1 sees nothing"},
                           Case{shape("shape: plane, point: [ 0., 0., 20. ], normal: [ 0., 0., 1. ]"),
                                "set 'glass': camera 1 sees nothing"},
                           Case{shape("shape: sphere, center: [ -300., 0., 900. ], radius: 9."), "camera 2 sees nothing"},
@@ -287,7 +288,8 @@ TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one s
                           Case{texturedScene(SHAPES, "   direct: { window: 0, scene: 0 }\n"), "either 'poses'"},
                           Case{texturedScene(SHAPES, "   direct: 1\n"), "sets: direct must be keys"},
                           Case{texturedScene(SHAPES, "   direct: { window: 0, poses: [ a ] }\n"), "no poses called 'a'"},
-                          Case{good + "poses:\n   a: [ { rvec: [ 0., 0., 0. ], tvec: [ 0., 0., 600. ] } ]\n", "are of a 'target'"},
+                          Case{good + "poses:\n   a: [ { rvec: [ 0., 0., 0. ], tvec: [ 0., 0., 600. ] } ]\n",
+                               "are of a 'target'"},
                           Case{scene(CHESSBOARD, "   room: { window: 1, scene: 1 }\n"), "renders the 'scene' of the file"}})
     {
         write(folder / "rig.yml", c.text);

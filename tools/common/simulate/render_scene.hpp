@@ -18,14 +18,14 @@ struct TexturedScene
     uint64_t seed = 1;              //!< of the texture
 };
 
-/** z in the camera's frame of the first surface that each pixel's centre sees, float32; NaN where it sees none, or the lens or the
-window has no ray. */
+/** z in the camera's frame of the first surface that each pixel's centre sees, float32; NaN where it sees none, or where the lens
+or the window has no ray. */
 cv::Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view);
 
-/* The image, 8 bits, blue, green, red. Every sample, 2x2 in each pixel, has a ray of its own, followed through the lens and the
-window to the first surface. What it finds there: the surface's colour times the texture, in the light of a lamp that is far off, up
-and to the left of camera 1, and some light from everywhere. No shadows. Lit from the front, a white surface has the level
-`light`, without light `dark`. */
+/** The image, 8 bits, blue, green, red. Every sample, 2x2 in each pixel, has a ray of its own, followed through the lens and
+the window to the first surface. What it finds there: the surface's colour times the texture, in the light of a lamp that is far
+off, up and to the left of camera 1, and some light from everywhere. No shadows. Lit from the front, a white surface has the
+level `light`, without light `dark`. */
 cv::Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed);
 
 } // namespace tools

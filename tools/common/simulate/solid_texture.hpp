@@ -9,13 +9,13 @@ namespace tools {
 struct TextureOptions
 {
     double size = 0.;           //!< of the coarsest grains; each octave halves it
-    double contrast = 0.8;      //!< 0: none, 1: the darkest grains are black
+    double contrast = 0.8;      //!< 0: none, 1: the darkest grains are nearly black
     int octaves = 8;
 };
 
-/* A texture that fills space, as the grain of wood or stone does: whatever surface is cut through it is textured, and all cameras see
-the same there. The sum of several octaves of gradient noise, all of the same strength, so that it looks alike at all ranges. The
-gradients come from a hash of the lattice point: no tables, the same on every machine. */
+/* A texture that fills space, as the grain of wood or stone does: whatever surface is cut through it is textured, and all cameras
+see the same there. The sum of several octaves of gradient noise, all of the same strength, so that it looks alike at all ranges.
+The gradients come from a hash of the lattice point: no tables, the same on every machine. */
 class SolidTexture
 {
 public:

@@ -45,7 +45,8 @@ double pixelAngle(const Viewpoint& view)
 {
     const Point2d centre = 0.5*Point2d(cv::Size2d(view.camera->imageSize()));
     const std::vector<SceneRay> rays = raysOf({centre, centre + Point2d(1, 0)}, view);
-    return cv::norm(rays[1].direction - rays[0].direction);
+    const double angle = cv::norm(rays[1].direction - rays[0].direction);
+    return std::isnan(angle) ? 0 : angle;
 }
 
 } // namespace tools

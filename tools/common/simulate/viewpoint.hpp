@@ -22,7 +22,7 @@ struct Viewpoint
 //! What pixels look along, from where it leaves the window on.
 std::vector<SceneRay> raysOf(const std::vector<cv::Point2d>& pixels, const Viewpoint& view);
 
-//! Angle between the rays of neighbouring pixels in the middle of the image, radians.
+//! Angle between the rays of neighbouring pixels in the middle of the image, radians; 0 where there are no rays.
 double pixelAngle(const Viewpoint& view);
 
 } // namespace tools
