@@ -211,7 +211,6 @@ TEST_CASE("nothing before the window's last surface is seen", "[simulate][scene]
         // What is seen of it lies beyond.
         const std::vector<Point2d> pixels = allPixels(hidden.size());
         const std::vector<double> depths = asList(hidden);
-        std::vector<Point2d> at, back;
         std::vector<Vec3d> points;
         refractivePointsOnPlane(pixels, points, behind, Vec4d(0, 0, 1, z));
         for (size_t i = 0; i < pixels.size(); i++)
