@@ -2,6 +2,7 @@
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <functional>
 
 using namespace cv;
 using namespace cv::refract;
@@ -12,15 +13,16 @@ namespace {
 
 const Size SIZE((int)WIDTH, (int)HEIGHT);
 
-double mapError(const Scene& scene, const Mat& map, double depth)
+//! Of some pixels of a map, whose points `pointOf` tells.
+double mapError(const Scene& scene, const Mat& map, const std::function<Vec3d(int, int)>& pointOf)
 {
     const auto camera = scene.parts<long double>();
     long double worst = 0;
     for (int i : sample(SIZE.area()))
     {
         const int x = i % SIZE.width, y = i/SIZE.width;
-        const Pixel p = camera.project({ (x - camera.lens.cx)/camera.lens.fx*depth, (y - camera.lens.cy)/camera.lens.fy*depth,
-                                         depth });
+        const Vec3d X = pointOf(x, y);
+        const Pixel p = camera.project({ X[0], X[1], X[2] });
         const Point2f found = map.at<Point2f>(y, x);
         worst = std::max(worst, std::hypot(found.x - p[0], found.y - p[1]));
     }
@@ -37,7 +39,30 @@ Row mapRow()
     r.ours = [=] { initRefractiveUndistortRectifyMap(d->scene.camera, depth, noArray(), d->scene.K, SIZE, CV_32FC2, d->map1,
                                                      d->map2); };
     r.peer = [=] { initUndistortRectifyMap(d->scene.K, d->scene.D, noArray(), d->scene.K, SIZE, CV_32FC2, d->peer1, d->peer2); };
-    r.error = [=] { return mapError(d->scene, d->map1, depth[0]); };
+    r.error = [=] { return mapError(d->scene, d->map1, [&](int x, int y) { return depth[0]*(d->scene.K.inv()*Vec3d(x, y, 1)); }); };
+    return r;
+}
+
+//! The map of a surface that waves between 500 and 700, seen from beside the centre of projection, as a rectified pair's are.
+Row surfaceMapRow()
+{
+    struct Data { Scene scene = Scene(FIVE, 1); Mat depth = Mat(SIZE, CV_32F), P, map1, map2, peer1, peer2; };
+    const auto d = std::make_shared<Data>();
+    const Vec3d centre(-1, 2, 7);
+    for (int y = 0; y < SIZE.height; y++)
+        for (int x = 0; x < SIZE.width; x++)
+            d->depth.at<float>(y, x) = (float)(600 + 100*std::sin(x/150.)*std::cos(y/120.));
+    hconcat(Mat(d->scene.K), Mat(-(d->scene.K*centre)), d->P);
+    Row r = { "surface_map", "map of 1280x1024, a depth per pixel", "cv::initUndistortRectifyMap", { 2, 2 }, SIZE.area(), {}, {}, {},
+              {}, 8, "px", 1e-4, {}, {}, {} };
+    r.ours = [=] { initRefractiveStereoRectifyMap(d->scene.camera, d->depth, Matx33d::eye(), d->P, noArray(), SIZE, CV_32FC2, d->map1,
+                                                  d->map2); };
+    r.peer = [=] { initUndistortRectifyMap(d->scene.K, d->scene.D, noArray(), d->scene.K, SIZE, CV_32FC2, d->peer1, d->peer2); };
+    r.error = [=]
+    {
+        return mapError(d->scene, d->map1, [&](int x, int y)
+                        { return centre + (d->depth.at<float>(y, x) - centre[2])*(d->scene.K.inv()*Vec3d(x, y, 1)); });
+    };
     return r;
 }
 
@@ -129,6 +154,7 @@ void addOwnRatios(std::vector<Row>& rows, int count)
 void addCallRows(std::vector<Row>& rows, int count)
 {
     rows.push_back(mapRow());
+    rows.push_back(surfaceMapRow());
     addOwnRatios(rows, count);
     addOnePointRows(rows);
 }

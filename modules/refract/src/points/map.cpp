@@ -101,12 +101,16 @@ void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u,
         std::transform(v, v + n, map2.ptr<float>(row) + column, [](double a) { return (float)a; });
     }
     else
+    {
+        Vec2s* whole = map1.ptr<Vec2s>(row) + column;
+        ushort* part = map2.ptr<ushort>(row) + column;
         for (int i = 0; i < n; i++)
         {
             const int a = saturate_cast<int>(u[i]*SIZE), b = saturate_cast<int>(v[i]*SIZE);
-            map1.at<Vec2s>(row, column + i) = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
-            map2.at<ushort>(row, column + i) = (ushort)((b & (SIZE - 1))*SIZE + (a & (SIZE - 1)));
+            whole[i] = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
+            part[i] = (ushort)((b & (SIZE - 1))*SIZE + (a & (SIZE - 1)));
         }
+    }
 }
 
 //! One run of a row, every pixel by itself; (-1, -1) where there is no answer. planeD: of each pixel, or null.
@@ -123,6 +127,81 @@ void solveRow(const PinholeView& view, int row, int column, int n, const double*
     for (int i = 0; i < n; i++)
         if (status[i] != REFRACT_OK)
             u[i] = v[i] = -1;
+}
+
+/* Where each pixel has a depth of its own, the map is a polynomial of second order in the inverse of the distance from the
+pinhole, whose coefficients are those of a tile (SurfaceTile). It must be good enough where its error is largest in the inverse
+distance, too. */
+const double SURFACE_TOLERANCE = 1e-5;
+
+//! Between the nearest and the farthest of a tile; false: not all are before the pinhole.
+bool findRange(const std::vector<double>& planeD, SurfaceTile& tile)
+{
+    double least = planeD[0], most = planeD[0];
+    bool before = true;     // false for NaN, too
+    for (double d : planeD)
+    {
+        least = d < least ? d : least;
+        most = d > most ? d : most;
+        before &= d > tile.atCentre;
+    }
+    const double near = 1/(least - tile.atCentre), far = 1/(most - tile.atCentre);
+    tile.middle = 0.5*(near + far);
+    tile.scale = 1/std::max(0.5*(near - far), 1e-6*tile.middle);
+    return before && std::isfinite(tile.middle);
+}
+
+//! Raw pixels of a square of places, all on one plane; false where there is no answer.
+bool solveSquare(const PinholeView& view, Point corner, const double* place, int side, double planeD, double* u, double* v)
+{
+    double column[BLOCK], row[BLOCK], d[BLOCK];
+    uchar status[BLOCK];
+    const int n = side*side;
+    CV_Assert(n <= BLOCK);
+    for (int i = 0; i < n; i++)
+    {
+        column[i] = corner.x + place[i % side];
+        row[i] = corner.y + place[i/side];
+        d[i] = planeD;
+    }
+    view.toRaw(n, column, row, d, u, v, status);
+    return std::count(status, status + n, (uchar)REFRACT_OK) == n;
+}
+
+//! False if the polynomial, whose range is known, is not the map of this tile.
+bool findSurface(const PinholeView& view, Point corner, SurfaceTile& tile)
+{
+    static const CheckWeights check(-1, PixelWeights::HALF);
+    const auto planeDAt = [&](double s) { return tile.atCentre + 1/(tile.middle + s/tile.scale); };
+    Nodes at[3];        // s = -1, 0, 1
+    for (int k = 0; k < 3; k++)
+        if (!solveSquare(view, corner, check.node, NODES, planeDAt(k - 1), at[k].u, at[k].v))
+            return false;
+    for (int i = 0; i < NODES*NODES; i++)
+    {
+        tile.u[0][i] = at[1].u[i];
+        tile.v[0][i] = at[1].v[i];
+        tile.u[1][i] = 0.5*(at[2].u[i] - at[0].u[i]);
+        tile.v[1][i] = 0.5*(at[2].v[i] - at[0].v[i]);
+        tile.u[2][i] = 0.5*(at[2].u[i] + at[0].u[i]) - at[1].u[i];
+        tile.v[2][i] = 0.5*(at[2].v[i] + at[0].v[i]) - at[1].v[i];
+    }
+    for (double s : { -0.577, 0.577 })      // where a term of third order would be largest
+    {
+        double u[9], v[9];
+        if (!solveSquare(view, corner, check.place, 3, planeDAt(s), u, v))
+            return false;
+        const double d = planeDAt(s), planeD[] = { d, d, d };
+        for (int r = 0; r < 3; r++)
+        {
+            double a[3], b[3];
+            pointKernels().interpolateSurface(tile, check.byPlace[r], check.byNode[0], planeD, 3, a, b);
+            for (int c = 0; c < 3; c++)
+                if (!(std::hypot(a[c] - u[3*r + c], b[c] - v[3*r + c]) < SURFACE_TOLERANCE))
+                    return false;
+        }
+    }
+    return true;
 }
 
 //! A tile, or what of it is in the new image.
@@ -143,6 +222,43 @@ void mapTile(const PinholeView& view, const Rect& tile, Mat& map1, Mat& map2)
             solveRow(view, tile.y + r, tile.x, tile.width, NULL, u, v);
         storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
     }
+}
+
+//! A tile whose pixels have planes of their own.
+void mapSurfaceTile(const PinholeView& view, const PlaneReader& read, const Rect& tile, Mat& map1, Mat& map2)
+{
+    static const PixelWeights pixels(0, 1);
+    std::vector<double> planeD(TILE*tile.height);
+    for (int r = 0; r < tile.height; r++)
+    {
+        double* row = &planeD[TILE*r];
+        read(tile.y + r, tile.x, tile.width, row);
+        std::fill(row + tile.width, row + TILE, row[tile.width - 1]);       // what is beyond the image
+    }
+    SurfaceTile surface;
+    surface.atCentre = Vec3d(view.plane.val).dot(view.centre);
+    const bool smooth = findRange(planeD, surface) && findSurface(view, tile.tl(), surface);
+    for (int r = 0; r < tile.height; r++)
+    {
+        double u[TILE], v[TILE];
+        const double* row = &planeD[TILE*r];
+        if (smooth)
+            pointKernels().interpolateSurface(surface, pixels.byPlace[r], pixels.byNode[0], row, TILE, u, v);
+        else
+            solveRow(view, tile.y + r, tile.x, tile.width, row, u, v);
+        storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
+    }
+}
+
+template<typename Body>
+void forEachTile(Size size, const Body& body)
+{
+    parallel_for_(Range(0, (size.height + TILE - 1)/TILE), [&](const Range& range)
+    {
+        for (int t = range.start; t < range.end; t++)
+            for (int column = 0; column < size.width; column += TILE)
+                body(Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size));
+    });
 }
 
 //! The maps to fill, of the types that m1type means.
@@ -176,47 +292,35 @@ void PinholeView::toRaw(int n, const double* column, const double* row, const do
                         uchar* status) const
 {
     double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK];
-    const Vec3d abc(plane[0], plane[1], plane[2]);
-    const double atCentre = abc.dot(centre);
+    const double none[] = { 0, 0, 0 }, a = plane[0], b = plane[1], c = plane[2];
+    const double cx = centre[0], cy = centre[1], cz = centre[2], atCentre = a*cx + b*cy + c*cz;
+    std::copy(column, column + n, x);
+    std::copy(row, row + n, y);
+    std::fill(z, z + n, 1.);
+    pointKernels().transform(newToCamera.val, none, n, x, y, z);
+    for (int i = 0; i < n; i++)
+        w[i] = (a*x[i] + b*y[i] + c*z[i])/((planeD ? planeD[i] : plane[3]) - atCentre);
     for (int i = 0; i < n; i++)
     {
-        const Vec3d direction = newToCamera*Vec3d(column[i], row[i], 1);
-        w[i] = abc.dot(direction)/((planeD ? planeD[i] : plane[3]) - atCentre);
-        x[i] = direction[0] + w[i]*centre[0];
-        y[i] = direction[1] + w[i]*centre[1];
-        z[i] = direction[2] + w[i]*centre[2];
-        status[i] = w[i] >= 0 && std::isfinite(w[i]) ? REFRACT_OK : REFRACT_NO_INTERSECTION;
+        x[i] += w[i]*cx;
+        y[i] += w[i]*cy;
+        z[i] += w[i]*cz;
     }
+    for (int i = 0; i < n; i++)
+        status[i] = w[i] >= 0 && std::isfinite(w[i]) ? REFRACT_OK : REFRACT_NO_INTERSECTION;
     camera.project(n, x, y, z, w, u, v, status);
 }
 
 void mapPlane(const PinholeView& view, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
     Maps maps(size, m1type, map1, map2);
-    const int tileRows = (size.height + TILE - 1)/TILE;
-    parallel_for_(Range(0, tileRows), [&](const Range& range)
-    {
-        for (int t = range.start; t < range.end; t++)
-            for (int column = 0; column < size.width; column += TILE)
-                mapTile(view, Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size), maps.first, maps.second);
-    });
+    forEachTile(size, [&](const Rect& tile) { mapTile(view, tile, maps.first, maps.second); });
 }
 
 void mapSurface(const PinholeView& view, const PlaneReader& planeD, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
     Maps maps(size, m1type, map1, map2);
-    parallel_for_(Range(0, size.height), [&](const Range& range)
-    {
-        for (int row = range.start; row < range.end; row++)
-            for (int column = 0; column < size.width; column += TILE)
-            {
-                const int n = std::min(TILE, size.width - column);
-                double d[TILE], u[TILE], v[TILE];
-                planeD(row, column, n, d);
-                solveRow(view, row, column, n, d, u, v);
-                storeMap(maps.first, maps.second, row, column, n, u, v);
-            }
-    });
+    forEachTile(size, [&](const Rect& tile) { mapSurfaceTile(view, planeD, tile, maps.first, maps.second); });
 }
 
 Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name)

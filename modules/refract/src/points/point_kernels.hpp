@@ -14,6 +14,14 @@ namespace cv { namespace refract {
 //! Nodes of a tile of a map, in each direction.
 enum { NODES = 8 };
 
+/** A tile of a map whose pixels have depths of their own, as a polynomial of s = (1/(planeD - atCentre) - middle) scale, -1 ... 1:
+raw pixel = sum over k of [k] s^k, of which each is given at the tile's nodes. */
+struct SurfaceTile
+{
+    double u[3][NODES*NODES], v[3][NODES*NODES];
+    double atCentre, middle, scale;
+};
+
 //! What the calls on points ask for, of blocks of them.
 struct PointKernels
 {
@@ -41,6 +49,9 @@ struct PointKernels
                         const Columns& out);
     //! out[i] = sum over r, c of row[r] values[NODES r + c] columns[n c + i]
     void (*interpolate)(const double* values, const double* row, const double* columns, int n, double* out);
+    //! The raw pixels of n places of a row of a tile, at their depths; row and columns as interpolate's.
+    void (*interpolateSurface)(const SurfaceTile& tile, const double* row, const double* columns, const double* planeD, int n,
+                               double* u, double* v);
     /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in two images.
     @param R rotation of camera 2
     @param observed, predicted 4x1: u1, v1, u2, v2

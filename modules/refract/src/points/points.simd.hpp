@@ -88,9 +88,9 @@ bool areClose(int n, double tolerance, const double* t, const double* u, const d
     return answers.complete();
 }
 
-void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
+//! The polynomial of a tile along one of its rows, at the nodes.
+void alongRow(const double* values, const double* row, double* along)
 {
-    double along[NODES];
     for (int c = 0; c < NODES; c += LANES)
     {
         Lanes sum = all(0);
@@ -98,12 +98,43 @@ void interpolate(const double* values, const double* row, const double* columns,
             sum += row[r]*load(values + NODES*r, Part{ c, NODES });
         store(sum, along, Part{ c, NODES });
     }
+}
+
+void interpolate(const double* values, const double* row, const double* columns, int n, double* out)
+{
+    double along[NODES];
+    alongRow(values, row, along);
     eachRegister(n, [&](auto at)
     {
         Lanes sum = all(0);
         for (int c = 0; c < NODES; c++)
             sum += along[c]*load(columns + n*c, at);
         store(sum, out, at);
+    });
+}
+
+void interpolateSurface(const SurfaceTile& tile, const double* row, const double* columns, const double* planeD, int n,
+                        double* u, double* v)
+{
+    double alongU[3][NODES], alongV[3][NODES];
+    for (int k = 0; k < 3; k++)
+    {
+        alongRow(tile.u[k], row, alongU[k]);
+        alongRow(tile.v[k], row, alongV[k]);
+    }
+    const double atCentre = tile.atCentre, middle = tile.middle, scale = tile.scale;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes s = (1/(load(planeD, at) - atCentre) - middle)*scale;
+        Lanes sumU = all(0), sumV = all(0);
+        for (int c = 0; c < NODES; c++)
+        {
+            const Lanes column = load(columns + n*c, at);
+            sumU += (alongU[0][c] + s*(alongU[1][c] + s*alongU[2][c]))*column;
+            sumV += (alongV[0][c] + s*(alongV[1][c] + s*alongV[2][c]))*column;
+        }
+        store(sumU, u, at);
+        store(sumV, v, at);
     });
 }
 
@@ -179,7 +210,7 @@ void gaussNewton(int n, const double* R, const Columns& observed, const Columns&
 }
 
 constexpr PointKernels pointTable = {
-    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, gaussNewton
+    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, gaussNewton
 };
 
 }}} // namespace

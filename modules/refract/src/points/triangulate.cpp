@@ -89,11 +89,11 @@ uchar refine(const StereoPair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
 }
 
 /* Full Gauss-Newton steps of all lanes side by side. They converge at a rate that the sum of squares leaves small; a lane
-whose moves shrink so fast that less than DONE pixels are left has arrived, any other is left where it was, for refine().
-Returns which lanes have arrived. */
-void refineTogether(const StereoPair& pair, PixelPairs& block, int n, uchar* arrived)
+whose moves shrink so fast that less than DONE pixels are left has arrived, and one that moved by less than `enough` pixels, any
+other is left where it was, for refine(). Returns which lanes have arrived. */
+void refineTogether(const StereoPair& pair, PixelPairs& block, int n, double off, double enough, uchar* arrived)
 {
-    const double DONE = 1e-11;
+    const double DONE = 1e-11, SHRINK = 0.01;
     const int STEPS = 6;
     double predicted[4*BLOCK], J1[6*BLOCK], J2[6*BLOCK], x[BLOCK], y[BLOCK], z[BLOCK], x2[BLOCK], y2[BLOCK], z2[BLOCK];
     double moved[BLOCK], last[BLOCK];
@@ -104,7 +104,7 @@ void refineTogether(const StereoPair& pair, PixelPairs& block, int n, uchar* arr
     std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
     std::copy(block.status, block.status + n, st);
     std::fill(arrived, arrived + n, (uchar)false);
-    std::fill(last, last + n, 1.);
+    std::fill(last, last + n, off*off/SHRINK);
     int missing = n;
     for (int k = 0; k < STEPS && missing > 0; k++)
     {
@@ -117,8 +117,8 @@ void refineTogether(const StereoPair& pair, PixelPairs& block, int n, uchar* arr
         for (int i = 0; i < n; i++)
         {
             // What is left after moves of a, then b: about b^2/a. Squares throughout.
-            const bool shrinks = moved[i] <= 0.01*last[i] && st[i] == REFRACT_OK;
-            const bool done = shrinks && moved[i]*moved[i] <= DONE*DONE*last[i];
+            const bool shrinks = moved[i] <= SHRINK*last[i] && st[i] == REFRACT_OK;
+            const bool done = shrinks && (moved[i]*moved[i] <= DONE*DONE*last[i] || moved[i] < enough*enough);
             if (done && !arrived[i])
             {
                 block.x[i] = x[i]; block.y[i] = y[i]; block.z[i] = z[i];
@@ -217,8 +217,27 @@ void checkSigma(double sigma, const char* name)
         CV_Error_(Error::StsOutOfRange, ("%s is %g; it must not be negative", name, sigma));
 }
 
+void refineBlock(const StereoPair& pair, PixelPairs& block, int n, double off, double enough)
+{
+    uchar arrived[BLOCK];
+    refineTogether(pair, block, n, off, enough, arrived);
+    for (int i = 0; i < n; i++)
+    {
+        Vec3d X(block.x[i], block.y[i], block.z[i]);
+        if (block.status[i] == REFRACT_OK && !arrived[i])
+        {
+            block.status[i] = refine(pair, Vec2d(block.pixel(0)[i], block.pixel(1)[i]),
+                                     Vec2d(block.pixel(2)[i], block.pixel(3)[i]), X);
+            block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
+        }
+        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, X))
+            block.status[i] = REFRACT_BEHIND_WINDOW;
+    }
+}
+
 void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags)
 {
+    const double MIDPOINT_OFF = 0.1;    // pixels, of pixels that see one point
     double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
     pair.camera1.unproject(n, block.pixel(0), block.pixel(1), tau1, dx1, dy1, dz1, block.status);
     pair.camera2.unproject(n, block.pixel(2), block.pixel(3), tau2, dx2, dy2, dz2, block.status);
@@ -229,21 +248,11 @@ void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flag
             block.status[i] = meet(pair, tau1[i], Vec3d(dx1[i], dy1[i], dz1[i]), tau2[i], Vec3d(dx2[i], dy2[i], dz2[i]), X);
         block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
     }
-    uchar arrived[BLOCK];
     if (flags != TRIANGULATE_MIDPOINT)
-        refineTogether(pair, block, n, arrived);
+        return refineBlock(pair, block, n, MIDPOINT_OFF, 0);
     for (int i = 0; i < n; i++)
-    {
-        Vec3d X(block.x[i], block.y[i], block.z[i]);
-        if (block.status[i] == REFRACT_OK && flags != TRIANGULATE_MIDPOINT && !arrived[i])
-        {
-            block.status[i] = refine(pair, Vec2d(block.pixel(0)[i], block.pixel(1)[i]),
-                                     Vec2d(block.pixel(2)[i], block.pixel(3)[i]), X);
-            block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
-        }
-        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, X))
+        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, Vec3d(block.x[i], block.y[i], block.z[i])))
             block.status[i] = REFRACT_BEHIND_WINDOW;
-    }
 }
 
 //! pointCovariance may be null, else its results go into covariance, one row a point.

@@ -33,6 +33,11 @@ struct PixelPairs
 //! pixels -> x, y, z, where status is REFRACT_OK; flags: TriangulateFlags.
 void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags);
 
+/** The most likely points, from near ones in x, y, z.
+@param off pixels by which the images of these points are off, at most, if vectors shall do it
+@param enough a step that moves the images by less, in pixels, is the last; 0: to the accuracy of double */
+void refineBlock(const StereoPair& pair, PixelPairs& block, int n, double off, double enough);
+
 //! Covariance of a maximum-likelihood point.
 class PointCovariance
 {

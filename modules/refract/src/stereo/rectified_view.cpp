@@ -38,22 +38,36 @@ RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, I
 
 void RectifiedView::load(int row, int column, int n, double* planeD) const
 {
-    for (int i = 0; i < n; i++)
-        planeD[i] = hasDepths() ? depthAt(row, column + i) + shift_ : pinhole_.plane[3];
+    if (!hasDepths())
+        std::fill(planeD, planeD + n, pinhole_.plane[3]);
+    else if (depths_.depth() == CV_32F)
+        std::transform(depths_.ptr<float>(row) + column, depths_.ptr<float>(row) + column + n, planeD,
+                       [&](float z) { return z + shift_; });
+    else
+        std::transform(depths_.ptr<double>(row) + column, depths_.ptr<double>(row) + column + n, planeD,
+                       [&](double z) { return z + shift_; });
 }
 
-double RectifiedView::planeD(double x, double y) const
+//! Between the four pixels round a place.
+template<typename T>
+static double between(const Mat& depths, double x, double y)
+{
+    if (!(x >= 0 && y >= 0 && x <= depths.cols - 1 && y <= depths.rows - 1))
+        return std::numeric_limits<double>::quiet_NaN();
+    const int column = (int)x, row = (int)y, right = column + 1 < depths.cols, below = row + 1 < depths.rows;
+    const double a = x - column, b = y - row;
+    const T* p = depths.ptr<T>(row) + column;
+    const T* q = depths.ptr<T>(row + below) + column;
+    return (1 - b)*((1 - a)*p[0] + a*p[right]) + b*((1 - a)*q[0] + a*q[right]);
+}
+
+void RectifiedView::interpolate(int n, const double* x, const double* y, double* planeD) const
 {
     if (!hasDepths())
-        return pinhole_.plane[3];
-    if (!(x >= 0 && y >= 0 && x <= depths_.cols - 1 && y <= depths_.rows - 1))
-        return std::numeric_limits<double>::quiet_NaN();
-    const int column = std::min((int)x, depths_.cols - 2), row = std::min((int)y, depths_.rows - 2);
-    if (column < 0 || row < 0)
-        return depthAt((int)y, (int)x) + shift_;
-    const double a = x - column, b = y - row;
-    return (1 - b)*((1 - a)*depthAt(row, column) + a*depthAt(row, column + 1)) +
-           b*((1 - a)*depthAt(row + 1, column) + a*depthAt(row + 1, column + 1)) + shift_;
+        return load(0, 0, n, planeD);
+    const bool isSingle = depths_.depth() == CV_32F;
+    for (int i = 0; i < n; i++)
+        planeD[i] = shift_ + (isSingle ? between<float>(depths_, x[i], y[i]) : between<double>(depths_, x[i], y[i]));
 }
 
 void checkRectification(const Matx33d& R1, const Matx33d& R2, const Matx33d& R)

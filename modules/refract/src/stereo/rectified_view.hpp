@@ -33,7 +33,7 @@ public:
     //! plane[3] of pinhole() for some pixels of a row.
     void load(int row, int column, int n, double* planeD) const;
     //! The same between pixels; NaN outside of the image.
-    double planeD(double x, double y) const;
+    void interpolate(int n, const double* x, const double* y, double* planeD) const;
 
     const Matx33d& R() const { return R_; }
     //! P = K [I, -centre]
@@ -41,9 +41,6 @@ public:
     const Vec3d& centre() const { return centre_; }
 
 private:
-    double depthAt(int row, int column) const
-    { return depths_.depth() == CV_32F ? depths_.at<float>(row, column) : depths_.at<double>(row, column); }
-
     Matx33d R_, K_;
     Vec3d centre_;
     Mat depths_;

@@ -4,6 +4,7 @@
 
 #include "stereo/disparity.hpp"
 #include "stereo/rectified_view.hpp"
+#include "points/point_kernels.hpp"
 #include "points/triangulate.hpp"
 
 /* Disparity -> points: rectified pixels -> the raw pixels that the maps took them from -> two rays -> the most likely point.
@@ -19,13 +20,18 @@ struct RectifiedPair
     StereoPair pair;
     RectifiedView first, second;
     int axis;               //!< of the disparity
+    double enough;          //!< see refineBlock
+
+    //! disparity = perInverse()/distance from the pinholes + shift()
+    double perInverse() const { return first.K()(0, 0)*(second.centre() - first.centre())[axis]; }
+    double shift() const { return first.K()(axis, 2) - second.K()(axis, 2); }
 };
 
 //! A run of pixels of one row that have a disparity.
 struct Run
 {
     int size, column[BLOCK];
-    double x1[BLOCK], y1[BLOCK], x2[BLOCK], y2[BLOCK];
+    double disparity[BLOCK], x1[BLOCK], y1[BLOCK], x2[BLOCK], y2[BLOCK];
     PixelPairs pairs;
     uchar status2[BLOCK];
 };
@@ -34,8 +40,7 @@ struct Run
 void toRaw(const RectifiedView& view, int n, const double* x, const double* y, double* u, double* v, uchar* status)
 {
     double planeD[BLOCK];
-    for (int i = 0; i < n; i++)
-        planeD[i] = view.planeD(x[i], y[i]);
+    view.interpolate(n, x, y, planeD);
     view.pinhole().toRaw(n, x, y, planeD, u, v, status);
 }
 
@@ -70,6 +75,7 @@ private:
     {
         const int i = run.size++;
         run.column[i] = x;
+        run.disparity[i] = disparity;
         run.x1[i] = x;
         run.y1[i] = y;
         run.x2[i] = x - (rectified_.axis == 0 ? disparity : 0);
@@ -84,7 +90,34 @@ private:
         for (int i = 0; i < run.size; i++)
             if (p.status[i] == REFRACT_OK)
                 p.status[i] = run.status2[i];
-        triangulateBlock(rectified_.pair, p, run.size, TRIANGULATE_OPTIMAL);
+        const double PINHOLES_OFF = 10;
+        if (startAsPinholes(run))
+            refineBlock(rectified_.pair, p, run.size, PINHOLES_OFF, rectified_.enough);
+        else
+            triangulateBlock(rectified_.pair, p, run.size, TRIANGULATE_OPTIMAL);
+    }
+
+    //! Points as the pinholes have them; false if one is too far away to be near the true one.
+    bool startAsPinholes(Run& run) const
+    {
+        const double LEAST = 2;     // pixels of disparity, beside which what pinholes leave is small
+        const RectifiedView& first = rectified_.first;
+        const double perInverse = rectified_.perInverse(), shift = rectified_.shift();
+        const Matx33d turn = first.R().t(), toDirection = turn*first.K().inv();
+        const Vec3d centre = turn*first.centre();
+        double distance[BLOCK];
+        double *x = run.pairs.x, *y = run.pairs.y, *z = run.pairs.z;
+        for (int i = 0; i < run.size; i++)
+        {
+            distance[i] = perInverse/(run.disparity[i] - shift);
+            if (!(distance[i] > 0 && distance[i]*LEAST < std::abs(perInverse)))
+                return false;
+            x[i] = run.x1[i]*distance[i];
+            y[i] = run.y1[i]*distance[i];
+            z[i] = distance[i];
+        }
+        pointKernels().transform(toDirection.val, centre.val, run.size, x, y, z);
+        return true;
     }
 
     void store(const Run& run, int y, Mat& points, Mat& status, Mat& covariance) const
@@ -123,8 +156,8 @@ private:
     {
         const RectifiedView& view = rectified_.second;
         const double x = run.x2[i] + (rectified_.axis == 0), y = run.y2[i] + (rectified_.axis == 1);
-        const double planeD = view.planeD(run.x2[i], run.y2[i]);
-        double u, v;
+        double planeD, u, v;
+        view.interpolate(1, &run.x2[i], &run.y2[i], &planeD);
         uchar status = REFRACT_OK;
         view.pinhole().toRaw(1, &x, &y, &planeD, &u, &v, &status);
         const double* raw = run.pairs.pixels + i;
@@ -165,10 +198,11 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
     if (ddepth != CV_32F && ddepth != CV_64F)
         CV_Error_(Error::StsUnsupportedFormat, ("ddepth is %s; it must be CV_32F or CV_64F", depthToString(ddepth)));
     RectifiedPair rectified = { StereoPair(cam1, cam2, R, T), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
-                                RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0 };
+                                RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0, 0 };
     checkRectification(rectified.first.R(), rectified.second.R(), rectified.pair.R);
     const Vec3d base = rectified.second.centre() - rectified.first.centre();
     rectified.axis = std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
+    rectified.enough = ddepth == CV_32F ? 1e-2 : 0;     // of which a thousandth is left, below the rounding of what is stored
     const PointCovariance pointCovariance(rectified.pair, calibrationCovariance);
     const Reprojector reprojector(rectified, sigma ? &pointCovariance : NULL, sigma ? readSigma(*sigma, size) : Mat());
 
