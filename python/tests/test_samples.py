@@ -69,6 +69,21 @@ def test_drop_in_diff():
     assert [line for line in shown.splitlines() if line[0] in "+-"] == changes
 
 
+def test_depth_of_scene():
+    """Behind windows as many points as without, and as good; the page shows the real difference of the scripts."""
+    bare = [str(ROOT / "samples" / "data" / "scene" / folder / "scene.jpg") for folder in ("direct1", "direct2")]
+    share, distance = r"([\d.]+) % of the pixels", r"([\d.]+) mm RMS"
+    without, ignored, found = run("depth_of_scene.py", *bare), run("depth_of_scene.py"), run("depth_of_scene_behind_glass.py")
+    assert number(share, ignored) < number(share, without)/2
+    assert number(share, found) > 0.95*number(share, without)
+    assert number(distance, found) < 1.3*number(distance, without)
+    scripts = [(SAMPLES / name).read_text().splitlines() for name in ("depth_of_scene.py", "depth_of_scene_behind_glass.py")]
+    changes = [line for line in list(difflib.unified_diff(*scripts, n=0, lineterm=""))[2:] if line[0] in "+-"]
+    shown = re.findall(r"```diff\n(.*?)```", (ROOT / "doc" / "drop_in.md").read_text(), re.DOTALL)[1]
+    assert [line for line in shown.splitlines() if line[0] in "+-"] == changes
+    assert sum(line[0] == "+" for line in changes) <= 15
+
+
 @pytest.mark.skipif(importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed")
 def test_from_images_to_points(tmp_path):
     out = run("from_images_to_points.py", str(ROOT / "samples" / "data" / "stereo"), str(tmp_path))

@@ -110,4 +110,48 @@ TEST(Refract_Triangulate, parallel_rays)
                    "points1 has 1 points, points2 2");
 }
 
+TEST(Refract_Stereo, rectified_rows_agree_and_points_are_exact)
+{
+    const Size size(1280, 1024);
+    Mat R1, R2, P1, P2, Q;
+    Rect roi1, roi2;
+    const Vec2d rows = refractiveStereoRectify(camera1(), camera2(), R(), T(), size, Vec2d(450, 1200), R1, R2, P1, P2, Q, 0, -1,
+                                               Size(), &roi1, &roi2);
+    EXPECT_LT(rows[0], 0.2);
+    EXPECT_LT(rows[1], 1.5);
+    EXPECT_GT(roi1.area(), size.area()/2);
+    const std::vector<Point2d> raw1 = project(scenePoints(), camera1()), raw2 = project(scenePoints(), camera2(), R(), T());
+    for (size_t i = 0; i < raw1.size(); i += 7)
+    {
+        const Matx31d X = Matx33d(R1)*Matx31d(scenePoints()[i].x, scenePoints()[i].y, scenePoints()[i].z);
+        const Matx41d h(X(0), X(1), X(2), 1);
+        const Matx31d p1 = Matx34d(P1)*h, p2 = Matx34d(P2)*h;
+        const Point2d a(p1(0)/p1(2), p1(1)/p1(2)), b(p2(0)/p2(2), p2(1)/p2(2));
+        EXPECT_NEAR(a.y, b.y, 1e-8);
+        // The map made for the point's depth leads back to the raw pixel, and its disparity to the point.
+        const Point pixel(cvRound(a.x), cvRound(a.y));
+        const std::vector<double> depth(1, X(2));
+        Mat map, none, disparity(size, CV_32F, Scalar(NaN)), points;
+        initRefractiveStereoRectifyMap(camera1(), depth, R1, P1, noArray(), size, CV_32FC2, map, none);
+        EXPECT_LT(cv::norm(map.at<Point2f>(pixel) - Point2f(raw1[i])), 2.);
+        disparity.at<float>(pixel) = (float)(a.x - b.x);
+        refractiveReprojectImageTo3D(disparity, points, camera1(), camera2(), R(), T(), R1, R2, P1, P2, depth, depth);
+        EXPECT_NEAR(X(2), points.at<Vec3f>(pixel)[2], 1e-3);
+    }
+}
+
+TEST(Refract_Stereo, depths_of_a_coarse_disparity)
+{
+    const Size size(640, 512);
+    Mat R1, R2, P1, P2, Q, depth1, depth2;
+    refractiveStereoRectify(camera1(), camera2(), R(), T(), Size(1280, 1024), Vec2d(450, 1200), R1, R2, P1, P2, Q, 0);
+    const Vec4d far = Matx44d(Q)*Vec4d(640, 512, 100, 1);
+    Mat disparity(size, CV_16S, Scalar(50));     // of images half as large
+    refractiveRectifiedDepth(disparity, P1, P2, Size(1280, 1024), depth1, depth2);
+    ASSERT_EQ(Size(1280, 1024), depth1.size());
+    EXPECT_NEAR(far[2]/far[3], depth1.at<float>(512, 640), 1e-3*far[2]/far[3]);
+    EXPECT_REFUSED(refractiveStereoRectify(camera1(), camera2(), R(), T(), Size(1280, 1024), Vec2d(900, 300), R1, R2, P1, P2, Q),
+                   "depthRange");
+}
+
 }} // namespace

@@ -1,0 +1,45 @@
+"""The depth of a scene from a pair of images that were taken through windows.
+
+    depth_of_scene.py | depth_of_scene_behind_glass.py [LEFT RIGHT]      # samples/data/scene's by default
+
+depth_of_scene.py is the ordinary OpenCV script, which knows nothing of the windows; depth_of_scene_behind_glass.py is the same
+script made right. doc/drop_in.md shows what changed.
+"""
+import os
+import sys
+
+import cv2
+import numpy as np
+import opencv_refract as refract
+
+DATA = os.path.join(os.path.dirname(__file__), "..", "data", "scene")
+LEFT, RIGHT = sys.argv[1:] or [os.path.join(DATA, f"glass{i}", "scene.jpg") for i in (1, 2)]
+
+rig = cv2.FileStorage(os.path.join(DATA, "truth.yml"), cv2.FILE_STORAGE_READ)
+camera1 = refract.RefractiveCamera.read(os.path.join(DATA, "truth.yml"), "camera1")
+camera2 = refract.RefractiveCamera.read(os.path.join(DATA, "truth.yml"), "camera2")
+R, T = rig.getNode("R").mat(), rig.getNode("T").mat()
+left, right = cv2.imread(LEFT), cv2.imread(RIGHT)
+size = left.shape[1::-1]
+
+_, R1, R2, P1, P2, Q, _, _ = refract.refractiveStereoRectify(camera1, camera2, R, T, size, (400, 1300), flags=0)
+depth1 = depth2 = 600.
+matcher = cv2.StereoSGBM_create(minDisparity=-112, numDisparities=272, blockSize=5, P1=200, P2=800, disp12MaxDiff=1,
+                                preFilterCap=31, uniquenessRatio=10, speckleWindowSize=100, speckleRange=2,
+                                mode=cv2.STEREO_SGBM_MODE_SGBM_3WAY)
+for step in (1, 2):     # first for a plane, then for the depths found
+    maps1 = refract.initRefractiveStereoRectifyMap(camera1, depth1, R1, P1, None, size, cv2.CV_16SC2)
+    maps2 = refract.initRefractiveStereoRectifyMap(camera2, depth2, R2, P2, T, size, cv2.CV_16SC2)
+    rectified1, rectified2 = cv2.remap(left, *maps1, cv2.INTER_LINEAR), cv2.remap(right, *maps2, cv2.INTER_LINEAR)
+    disparity = matcher.compute(rectified1, rectified2)/np.float32(16)
+    if step == 1: depth1, depth2 = refract.refractiveRectifiedDepth(disparity, P1, P2, size, handleMissingValues=True)
+points, _ = refract.refractiveReprojectImageTo3D(disparity, camera1, camera2, R, T, R1, R2, P1, P2, depth1, depth2,
+                                                 handleMissingValues=True)
+
+# The back wall of the scene, frame of camera 1.
+on_wall, normal = np.array((0., 0., 1100.)), np.array((0.1, 0., -1.))/np.hypot(0.1, 1)
+points = points.reshape(-1, 3) @ R1
+distances = (points - on_wall) @ normal
+near = distances[np.abs(distances) < 20]
+share = np.mean((points[:, 2] > 0) & (points[:, 2] < 2000))
+print(f"{100*share:.0f} % of the pixels have a point; {len(near)} are of the back wall, {np.sqrt(np.mean(near**2)):.2f} mm RMS from it")
