@@ -1,0 +1,37 @@
+#ifndef REFRACT_TOOLS_DENSE_STEREO_HPP
+#define REFRACT_TOOLS_DENSE_STEREO_HPP
+
+#include "stereo/rectified_rig.hpp"
+
+/* Dense stereo through windows, in two passes. First the images are made half as large, rectified for one plane and matched;
+then rectified anew for the depths found, at full size, where an ordinary matcher sees an ordinary pair. */
+namespace tools {
+
+struct MatcherOptions
+{
+    bool fullPaths = false;     //!< all eight directions of cv::StereoSGBM (MODE_HH), not three
+    int passes = 2;             //!< 1: the plane's rectification is all
+    int block = 5;              //!< side of the matched block, pixels, odd
+};
+
+struct DenseStereo
+{
+    cv::Mat rectified1, rectified2;     //!< the images, as the last pass matched them
+    cv::Mat disparity;                  //!< CV_32F, px, of rectified1; NaN: none
+    cv::Mat depth1, depth2;             //!< what the last pass' maps were made for
+    cv::Mat points;                     //!< CV_32FC3, camera-1 frame, of each pixel of rectified1; NaN: none
+    cv::Mat sigma;                      //!< CV_32FC3, one standard deviation of each of points' coordinates; NaN: none, or unknown
+    double disparitySigma = NAN;        //!< of a typical match, px; NaN: too few matches tell
+    double rowOffset = NAN;             //!< RMS by which matches miss each other's row, px, noise of single ones aside; as above
+    double matchSeconds[2] = {0, 0};    //!< of the matcher, each pass
+    double mapSeconds = 0;              //!< of maps, coarse depth and points: what windows cost
+    double refineSeconds = 0;           //!< of disparity's fractions and sigmas
+    int matched() const;                //!< pixels of rectified1 with a point
+};
+
+//! Both images of one moment, of the rig's size, 8-bit, grey or colour.
+DenseStereo matchPair(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, const MatcherOptions& options);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_DENSE_STEREO_HPP

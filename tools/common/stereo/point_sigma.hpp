@@ -1,0 +1,15 @@
+#ifndef REFRACT_TOOLS_POINT_SIGMA_HPP
+#define REFRACT_TOOLS_POINT_SIGMA_HPP
+
+#include "stereo/dense_stereo.hpp"
+
+namespace tools {
+
+/** One standard deviation of x, y and z of each point (camera-1 frame): that of its disparity, along the line of sight, and what
+the calibration's covariance, if there is one, does to all points; CV_32FC3.
+@param disparitySigma CV_32F */
+cv::Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, const cv::Mat& disparitySigma);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_POINT_SIGMA_HPP

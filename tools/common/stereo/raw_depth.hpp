@@ -1,0 +1,13 @@
+#ifndef REFRACT_TOOLS_RAW_DEPTH_HPP
+#define REFRACT_TOOLS_RAW_DEPTH_HPP
+
+#include "stereo/dense_stereo.hpp"
+
+namespace tools {
+
+//! z (camera-1 frame) of each pixel of the raw image of camera 1, CV_32F; NaN where nothing was matched.
+cv::Mat depthOfRawPixels(const RectifiedRig& rig, const DenseStereo& stereo);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RAW_DEPTH_HPP

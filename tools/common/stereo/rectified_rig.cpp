@@ -1,0 +1,73 @@
+#include "stereo/rectified_rig.hpp"
+#include "console/cli.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tools {
+
+using cv::Mat;
+using cv::Vec2d;
+using cv::Vec3d;
+
+static Vec3d centreOf(const Mat& P)
+{
+    const Mat c = -(P.colRange(0, 3).inv()*P.col(3));
+    return Vec3d(c.ptr<double>());
+}
+
+RectifiedRig::RectifiedRig(const Calibration& calibration, const Vec2d& depthRange)
+    : calibration_(calibration), depthRange_(depthRange), size_(calibration.cameras[0].camera->imageSize())
+{
+    const auto& cameras = calibration.cameras;
+    // Each image keeps its own principal point: of cameras that look at one place, a common one shows nothing of it.
+    const int flags = 0;
+    rowError = cv::refract::refractiveStereoRectify(cameras[0].camera, cameras[1].camera, calibration.R, calibration.T, size_,
+                                                    depthRange, R1, R2, P1, P2, Q, flags);
+    const Vec3d base = centreOf(P2) - centreOf(P1);
+    vertical_ = std::abs(base[1]) > std::abs(base[0]);
+    findDisparities();
+    const int across = vertical_ ? size_.height : size_.width;
+    if (disparities_ >= across)
+        throw Failure(cv::format("--depth=%g,%g: over that range, what one image shows moves by %d pixels in the other, and they have "
+                                 "%d: give a smaller range", depthRange[0], depthRange[1], disparities_, across));
+}
+
+Vec3d RectifiedRig::centre() const { return centreOf(P1); }
+
+double RectifiedRig::shift() const
+{
+    const int axis = vertical_ ? 1 : 0;
+    return P1.at<double>(axis, 2) - P2.at<double>(axis, 2);
+}
+
+//! The range of disparities is that of the depths in the rectified frame, all over the image.
+void RectifiedRig::findDisparities()
+{
+    const int axis = vertical_ ? 1 : 0;
+    const cv::Matx33d turn(R1.ptr<double>());
+    const Vec3d c1 = centre();
+    const double perInverse = P1.at<double>(0, 0)*(centreOf(P2) - c1)[axis];
+    double least = INFINITY, most = -INFINITY;
+    const auto add = [&](double d) {
+        least = std::min(least, std::isnan(d) ? least : d);
+        most = std::max(most, std::isnan(d) ? most : d);
+    };
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 9; i++)
+        {
+            const std::vector<cv::Point2d> pixel = {cv::Point2d(0.5*(i % 3)*(size_.width - 1), 0.5*(i/3)*(size_.height - 1))};
+            std::vector<Vec3d> X;
+            if (std::isinf(depthRange_[k]))
+                add(shift());
+            else
+            {
+                cv::refract::refractivePointsOnPlane(pixel, X, calibration_.cameras[0].camera, cv::Vec4d(0, 0, 1, depthRange_[k]));
+                add(perInverse/((turn*X[0])[2] - c1[2]) + shift());
+            }
+        }
+    minDisparity_ = cvFloor(least) - 1;
+    disparities_ = cvCeil((most + 1 - minDisparity_)/16)*16;
+}
+
+} // namespace tools

@@ -1,0 +1,158 @@
+#include "stereo/refine_disparity.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace tools {
+
+using cv::Mat;
+using cv::Point;
+using cv::Size;
+
+namespace {
+
+const Size PATCH(13, 13);
+const int STEPS = 2, ENOUGH = 200;      // of a few values nothing is said
+const float NONE = std::numeric_limits<float>::quiet_NaN();
+
+//! The other image as the first would show it if the disparity were right; 32F.
+Mat warped(const Mat& second, const Mat& disparity)
+{
+    Mat mapX(disparity.size(), CV_32F), mapY(disparity.size(), CV_32F), result;
+    for (int y = 0; y < disparity.rows; y++)
+    {
+        const float* d = disparity.ptr<float>(y);
+        float* u = mapX.ptr<float>(y);
+        for (int x = 0; x < disparity.cols; x++)
+            u[x] = (float)x - d[x];
+        mapY.row(y).setTo(y);
+    }
+    cv::remap(second, result, mapX, mapY, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    return result;
+}
+
+Mat sums(const Mat& values, Size around)
+{
+    Mat result;
+    cv::boxFilter(values, result, CV_32F, around, Point(-1, -1), false, cv::BORDER_CONSTANT);
+    return result;
+}
+
+//! Of both images' slopes: it leans to neither.
+Mat meanSlope(const Mat& a, const Mat& b, int byX, int byY)
+{
+    Mat slopeA, slopeB;
+    cv::Sobel(a, slopeA, CV_32F, byX, byY, 3, 1./8);
+    cv::Sobel(b, slopeB, CV_32F, byX, byY, 3, 1./8);
+    return 0.5*(slopeA + slopeB);
+}
+
+/* The mean of the neighbours where all are of one surface: steps of a matcher's fractions are finer than a patch, which would
+leave them as they are. */
+void levelSteps(Mat& disparity, const Mat& weight)
+{
+    const Size NEAR(7, 7);
+    const double ONE_SURFACE = 1.5, FAR_AWAY = 1e9;
+    const Mat known = weight > 0, element = cv::getStructuringElement(cv::MORPH_RECT, NEAR);
+    Mat low = disparity.clone(), high = disparity.clone();
+    low.setTo(FAR_AWAY, ~known);
+    high.setTo(-FAR_AWAY, ~known);
+    cv::erode(low, low, element);
+    cv::dilate(high, high, element);
+    const Mat count = sums(weight, NEAR);
+    Mat(sums(disparity.mul(weight), NEAR)/count).copyTo(disparity, known & (high - low < ONE_SURFACE) & (count > 0.9*NEAR.area()));
+}
+
+float quantile(std::vector<float>& values, double part)
+{
+    const auto at = values.begin() + (int)(part*(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/* By how much the patches' own sigmas must grow to tell what neighbours on smooth surfaces differ by: noise of pixels is not
+independent, patches are not moved copies of each other. Third differences along rows and columns, of disparities so far apart
+that no pixel is in two patches, know of no surface up to second order; 95 % of them shall be within 1.96 sigma. */
+double inflation(const Mat& disparity, const Mat& sigma)
+{
+    const int APART = 2*PATCH.width, EVERY = 3;
+    const float EDGE = 3, weights[] = {1, -3, 3, -1};
+    std::vector<float> ratios;
+    for (const Point step : {Point(APART, 0), Point(0, APART)})
+        for (int y = 0; y + 3*step.y < disparity.rows; y += EVERY)
+            for (int x = 0; x + 3*step.x < disparity.cols; x += EVERY)
+            {
+                float difference = 0, variance = 0;
+                for (int k = 0; k < 4; k++)
+                {
+                    const float s = weights[k]*sigma.at<float>(Point(x, y) + k*step);
+                    difference += weights[k]*disparity.at<float>(Point(x, y) + k*step);
+                    variance += s*s;
+                }
+                if (std::abs(difference) < EDGE && variance > 0)
+                    ratios.push_back(std::abs(difference)/std::sqrt(variance));
+            }
+    return (int)ratios.size() < ENOUGH ? NONE : quantile(ratios, 0.95)/1.96;
+}
+
+//! RMS of the medians of cells that know enough of them; NaN: unknown.
+double rmsOfMedians(const Mat& values)
+{
+    const int COLUMNS = 8, ROWS = 6;
+    double squares = 0;
+    int count = 0;
+    for (int i = 0; i < COLUMNS*ROWS; i++)
+    {
+        const int column = i % COLUMNS, row = i/COLUMNS;
+        std::vector<float> cell;
+        for (int y = values.rows*row/ROWS; y < values.rows*(row + 1)/ROWS; y += 2)
+            for (int x = values.cols*column/COLUMNS; x < values.cols*(column + 1)/COLUMNS; x += 2)
+                if (values.at<float>(y, x) == values.at<float>(y, x))
+                    cell.push_back(values.at<float>(y, x));
+        if ((int)cell.size() < ENOUGH)
+            continue;
+        const double median = quantile(cell, 0.5);
+        squares += median*median;
+        count++;
+    }
+    return count ? std::sqrt(squares/count) : NONE;
+}
+
+} // namespace
+
+RefinedDisparity refineDisparity(const Mat& first, const Mat& second, const Mat& disparity)
+{
+    const float ANY = 1e-3f;        // a patch without contrast moves nowhere
+    const Mat known = disparity == disparity;
+    Mat weight, I1, I2, current = disparity.clone(), sigma, across;
+    known.convertTo(weight, CV_32F, 1./255);
+    first.convertTo(I1, CV_32F);
+    second.convertTo(I2, CV_32F);
+    current.setTo(0, ~known);
+    const Mat original = current.clone();
+    for (int step = 0; step < STEPS; step++)
+    {
+        levelSteps(current, weight);
+        const Mat there = warped(I2, current), difference = (there - I1).mul(weight);
+        const Mat slope = meanSlope(I1, there, 1, 0).mul(weight);
+        const Mat contrast = sums(slope.mul(slope), PATCH) + ANY, pull = sums(slope.mul(difference), PATCH);
+        const Mat move = pull/contrast;     // I2(x - d - move) is I1(x)
+        cv::add(current, move, current, known);
+        if (step < STEPS - 1)
+            continue;
+        const Mat left = cv::max(sums(difference.mul(difference), PATCH) - pull.mul(move), 0.f);
+        cv::sqrt(left/cv::max(sums(weight, PATCH) - 1, 1.f)/contrast, sigma);
+        const Mat fall = meanSlope(I1, there, 0, 1).mul(weight);
+        across = sums(fall.mul(difference), PATCH)/(sums(fall.mul(fall), PATCH) + ANY);
+    }
+    const Mat none = ~known | (cv::abs(current - original) > 1);
+    for (Mat* values : {&current, &sigma, &across})
+        values->setTo(NONE, none);
+    sigma *= inflation(current, sigma);
+    return {current, sigma, rmsOfMedians(across)};
+}
+
+} // namespace tools
