@@ -58,16 +58,6 @@ struct Sight
     std::vector<cv::Point2d> pixels1, pixels2;
 };
 
-//! "'a', 'b' and 3 more"
-std::string listed(const std::vector<std::string>& names)
-{
-    const size_t most = 8;
-    std::string text;
-    for (size_t i = 0; i < std::min(most, names.size()); i++)
-        text += (i ? ", '" : "'") + names[i] + "'";
-    return names.size() > most ? text + format(" and %d more", (int)(names.size() - most)) : text;
-}
-
 void sayMissing(const ViewSet& set, const std::string& which, const Command& command)
 {
     if (!set.withoutTarget.empty())

@@ -13,6 +13,7 @@ int refract_check_main(int argc, char** argv);
 int refract_epilines_main(int argc, char** argv);
 int refract_measure_main(int argc, char** argv);
 int refract_simulate_main(int argc, char** argv);
+int refract_stereo_main(int argc, char** argv);
 int refract_undistort_main(int argc, char** argv);
 
 using namespace fuzz;
@@ -23,7 +24,7 @@ namespace {
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
     {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main},
     {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main},
-    {"refract_undistort", refract_undistort_main}};
+    {"refract_stereo", refract_stereo_main}, {"refract_undistort", refract_undistort_main}};
 
 const char CAMERA[] = R"(
   image_width: 32

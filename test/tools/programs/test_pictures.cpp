@@ -142,7 +142,8 @@ TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and w
 
 TEST_CASE("every tool explains itself", "[tools]")
 {
-    for (const std::string tool : {"refract_simulate", "refract_measure", "refract_undistort", "refract_epilines"})
+    for (const std::string tool : {"refract_simulate", "refract_measure", "refract_undistort", "refract_epilines",
+                                   "refract_stereo"})
     {
         const ToolResult help = runTool(tool + " --help"), version = runTool(tool + " --version");
         CHECK(help.code == 0);

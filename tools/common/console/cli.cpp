@@ -1,6 +1,7 @@
 #include "console/cli.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -139,6 +140,15 @@ std::vector<double> parseNumbers(const std::string& text, const std::string& opt
         numbers.push_back(number);
     }
     return numbers;
+}
+
+std::string listed(const std::vector<std::string>& names)
+{
+    const size_t most = 8;
+    std::string text;
+    for (size_t i = 0; i < std::min(most, names.size()); i++)
+        text += (i ? ", '" : "'") + names[i] + "'";
+    return names.size() > most ? text + cv::format(" and %d more", (int)(names.size() - most)) : text;
 }
 
 cv::Vec4d parsePlane(const std::string& text)

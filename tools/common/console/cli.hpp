@@ -91,6 +91,9 @@ inline CLI::Validator moreThanZero()
 //! "a,b,c" -> numbers; all finite.
 std::vector<double> parseNumbers(const std::string& text, const std::string& option);
 
+//! "'a', 'b' and 3 more"
+std::string listed(const std::vector<std::string>& names);
+
 //! --plane=a,b,c,d: a x + b y + c z = d.
 cv::Vec4d parsePlane(const std::string& text);
 

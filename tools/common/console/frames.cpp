@@ -1,0 +1,195 @@
+#include "console/frames.hpp"
+#include "console/cli.hpp"
+#include "console/images.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+//! By its name, as decoders of video take all kinds of files for one, texts too.
+bool isNamedAsVideo(const std::string& path)
+{
+    static const std::set<std::string> VIDEOS = {".avi", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".ts", ".wmv",
+                                                 ".flv", ".ogv", ".mjpg", ".mjpeg", ".y4m", ".264", ".h264", ".265", ".h265"};
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return VIDEOS.count(extension) > 0;
+}
+
+//! left%04d.png is every file left NUMBER .png whose number has four digits or more; in the order of numbers.
+bool findNumbered(const std::string& source, std::vector<std::string>& files, std::vector<long>& numbers)
+{
+    static const std::regex FORMAT(R"((.*)%(0?)(\d{0,2})d(.*))");
+    const std::string pattern = fs::path(source).filename().string();
+    std::smatch parts;
+    if (fs::exists(source) || !std::regex_match(pattern, parts, FORMAT))
+        return false;
+    const fs::path folder = fs::path(source).has_parent_path() ? fs::path(source).parent_path() : fs::path(".");
+    const std::string before = parts[1], after = parts[4];
+    const size_t digits = parts[3].length() ? (size_t)std::stoi(parts[3]) : 1, most = 9;
+    std::map<long, std::string> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    {
+        const std::string name = entry->path().filename().string();
+        if (name.size() < before.size() + after.size() + digits || name.compare(0, before.size(), before) != 0
+            || name.compare(name.size() - after.size(), after.size(), after) != 0)
+            continue;
+        const std::string middle = name.substr(before.size(), name.size() - before.size() - after.size());
+        if (middle.size() <= std::max(most, digits) && std::all_of(middle.begin(), middle.end(), [](unsigned char c) {
+                return std::isdigit(c); }) && (middle.size() == digits || middle[0] != '0'))
+            found[std::stol(middle)] = (fs::path(source).parent_path()/name).string();
+    }
+    for (const auto& file : found)
+    {
+        numbers.push_back(file.first);
+        files.push_back(file.second);
+    }
+    if (files.empty())
+        throw Failure("no file matches '" + source + "': %d stands for the number, as in left%04d.png for left0012.png");
+    return true;
+}
+
+std::map<std::string, int> indexByStem(const Frames& frames)
+{
+    std::map<std::string, int> index;
+    for (int i = 0; i < frames.size(); i++)
+        if (!index.insert({frames.stem(i), i}).second)
+            throw Failure("two images of '" + frames.source() + "' are called '" + frames.stem(i) + "': give each a name of its "
+                          "own, as images of one moment are found by equal names");
+    return index;
+}
+
+void refuseOneFile(const std::string& first, const std::string& second)
+{
+    std::error_code ignored;
+    if (fs::equivalent(first, second, ignored))
+        throw Failure("'" + first + "' is given for both cameras: name an image of each");
+}
+
+//! Numbers count from 1 in both, so that a frame more or less shifts all that follow.
+void requireEqualLength(const Frames& first, const Frames& second)
+{
+    if (first.isVideo() && second.isVideo() && first.size() != second.size())
+        throw Failure(cv::format("'%s' has %d frames, '%s' %d: cut them so that equal numbers are of one moment",
+                                 first.source().c_str(), first.size(), second.source().c_str(), second.size()));
+}
+
+} // namespace
+
+Frames::Frames(const std::string& source) : source_(source)
+{
+    if (findNumbered(source, files_, numbers_))
+        return;
+    files_ = expandGlob(source);
+    if (!isNamedAsVideo(files_[0]))
+        return;
+    if (files_.size() > 1)
+        throw Failure("'" + source + "' are several videos: give one at a time");
+    source_ = files_[0];
+    files_.clear();
+    open();
+    while (video_.grab())       // what files say of their length is not always true
+        count_++;
+    if (count_ == 0)
+        throw Failure("'" + source_ + "' has no frame that can be read: is it complete?");
+    open();
+}
+
+void Frames::open()
+{
+    video_.release();
+    if (!video_.open(source_))
+        throw Failure("'" + source_ + "' is not a video that can be read: is it complete? If so, turn it into images or into an "
+                      ".avi with MJPG");
+    video_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);       // as the sensor saw it: the lens does not turn
+    next_ = 0;
+}
+
+std::string Frames::stem(int i) const
+{
+    if (!numbered())
+        return stemOf(files_[i]);
+    return cv::format("frame%06ld", isVideo() ? i + 1L : numbers_[i]);
+}
+
+std::string Frames::name(int i) const
+{
+    return isVideo() ? source_ + cv::format(", frame %d", i + 1) : files_[i];
+}
+
+cv::Mat Frames::read(int i)
+{
+    return isVideo() ? readVideo(i) : readImage(files_[i]);
+}
+
+cv::Mat Frames::readVideo(int i)
+{
+    if (i < next_)
+        open();
+    cv::Mat image;
+    bool read = true;
+    for (; read && next_ < i; next_++)
+        read = video_.grab();
+    read = read && video_.read(image);
+    next_++;
+    if (!read || image.empty())
+        throw Failure("'" + source_ + cv::format("': frame %d cannot be read", i + 1));
+    return image.clone();       // the next one may take its place
+}
+
+FramePairs pairsOf(const Frames& first, const Frames& second)
+{
+    FramePairs result;
+    if (first.isVideo() && second.isVideo())
+        refuseOneFile(first.source(), second.source());
+    requireEqualLength(first, second);
+    if (first.size() == 1 && second.size() == 1)        // a pair whatever the names
+        result.pairs = {{first.stem(0), 0, 0}};
+    else
+    {
+        const std::map<std::string, int> partners = indexByStem(second);
+        for (const auto& image : indexByStem(first))
+            if (partners.count(image.first))
+                result.pairs.push_back({image.first, image.second, partners.at(image.first)});
+            else
+                result.alone1.push_back(image.first);
+        for (const auto& image : partners)
+            if (std::none_of(result.pairs.begin(), result.pairs.end(), [&](const FramePair& pair) {
+                    return pair.second == image.second; }))
+                result.alone2.push_back(image.first);
+    }
+    if (result.pairs.empty())
+        throw Failure("no image of '" + first.source() + "' has the name of one of '" + second.source()
+                      + "': images of one moment need equal names");
+    for (const FramePair& pair : result.pairs)
+        if (!first.isVideo() && !second.isVideo())
+            refuseOneFile(first.files()[pair.first], second.files()[pair.second]);
+    return result;
+}
+
+void makeEightBit(cv::Mat& image1, cv::Mat& image2)
+{
+    double brightest = 0;
+    for (const cv::Mat& image : {image1, image2})
+    {
+        double largest = 255;
+        if (image.depth() != CV_8U)
+            cv::minMaxLoc(image.reshape(1), nullptr, &largest);
+        brightest = std::max(brightest, largest);
+    }
+    for (cv::Mat* image : {&image1, &image2})
+        if (image->depth() != CV_8U)
+            image->convertTo(*image, CV_8U, brightest > 0 ? 255./brightest : 1.);
+}
+
+} // namespace tools

@@ -1,0 +1,67 @@
+#ifndef REFRACT_TOOLS_FRAMES_HPP
+#define REFRACT_TOOLS_FRAMES_HPP
+
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+#include <vector>
+
+/* What one camera took, image by image, from files or from a video. */
+namespace tools {
+
+class Frames
+{
+public:
+    /** Throws Failure if there is nothing.
+    @param source an image, a glob, numbered images (left%04d.png) or a video file */
+    explicit Frames(const std::string& source);
+
+    int size() const { return (int)(isVideo() ? count_ : files_.size()); }
+    //! Without a name of its own, but with a number: of a video or of numbered images.
+    bool numbered() const { return isVideo() || !numbers_.empty(); }
+    bool isVideo() const { return files_.empty(); }
+
+    //! What its results are called: the file's stem, or frame000012.
+    std::string stem(int i) const;
+    //! As read() takes it, for a sentence: the file's name, or "left.avi, frame 12".
+    std::string name(int i) const;
+    //! With all channels and bits. Frames in turn are fast; one before the last needs a video from its start again.
+    cv::Mat read(int i);
+
+    const std::string& source() const { return source_; }
+    const std::vector<std::string>& files() const { return files_; }    //!< empty: a video
+
+private:
+    void open();
+    cv::Mat readVideo(int i);
+
+    std::string source_;
+    std::vector<std::string> files_;
+    std::vector<long> numbers_;         //!< of numbered images
+    cv::VideoCapture video_;
+    int count_ = 0, next_ = 0;
+};
+
+//! Two images of one moment.
+struct FramePair
+{
+    std::string stem;
+    int first, second;
+};
+
+struct FramePairs
+{
+    std::vector<FramePair> pairs;
+    std::vector<std::string> alone1, alone2;    //!< stems without partner
+};
+
+/** Frames by their number, images by their stem; single images are a pair whatever their names. Throws Failure if there is no
+pair, if two videos are of different length, or if both images of a pair are one file. */
+FramePairs pairsOf(const Frames& first, const Frames& second);
+
+//! 8 bits each, as matchers want them; more bits of both are made brighter or darker by one factor.
+void makeEightBit(cv::Mat& image1, cv::Mat& image2);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_FRAMES_HPP

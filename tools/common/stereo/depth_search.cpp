@@ -1,0 +1,119 @@
+#include "stereo/depth_search.hpp"
+#include "console/cli.hpp"
+#include "stereo/depth_picture.hpp"
+
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace tools {
+
+using cv::Mat;
+using cv::Point2d;
+using cv::Point3d;
+
+namespace {
+
+const int MOST_DETAILS = 4000;
+const double CLEARLY_NEARER = 0.8;      // than the second best, as Lowe has it
+const double SAME_POINT = 1.5;          // px
+
+struct Details
+{
+    std::vector<cv::KeyPoint> places;
+    Mat descriptors;
+};
+
+Details detailsOf(const Mat& image)
+{
+    Mat grey = image;
+    if (image.channels() == 3)
+        cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+    Details details;
+    cv::SIFT::create(MOST_DETAILS)->detectAndCompute(grey, cv::noArray(), details.places, details.descriptors);
+    return details;
+}
+
+//! For each of `from` the one of `to` that is clearly the most alike; -1: none.
+std::vector<int> bestOf(const Details& from, const Details& to)
+{
+    std::vector<std::vector<cv::DMatch>> matches;
+    cv::BFMatcher(cv::NORM_L2).knnMatch(from.descriptors, to.descriptors, matches, 2);
+    std::vector<int> best(from.places.size(), -1);
+    for (const auto& two : matches)
+        if (two.size() == 2 && two[0].distance < CLEARLY_NEARER*two[1].distance)
+            best[two[0].queryIdx] = two[0].trainIdx;
+    return best;
+}
+
+//! Pairs that choose each other.
+void findPartners(const Mat& image1, const Mat& image2, std::vector<Point2d>& pixels1, std::vector<Point2d>& pixels2)
+{
+    const Details first = detailsOf(image1), second = detailsOf(image2);
+    if (first.places.size() < 2 || second.places.size() < 2)
+        return;
+    const std::vector<int> forth = bestOf(first, second), back = bestOf(second, first);
+    for (size_t i = 0; i < forth.size(); i++)
+        if (forth[i] >= 0 && back[forth[i]] == (int)i)
+        {
+            pixels1.push_back(first.places[i].pt);
+            pixels2.push_back(second.places[forth[i]].pt);
+        }
+}
+
+} // namespace
+
+bool isBeyondWindows(const Calibration& calibration, double z)
+{
+    if (std::isinf(z))
+        return true;
+    const auto& camera = calibration.cameras[0].camera;
+    const Point2d middle((camera->imageSize().width - 1)/2., (camera->imageSize().height - 1)/2.);
+    std::vector<cv::Vec3d> X;
+    cv::refract::refractivePointsOnPlane(std::vector<Point2d>{middle}, X, camera, cv::Vec4d(0, 0, 1, z));
+    return std::isfinite(X[0][2]);
+}
+
+std::vector<float> depthsOfDetails(const Calibration& calibration, const Mat& image1, const Mat& image2)
+{
+    std::vector<Point2d> pixels1, pixels2;
+    findPartners(image1, image2, pixels1, pixels2);
+    std::vector<float> depths;
+    if (pixels1.empty())
+        return depths;
+    const auto &camera1 = calibration.cameras[0].camera, &camera2 = calibration.cameras[1].camera;
+    std::vector<Point3d> points, known;
+    std::vector<uchar> status;
+    cv::refract::triangulateRefractive(camera1, camera2, calibration.R, calibration.T, pixels1, pixels2, points, status);
+    std::vector<Point2d> known1, known2;
+    for (size_t i = 0; i < points.size(); i++)
+        if (status[i] == 0 && points[i].z > 0)
+        {
+            known.push_back(points[i]);
+            known1.push_back(pixels1[i]);
+            known2.push_back(pixels2[i]);
+        }
+    if (known.empty())
+        return depths;
+    std::vector<Point2d> seen1, seen2;
+    cv::refract::refractiveProjectPoints(known, cv::Vec3d(), cv::Vec3d(), camera1, seen1);
+    cv::refract::refractiveProjectPoints(known, calibration.R, calibration.T, camera2, seen2);
+    for (size_t i = 0; i < known.size(); i++)
+        if (cv::norm(seen1[i] - known1[i]) < SAME_POINT && cv::norm(seen2[i] - known2[i]) < SAME_POINT)
+            depths.push_back((float)known[i].z);
+    std::sort(depths.begin(), depths.end());
+    return depths;
+}
+
+cv::Vec2d depthRangeOf(const std::vector<float>& depths)
+{
+    const double rare = 0.02, wider = 0.1;      // what has no details may reach a little farther
+    if ((int)depths.size() < FEWEST_DETAILS)
+        throw Failure(cv::format("how deep the scene is could not be found, as only %d details were seen in both images: give "
+                                 "--depth=NEAR,FAR, and check that the images are of one moment and LEFT is of camera 1",
+                                 (int)depths.size()));
+    return cv::Vec2d(percentile(depths, rare)/(1 + wider), percentile(depths, 1 - rare)*(1 + wider));
+}
+
+} // namespace tools

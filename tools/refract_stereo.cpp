@@ -1,0 +1,443 @@
+#include "calibrate/calib_file.hpp"
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/frames.hpp"
+#include "console/images.hpp"
+#include "console/outputs.hpp"
+#include "console/progress.hpp"
+#include "console/table.hpp"
+#include "stereo/cloud_file.hpp"
+#include "stereo/dense_stereo.hpp"
+#include "stereo/depth_comparison.hpp"
+#include "stereo/depth_picture.hpp"
+#include "stereo/depth_search.hpp"
+#include "stereo/raw_depth.hpp"
+#include "stereo/rectified_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+static const char MANUAL[] = R"(Measures the depth of every pixel that two cameras see through their windows.
+
+  refract_stereo calib.yml LEFT RIGHT --depth=NEAR,FAR --out=cloud.ply [--depth-map=depth.tiff] [--picture=depth.png]
+  refract_stereo calib.yml 'left/*.png' 'right/*.png' --depth=NEAR,FAR --out-dir=DIR
+
+LEFT is of camera 1, RIGHT of camera 2: images, or quoted globs, where images of one moment have equal stems; numbered
+images (left%04d.png) or videos (.avi, .mp4, .mkv ...), where frames of one moment have equal numbers.
+--depth is the range of z in the frame of camera 1, in the unit of calib.yml; FAR may be inf. Without it, the range is that
+of details found in both images, and printed.
+
+cloud.ply: a vertex for each pixel that was matched: x y z in the frame of camera 1, red green blue, sx sy sz (one standard
+deviation of x, y, z; nan: unknown). depth.tiff: float32, z of each raw pixel of camera 1; nan: not matched. depth.png: the
+same in colours, with a scale. --out-dir writes STEM.ply, STEM_depth.tiff and STEM_depth.png of each pair; frames of videos
+are called frame000001 and so on.
+
+The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the mean sz; the
+row error stated, which a rectification for one plane leaves over the range (RMS, largest; the second pass removes it); the
+row error measured on the images (RMS). If that is more than 0.5 px, calibration and images do not fit.
+
+Exit code: 0 done, 1 could not do it, 2 done and written, but rows differ by more than --max-row-error.)";
+
+namespace {
+
+using namespace tools;
+namespace fs = std::filesystem;
+
+const double DOUBTFUL_ROWS = 0.5;       // px; a good calibration leaves a tenth
+const double FEWEST_MATCHED = 0.001;    // share of the pixels; as much as chance finds
+const int PAIRS_SEARCHED = 5;
+
+struct Options
+{
+    std::string calibration, left, right, depth, out, depthMap, picture, rectifiedFolder, folder, truth, matcher = "3way";
+    MatcherOptions matching;
+    double maxRowError = 0;             // 0: none is set
+    bool ascii = false, noWindow = false;
+};
+
+//! Of one pair; empty: not asked for.
+struct PairFiles
+{
+    std::string cloud, depthMap, picture, rectifiedPrefix;
+};
+
+//! What the table says of a pair.
+struct PairResult
+{
+    std::string stem;
+    double matched = 0, near = 0, far = 0, meanSigma = NAN, rowOffset = NAN, seconds = 0;
+};
+
+cv::Vec2d parseDepthRange(const std::string& text)
+{
+    const size_t comma = text.find(',');
+    const std::string farText = comma == std::string::npos ? "" : text.substr(comma + 1);
+    const std::vector<double> near = parseNumbers(text.substr(0, comma), "--depth");
+    const std::vector<double> far = farText == "inf" ? std::vector<double>{std::numeric_limits<double>::infinity()}
+                                                     : parseNumbers(farText, "--depth");
+    if (near.size() != 1 || far.size() != 1 || !(near[0] > 0 && far[0] > near[0]))
+        throw Failure("--depth=" + text + ": give the near and the far end of the scene, 0 < NEAR < FAR (FAR may be inf)");
+    return cv::Vec2d(near[0], far[0]);
+}
+
+void checkCombination(const Options& options)
+{
+    const bool single = !options.out.empty() || !options.depthMap.empty() || !options.picture.empty();
+    if (!options.folder.empty() && single)
+        throw Failure("--out-dir writes cloud, depth map and picture of each pair: leave --out, --depth-map and --picture out");
+    if (options.folder.empty() && !single && options.rectifiedFolder.empty() && options.truth.empty())
+        throw Failure("say what to write: --out=cloud.ply, --depth-map=depth.tiff, --picture=depth.png, or --out-dir=DIR for all "
+                      "of them");
+    if (options.matching.block % 2 == 0)
+        throw Failure(format("--block=%d: give an odd number", options.matching.block));
+    const std::string extension = fs::path(options.depthMap).extension().string();
+    if (!options.depthMap.empty() && extension != ".tiff" && extension != ".tif" && !isSpecialFile(options.depthMap))
+        throw Failure("--depth-map=" + options.depthMap + ": its numbers need a .tiff; --picture is for looking at");
+}
+
+Calibration readRig(const Options& options)
+{
+    const Calibration rig = readCalibration(options.calibration);
+    if (!rig.stereo())
+        throw Failure("'" + options.calibration + "' has one camera; depth needs a calibrated pair (refract_calib --direct2 "
+                      "--glass2)");
+    requireWindows(rig, options.calibration, options.noWindow);
+    return rig;
+}
+
+std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePair>& pairs)
+{
+    if (options.folder.empty() && pairs.size() > 1)
+        throw Failure(format("'%s' and '%s' are %d pairs: give --out-dir=DIR", options.left.c_str(), options.right.c_str(),
+                             (int)pairs.size()));
+    if (!options.truth.empty() && pairs.size() > 1)
+        throw Failure(format("--truth is for one pair, not for %d", (int)pairs.size()));
+    const std::string rectified = options.rectifiedFolder.empty() ? "" : options.rectifiedFolder + "/";
+    if (options.folder.empty())
+        return {{options.out, options.depthMap, options.picture, rectified}};
+    std::vector<PairFiles> files;
+    for (const FramePair& pair : pairs)
+    {
+        const std::string base = options.folder + "/" + pair.stem;
+        files.push_back({base + ".ply", base + "_depth.tiff", base + "_depth.png",
+                         rectified.empty() ? "" : rectified + pair.stem + "_"});
+    }
+    return files;
+}
+
+void refuseOverwriting(const Options& options, const Frames& first, const Frames& second, const std::vector<PairFiles>& files)
+{
+    std::vector<std::string> inputs = {options.calibration, options.truth};
+    for (const Frames* frames : {&first, &second})
+        if (frames->isVideo())
+            inputs.push_back(frames->source());
+        else
+            inputs.insert(inputs.end(), frames->files().begin(), frames->files().end());
+    std::vector<Output> outputs;
+    const bool inFolder = !options.folder.empty();
+    for (const PairFiles& f : files)
+    {
+        outputs.push_back({inFolder ? "--out-dir" : "--out", f.cloud, inFolder ? OUTPUT_IN_FOLDER : OUTPUT_TEXT});
+        outputs.push_back({inFolder ? "--out-dir" : "--depth-map", f.depthMap, inFolder ? OUTPUT_IN_FOLDER : OUTPUT_PICTURE});
+        outputs.push_back({inFolder ? "--out-dir" : "--picture", f.picture, inFolder ? OUTPUT_IN_FOLDER : OUTPUT_PICTURE});
+        if (!f.rectifiedPrefix.empty())
+            for (const std::string& path : rectifiedFiles(f.rectifiedPrefix))
+                outputs.push_back({"--rectified-dir", path, OUTPUT_IN_FOLDER});
+    }
+    checkOutputs(outputs, inputs);
+}
+
+//! Of both cameras, 8-bit, of the size that was calibrated.
+class PairReader
+{
+public:
+    PairReader(Frames& first, Frames& second, const Calibration& rig) : first_(first), second_(second), rig_(rig) {}
+
+    std::pair<cv::Mat, cv::Mat> read(const FramePair& pair)
+    {
+        cv::Mat image1 = first_.read(pair.first), image2 = second_.read(pair.second);
+        requireSize(image1, first_.name(pair.first), rig_.cameras[0].camera->imageSize());
+        requireSize(image2, second_.name(pair.second), rig_.cameras[1].camera->imageSize());
+        if (image1.size() != image2.size())
+            throw Failure(format("the images of the cameras are %dx%d and %dx%d pixels: refract_stereo is for two of one size",
+                                 image1.cols, image1.rows, image2.cols, image2.rows));
+        makeEightBit(image1, image2);
+        return {image1, image2};
+    }
+
+private:
+    Frames &first_, &second_;
+    const Calibration& rig_;
+};
+
+cv::Vec2d givenRange(const Options& options, const Calibration& rig)
+{
+    const cv::Vec2d range = parseDepthRange(options.depth);
+    if (!isBeyondWindows(rig, range[1]))
+        throw Failure("--depth=" + options.depth + ": that is before or in the window of camera 1; give z of the scene beyond "
+                      "it, in the unit of the calibration");
+    if (!isBeyondWindows(rig, range[0]))
+        throw Failure("--depth=" + options.depth + format(": NEAR=%g is before or in the window of camera 1; give z of the scene "
+                      "beyond it", range[0]));
+    return range;
+}
+
+//! From several pairs, as a scene may change.
+cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vector<FramePair>& pairs, const Command& command)
+{
+    const int count = std::min(PAIRS_SEARCHED, (int)pairs.size());
+    Progress progress("looking for the range of depths", count, command.quiet());
+    std::vector<float> depths;
+    for (int i = 0; i < count; i++)
+    {
+        const FramePair& pair = pairs[i*pairs.size()/count];
+        progress.at(pair.stem);
+        const auto images = reader.read(pair);
+        const std::vector<float> found = depthsOfDetails(rig, images.first, images.second);
+        depths.insert(depths.end(), found.begin(), found.end());
+        progress.step();
+    }
+    std::sort(depths.begin(), depths.end());
+    const cv::Vec2d range = depthRangeOf(depths);
+    if (!command.quiet())
+        std::cout << format("range of depths: --depth=%.4g,%.4g, from %d details seen in both images\n\n", range[0], range[1],
+                            (int)depths.size());
+    return range;
+}
+
+double meanSigmaZ(const Cloud& cloud)
+{
+    double sum = 0;
+    int count = 0;
+    for (const CloudPoint& point : cloud)
+        if (point.sigma[2] == point.sigma[2])
+        {
+            sum += point.sigma[2];
+            count++;
+        }
+    return sum/count;
+}
+
+void printComparison(const DepthComparison& c)
+{
+    Table table({"against the true depth", ""});
+    table.add({"pixels with a true depth", std::to_string(c.known)});
+    table.add({"of these matched", format("%.1f %%", 100.*c.matched/c.known)});
+    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), format("%.2f %%", 100.*c.wrong/c.matched)});
+    table.add({"RMS error of the others", format("%.4g", c.rms)});
+    if (c.stated)
+        table.add({"points whose error is less than 1.96 sz (95 % expected)", format("%.1f %%", 100.*c.within/c.stated)});
+    table.print(std::cout);
+    std::cout << std::endl;
+}
+
+class Tool
+{
+public:
+    Tool(const Options& options, const Calibration& rig, const cv::Vec2d& range)
+        : options_(options), rig_(rig, range) {}
+
+    const RectifiedRig& rig() const { return rig_; }
+
+    //! False: nothing was matched, and nothing written.
+    bool process(const std::pair<cv::Mat, cv::Mat>& images, const PairFiles& files, const cv::Mat& truth, PairResult& result)
+    {
+        const int64 start = cv::getTickCount();
+        const DenseStereo stereo = matchPair(rig_, images.first, images.second, options_.matching);
+        const Cloud cloud = cloudOf(stereo.points, stereo.rectified1, stereo.sigma);
+        const cv::Mat depth = depthOfRawPixels(rig_, stereo);
+        const std::vector<float> sorted = sortedDepths(depth);
+        result.matched = (double)sorted.size()/(double)depth.total();
+        if (result.matched < FEWEST_MATCHED)
+            return false;
+        const double rare = 0.01;
+        result.near = percentile(sorted, rare);
+        result.far = percentile(sorted, 1 - rare);
+        result.meanSigma = meanSigmaZ(cloud);
+        result.rowOffset = stereo.rowOffset;
+        result.seconds = (double)(cv::getTickCount() - start)/cv::getTickFrequency();
+        write(files, stereo, cloud, depth);
+        if (!truth.empty())
+        {
+            comparison_ = compareDepths(depth, truth);
+            compareSigmas(cloud, rig_.calibration().cameras[0].camera, truth, comparison_);
+        }
+        return true;
+    }
+
+    const DepthComparison& comparison() const { return comparison_; }
+
+private:
+    void write(const PairFiles& files, const DenseStereo& stereo, const Cloud& cloud, const cv::Mat& depth) const
+    {
+        const std::string unit = rig_.calibration().unit;
+        for (const std::string& folder : {options_.folder, options_.rectifiedFolder})
+            if (!folder.empty())
+                makeFolder(folder);
+        if (!files.cloud.empty())
+            writeCloud(files.cloud, cloud, unit, options_.ascii);
+        if (!files.depthMap.empty())
+            writeImage(files.depthMap, depth);
+        if (!files.picture.empty())
+            writeImage(files.picture, depthPicture(depth, unit));
+        if (!files.rectifiedPrefix.empty())
+            writeRectified(files.rectifiedPrefix, stereo.rectified1, stereo.rectified2, stereo.disparity, rig_.vertical());
+    }
+
+    Options options_;
+    RectifiedRig rig_;
+    DepthComparison comparison_;
+};
+
+//! NaN: nothing tells.
+std::string orUnknown(double value, const char* how)
+{
+    return std::isnan(value) ? "unknown" : format(how, value);
+}
+
+std::vector<std::string> rowOf(const PairResult& r, const RectifiedRig& rig)
+{
+    return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.meanSigma, "%.3g"),
+            format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), orUnknown(r.rowOffset, "%.2f"), format("%.1f", r.seconds)};
+}
+
+//! All pairs in one row: means, the whole range, the worst rows.
+PairResult summaryOf(const std::vector<PairResult>& results)
+{
+    PairResult all = results[0];
+    all.stem = format("all %d pairs", (int)results.size());
+    all.matched = all.meanSigma = all.seconds = 0;
+    for (const PairResult& r : results)
+    {
+        all.matched += r.matched/(double)results.size();
+        all.meanSigma += r.meanSigma/(double)results.size();
+        all.near = std::min(all.near, r.near);
+        all.far = std::max(all.far, r.far);
+        all.rowOffset = std::fmax(all.rowOffset, r.rowOffset);
+        all.seconds += r.seconds;
+    }
+    return all;
+}
+
+void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
+{
+    const size_t most = 30;     // rows that one reads
+    const std::string unit = rig.calibration().unit, in = unit.empty() ? "" : ", " + unit;
+    Table table({"", "pixels matched", "depth z" + in, "mean sz" + in, "row error stated, px", "row error measured, px",
+                 "seconds"});
+    if (results.size() <= most)
+        for (const PairResult& r : results)
+            table.add(rowOf(r, rig));
+    if (results.size() > 1)
+        table.add(rowOf(summaryOf(results), rig));
+    table.print(std::cout);
+}
+
+//! Says what the row errors mean; false if they are beyond the caller's limit.
+bool judgeRows(const Options& options, const std::vector<PairResult>& results, const Command& command)
+{
+    const PairResult worst = *std::max_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
+        return std::isnan(a.rowOffset) ? !std::isnan(b.rowOffset) : a.rowOffset < b.rowOffset; });
+    if (worst.rowOffset > DOUBTFUL_ROWS)
+        command.warn(format("partners miss each other's row by %.2f px (RMS) in '%s': calibration and images do not fit. Has a "
+                            "camera or a window moved, is '%s' of this rig, are LEFT and RIGHT swapped?", worst.rowOffset,
+                            worst.stem.c_str(), options.calibration.c_str()));
+    if (options.maxRowError > 0 && std::isnan(worst.rowOffset))
+        command.warn("the row error could not be measured, so --max-row-error is not met");
+    return !(options.maxRowError > 0) || worst.rowOffset <= options.maxRowError;
+}
+
+void sayAlone(const std::vector<std::string>& stems, int camera, const Command& command)
+{
+    if (!stems.empty())
+        command.warn(format("skipped of camera %d, as camera %d has no image of that name: ", camera, 3 - camera)
+                     + listed(stems));
+}
+
+void addOptions(CLI::App& app, Options& options)
+{
+    app.add_option("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote")->required();
+    app.add_option("LEFT", options.left, "of camera 1: image, quoted glob, numbered images, video")->required();
+    app.add_option("RIGHT", options.right, "of camera 2, of the same moments")->required();
+    app.add_option("--depth", options.depth, "NEAR,FAR: range of z in the frame of camera 1; FAR may be inf (default: found in "
+                   "the images)");
+    app.add_option("--out", options.out, "cloud of points to write, .ply");
+    app.add_option("--depth-map", options.depthMap, "z of each raw pixel of camera 1 to write, .tiff (float32)");
+    app.add_option("--picture", options.picture, "the same in colours, with a scale");
+    app.add_option("--out-dir", options.folder, "folder for all three of each pair, made if it is not there");
+    app.add_option("--rectified-dir", options.rectifiedFolder, "folder for the rectified images (left.png, right.png, pair.png "
+                   "with lines drawn in) and disparity.tiff (float32, px)");
+    app.add_option("--truth", options.truth, "known depth of raw pixels of camera 1 to compare with (float32, as "
+                   "refract_simulate writes)");
+    app.add_option("--matcher", options.matcher, "cv::StereoSGBM along three paths (3way) or all eight (hh: slower)")
+        ->check(CLI::IsMember({"3way", "hh"}))->capture_default_str();
+    app.add_option("--block", options.matching.block, "side of the matched block, px, odd: larger for noise, smaller for detail")
+        ->check(CLI::Range(1, 21))->capture_default_str();
+    app.add_option("--passes", options.matching.passes, "1: rectified for a plane; 2: then for the depths found")
+        ->check(CLI::Range(1, 2))->capture_default_str();
+    app.add_option("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more")->check(moreThanZero());
+    app.add_flag("--ascii", options.ascii, "cloud as text, not binary");
+    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        Options options = parsed(command, addOptions);
+        options.matching.fullPaths = options.matcher == "hh";
+        checkCombination(options);
+        if (!options.depth.empty())
+            parseDepthRange(options.depth);
+        const Calibration rig = readRig(options);
+        Frames first(options.left), second(options.right);
+        const FramePairs frames = pairsOf(first, second);
+        const std::vector<PairFiles> files = filesOf(options, frames.pairs);
+        refuseOverwriting(options, first, second, files);
+        sayAlone(frames.alone1, 1, command);
+        sayAlone(frames.alone2, 2, command);
+
+        PairReader reader(first, second, rig);
+        auto images = reader.read(frames.pairs[0]);
+        for (const CameraCalibration& camera : rig.cameras)
+            if (camera.camera->imageSize().empty())
+                camera.camera->setImageSize(images.first.size());
+        const cv::Mat truth = options.truth.empty() ? cv::Mat() : readTrueDepth(options.truth, images.first.size());
+        Tool tool(options, rig, options.depth.empty() ? foundRange(rig, reader, frames.pairs, command)
+                                                      : givenRange(options, rig));
+        std::vector<PairResult> results;
+        std::vector<std::string> unmatched;
+        {
+            Progress progress("matching", (int)frames.pairs.size(), command.quiet());
+            for (size_t i = 0; i < frames.pairs.size(); i++)
+            {
+                progress.at(frames.pairs[i].stem);
+                if (i > 0)
+                    images = reader.read(frames.pairs[i]);
+                PairResult result;
+                result.stem = frames.pairs[i].stem;
+                if (tool.process(images, files[i], truth, result))
+                    results.push_back(result);
+                else
+                    unmatched.push_back(result.stem);
+                progress.step();
+            }
+        }
+        if (results.empty())
+            throw Failure("next to nothing was matched: do both images show the same textured scene, of one moment, within "
+                          "--depth? Are LEFT and RIGHT swapped?");
+        if (!unmatched.empty())
+            command.warn("next to nothing was matched in, and nothing written of: " + listed(unmatched));
+        if (!command.quiet())
+        {
+            if (!truth.empty())
+                printComparison(tool.comparison());
+            printTable(results, tool.rig());
+        }
+        return judgeRows(options, results, command) ? DONE : LIMIT_NOT_MET;
+    });
+}
