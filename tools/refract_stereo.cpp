@@ -11,6 +11,7 @@
 #include "stereo/depth_comparison.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/depth_search.hpp"
+#include "stereo/match_support.hpp"
 #include "stereo/raw_depth.hpp"
 #include "stereo/rectified_pictures.hpp"
 
@@ -37,7 +38,7 @@ are called frame000001 and so on.
 
 The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the mean sz; the
 row error stated, which a rectification for one plane leaves over the range (RMS, largest; the second pass removes it); the
-row error measured on the images (RMS). If that is more than 0.5 px, calibration and images do not fit.
+row error found in the images (RMS). If that is more than 0.5 px, calibration and images do not fit.
 
 Exit code: 0 done, 1 could not do it, 2 done and written, but rows differ by more than --max-row-error.)";
 
@@ -47,7 +48,8 @@ using namespace tools;
 namespace fs = std::filesystem;
 
 const double DOUBTFUL_ROWS = 0.5;       // px; a good calibration leaves a tenth
-const double FEWEST_MATCHED = 0.001;    // share of the pixels; as much as chance finds
+const double FEWEST_MATCHED = 0.001;    // share of the pixels
+const double FEWEST_SUPPORTED = 0.5;    // share of the matched ones; good images have nearly all
 const int PAIRS_SEARCHED = 5;
 
 struct Options
@@ -68,7 +70,7 @@ struct PairFiles
 struct PairResult
 {
     std::string stem;
-    double matched = 0, near = 0, far = 0, meanSigma = NAN, rowOffset = NAN, seconds = 0;
+    double matched = 0, supported = 0, near = 0, far = 0, meanSigma = NAN, rowOffset = NAN, seconds = 0;
 };
 
 cv::Vec2d parseDepthRange(const std::string& text)
@@ -250,8 +252,10 @@ public:
         const Cloud cloud = cloudOf(stereo.points, stereo.rectified1, stereo.sigma);
         const cv::Mat depth = depthOfRawPixels(rig_, stereo);
         const std::vector<float> sorted = sortedDepths(depth);
+        const double supported = supportedMatches(stereo, rig_.vertical());
         result.matched = (double)sorted.size()/(double)depth.total();
-        if (result.matched < FEWEST_MATCHED)
+        result.supported = supported/std::max(1, stereo.matched());
+        if (sorted.empty() || supported < FEWEST_MATCHED*(double)depth.total())
             return false;
         const double rare = 0.01;
         result.near = percentile(sorted, rare);
@@ -326,8 +330,7 @@ void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
 {
     const size_t most = 30;     // rows that one reads
     const std::string unit = rig.calibration().unit, in = unit.empty() ? "" : ", " + unit;
-    Table table({"", "pixels matched", "depth z" + in, "mean sz" + in, "row error stated, px", "row error measured, px",
-                 "seconds"});
+    Table table({"", "pixels matched", "depth z" + in, "mean sz" + in, "rows stated, px", "rows found, px", "seconds"});
     if (results.size() <= most)
         for (const PairResult& r : results)
             table.add(rowOf(r, rig));
@@ -348,6 +351,17 @@ bool judgeRows(const Options& options, const std::vector<PairResult>& results, c
     if (options.maxRowError > 0 && std::isnan(worst.rowOffset))
         command.warn("the row error could not be measured, so --max-row-error is not met");
     return !(options.maxRowError > 0) || worst.rowOffset <= options.maxRowError;
+}
+
+//! A matcher finds partners in anything.
+void sayUnsupported(const std::vector<PairResult>& results, const Command& command)
+{
+    const PairResult worst = *std::min_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
+        return a.supported < b.supported; });
+    if (worst.supported < FEWEST_SUPPORTED)
+        command.warn(format("only %.0f %% of the matched pixels look alike in both images of '%s', the rest is guesswork: has "
+                            "the scene a texture, does it lie within --depth, are both images of one moment?",
+                            100*worst.supported, worst.stem.c_str()));
 }
 
 void sayAlone(const std::vector<std::string>& stems, int camera, const Command& command)
@@ -428,16 +442,17 @@ int main(int argc, char** argv)
             }
         }
         if (results.empty())
-            throw Failure("next to nothing was matched: do both images show the same textured scene, of one moment, within "
-                          "--depth? Are LEFT and RIGHT swapped?");
+            throw Failure("next to nothing looks alike in both images: do they show the same textured scene, of one moment, "
+                          "within --depth? Are LEFT and RIGHT swapped?");
         if (!unmatched.empty())
-            command.warn("next to nothing was matched in, and nothing written of: " + listed(unmatched));
+            command.warn("nothing is written of pairs in which next to nothing looks alike: " + listed(unmatched));
         if (!command.quiet())
         {
             if (!truth.empty())
                 printComparison(tool.comparison());
             printTable(results, tool.rig());
         }
+        sayUnsupported(results, command);
         return judgeRows(options, results, command) ? DONE : LIMIT_NOT_MET;
     });
 }

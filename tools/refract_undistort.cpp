@@ -1,6 +1,7 @@
 #include "calibrate/calib_file.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
+#include "console/frames.hpp"
 #include "console/images.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
@@ -18,7 +19,10 @@ static const char MANUAL[] = R"(Turns images taken through the window into those
 
 The correction depends on where the scene is: exact for points on the plane z = depth (or a x + b y + c z = d, in the
 camera's frame); --depth=inf for scenes far away. The new images have the old names, size and camera matrix; pixels that
-the old image does not show are black.)";
+the old image does not show are black.
+
+IMAGE may be a quoted glob, numbered images (left%04d.png) or a video (.avi, .mp4, .mkv ...); frames of a video become
+frame000001.png and so on.)";
 
 namespace {
 
@@ -51,31 +55,50 @@ std::vector<double> depthOf(const Options& options)
     return numbers;
 }
 
-//! Image -> where its correction goes.
-std::map<std::string, std::string> listImages(const Options& options)
+//! One image to correct.
+struct Job
 {
-    std::map<std::string, std::string> inputOf, outputOf;
-    for (const std::string& source : options.sources)
-        for (const std::string& path : expandGlob(source))
-        {
-            const std::string output = (fs::path(options.folder)/fs::path(path).filename()).string();
-            if (inputOf.count(output) && inputOf[output] != path)
-                throw Failure("'" + path + "' and '" + inputOf[output] + "' have the same name: correct them one by one");
-            inputOf[output] = path;
-            outputOf[path] = output;
-        }
-    return outputOf;
+    size_t source;          // of all that were named
+    int frame;
+    std::string output;
+};
+
+//! A file keeps its name; what a video shows gets one.
+std::string outputName(const Frames& frames, int i)
+{
+    return frames.isVideo() ? frames.stem(i) + ".png" : fs::path(frames.files()[i]).filename().string();
 }
 
-void refuseOverwriting(const Options& options, const std::map<std::string, std::string>& images)
+std::vector<Job> listJobs(const Options& options, const std::vector<Frames>& sources)
+{
+    std::map<std::string, std::string> inputOf;
+    std::vector<Job> jobs;
+    for (size_t k = 0; k < sources.size(); k++)
+        for (int i = 0; i < sources[k].size(); i++)
+        {
+            const std::string output = (fs::path(options.folder)/outputName(sources[k], i)).string(), name = sources[k].name(i);
+            std::string& input = inputOf[output];
+            if (input == name && !sources[k].isVideo())       // named twice
+                continue;
+            if (!input.empty())
+                throw Failure("'" + name + "' and '" + input + "' have the same name: correct them one by one");
+            input = name;
+            jobs.push_back({k, i, output});
+        }
+    return jobs;
+}
+
+void refuseOverwriting(const Options& options, const std::vector<Frames>& sources, const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs;
     std::vector<std::string> inputs = {options.calibration};
-    for (const auto& image : images)
-    {
-        outputs.push_back({"--out-dir", image.second, OUTPUT_IN_FOLDER});
-        inputs.push_back(image.first);
-    }
+    for (const Frames& frames : sources)
+        if (frames.isVideo())
+            inputs.push_back(frames.source());
+        else
+            inputs.insert(inputs.end(), frames.files().begin(), frames.files().end());
+    for (const Job& job : jobs)
+        outputs.push_back({"--out-dir", job.output, OUTPUT_IN_FOLDER});
     checkOutputs(outputs, inputs);
 }
 
@@ -85,10 +108,10 @@ public:
     Corrector(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const std::vector<double>& depth)
         : camera_(camera), depth_(depth) {}
 
-    cv::Mat correct(const std::string& path)
+    //! @param name of the image, for a sentence
+    cv::Mat correct(const cv::Mat& image, const std::string& name)
     {
-        const cv::Mat image = readImage(path);
-        requireSize(image, path, camera_->imageSize());
+        requireSize(image, name, camera_->imageSize());
         if (map1_.size() != image.size())
         {
             cv::refract::initRefractiveUndistortRectifyMap(camera_, depth_, cv::noArray(), cv::noArray(), image.size(),
@@ -115,7 +138,7 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options;
         command.app.add_option("calib.yml", options.calibration, "what refract_calib wrote")->required();
-        command.app.add_option("IMAGE", options.sources, "images, or quoted globs")->required();
+        command.app.add_option("IMAGE", options.sources, "images, quoted globs, numbered images or videos")->required();
         command.app.add_option("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
         command.app.add_option("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
         command.app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there")->required();
@@ -129,20 +152,24 @@ int main(int argc, char** argv)
         requireWindows(calibration, options.calibration, options.noWindow);
         if (options.camera > (int)calibration.cameras.size())
             throw Failure("--camera=2: '" + options.calibration + "' has one camera");
-        const auto images = listImages(options);
-        refuseOverwriting(options, images);
+        std::vector<Frames> sources;
+        for (const std::string& source : options.sources)
+            sources.emplace_back(source);
+        const std::vector<Job> jobs = listJobs(options, sources);
+        refuseOverwriting(options, sources, jobs);
         Corrector corrector(calibration.cameras[options.camera - 1].camera, depth);
-        Progress progress("correcting images", (int)images.size(), command.quiet());
-        for (const auto& image : images)
+        Progress progress("correcting images", (int)jobs.size(), command.quiet());
+        for (const Job& job : jobs)
         {
-            progress.at(image.first);
-            const cv::Mat corrected = corrector.correct(image.first);
+            Frames& frames = sources[job.source];
+            progress.at(frames.name(job.frame));
+            const cv::Mat corrected = corrector.correct(frames.read(job.frame), frames.name(job.frame));
             makeFolder(options.folder);     // now that there is something to write
-            writeImage(image.second, corrected);
+            writeImage(job.output, corrected);
             progress.step();
         }
         if (!command.quiet())
-            std::cout << images.size() << (images.size() == 1 ? " image" : " images") << " written to " << options.folder << std::endl;
+            std::cout << jobs.size() << (jobs.size() == 1 ? " image" : " images") << " written to " << options.folder << std::endl;
         return DONE;
     });
 }

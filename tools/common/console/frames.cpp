@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -80,8 +81,9 @@ void refuseOneFile(const std::string& first, const std::string& second)
 void requireEqualLength(const Frames& first, const Frames& second)
 {
     if (first.isVideo() && second.isVideo() && first.size() != second.size())
-        throw Failure(cv::format("'%s' has %d frames, '%s' %d: cut them so that equal numbers are of one moment",
-                                 first.source().c_str(), first.size(), second.source().c_str(), second.size()));
+        throw Failure(cv::format("'%s' and '%s' have different numbers of frames, %d and %d: cut them so that equal numbers "
+                                 "are of one moment",
+                                 first.source().c_str(), second.source().c_str(), first.size(), second.size()));
 }
 
 } // namespace
@@ -97,6 +99,7 @@ Frames::Frames(const std::string& source) : source_(source)
         throw Failure("'" + source + "' are several videos: give one at a time");
     source_ = files_[0];
     files_.clear();
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);      // a decoder's remarks about a cut file are not for users
     open();
     while (video_.grab())       // what files say of their length is not always true
         count_++;
