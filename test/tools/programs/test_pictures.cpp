@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -68,6 +69,32 @@ TEST_CASE("refract_undistort takes globs, a depth, the second camera", "[tools][
             CHECK(cv::imread(folder/(depth + "/" + name)).size() == cv::Size(1280, 1024));
     }
     CHECK(readFile(folder / "600/z600_1.jpg") != readFile(folder / "inf/z600_1.jpg"));
+}
+
+TEST_CASE("refract_undistort takes videos and numbered images", "[tools][undistort]")
+{
+    const TemporaryFolder folder;
+    {
+        cv::VideoWriter video(folder / "v.avi", cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10, cv::Size(1280, 1024));
+        REQUIRE(video.isOpened());
+        for (const std::string name : {"measure1/z600_1", "measure1/z600_2"})
+            video.write(cv::imread(image(name)));
+    }
+    std::filesystem::copy_file(image("measure1/z600_1"), folder / "n3.jpg");
+    const std::string call = "refract_undistort " + STEREO + "/truth.yml --depth=600 --out-dir=" + (folder / "out");
+    const ToolResult result = runTool(call + " " + (folder / "v.avi") + " " + (folder / "n%d.jpg"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    CHECK(result.out.find("3 images") != std::string::npos);
+    const cv::Mat frame = cv::imread(folder / "out/frame000001.png"), numbered = cv::imread(folder / "out/n3.jpg");
+    REQUIRE(frame.size() == cv::Size(1280, 1024));
+    REQUIRE(numbered.size() == cv::Size(1280, 1024));
+    CHECK(cv::norm(frame, numbered, cv::NORM_L1)/(double)(frame.total()*3) < 2);       // the same image, twice compressed
+    CHECK(std::filesystem::exists(folder / "out/frame000002.png"));
+    const ToolResult both = runTool(call + " " + (folder / "v.avi") + " " + (folder / "v.avi"));
+    CAPTURE(both.err);
+    CHECK(both.code == 1);
+    CHECK(both.err.find("same name") != std::string::npos);
 }
 
 TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tools][epilines]")

@@ -1,0 +1,76 @@
+#include "console/cli.hpp"
+#include "scene_pair.hpp"
+#include "stereo/depth_search.hpp"
+#include "stereo/match_support.hpp"
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace tools;
+
+TEST_CASE("The range of a scene is found from what both images show", "[tools][stereo][search]")
+{
+    const ScenePair scene;
+    const std::vector<float> depths = depthsOfDetails(scene.rig, scene.left, scene.right);
+    REQUIRE(depths.size() > 500);
+    CHECK(std::is_sorted(depths.begin(), depths.end()));
+    const cv::Vec2d range = depthRangeOf(depths);
+    CHECK(range[0] > 400);
+    CHECK(range[0] < 475);
+    CHECK(range[1] > 1130);
+    CHECK(range[1] < 1350);
+}
+
+TEST_CASE("Without details in common no range is found, and --depth asked for", "[tools][stereo][search]")
+{
+    const ScenePair scene;
+    const cv::Mat black(scene.left.size(), CV_8U, cv::Scalar(0));
+    CHECK(depthsOfDetails(scene.rig, black, black).empty());
+    CHECK(depthsOfDetails(scene.rig, scene.left, black).empty());
+    for (const size_t few : {0, 29})
+        CHECK_THROWS_WITH(depthRangeOf(std::vector<float>(few, 500.f)), Catch::Contains("--depth=NEAR,FAR"));
+    const cv::Vec2d enough = depthRangeOf(std::vector<float>(30, 500.f));
+    CHECK(enough[0] < 480);
+    CHECK(enough[1] > 520);
+}
+
+TEST_CASE("A few wrong partners do not widen the range", "[tools][stereo][search]")
+{
+    std::vector<float> depths = {3, 5};
+    for (int i = 0; i < 300; i++)
+        depths.push_back(500.f + (float)i);
+    depths.insert(depths.end(), {50000, 1e6});
+    const cv::Vec2d range = depthRangeOf(depths);
+    CHECK(range[0] > 400);
+    CHECK(range[1] < 900);
+}
+
+TEST_CASE("What lies before or in the window is told from what lies beyond", "[tools][stereo][search]")
+{
+    const ScenePair scene;      // the window is 60 away and 25 thick
+    for (const double z : {1., 30., 60., 75.})
+        CHECK(!isBeyondWindows(scene.rig, z));
+    for (const double z : {100., 450., 1e6, (double)INFINITY})
+        CHECK(isBeyondWindows(scene.rig, z));
+}
+
+TEST_CASE("Matches of flat areas and of noise rest on nothing", "[tools][stereo][support]")
+{
+    const cv::Size size(120, 90);
+    DenseStereo stereo;
+    cv::RNG random(3);
+    cv::Mat texture(size.height, size.width + 8, CV_8U), other(size, CV_8U);
+    random.fill(texture, cv::RNG::NORMAL, 120, 40);
+    random.fill(other, cv::RNG::NORMAL, 120, 40);
+    stereo.disparity = cv::Mat(size, CV_32F, cv::Scalar(8));
+    stereo.disparity.colRange(0, 20).setTo(std::numeric_limits<float>::quiet_NaN());
+    // What is at x in the first is at x - 8 in the second.
+    stereo.rectified1 = texture(cv::Rect(0, 0, size.width, size.height)).clone();
+    stereo.rectified2 = texture(cv::Rect(8, 0, size.width, size.height)).clone();
+    CHECK(supportedMatches(stereo, false) > 0.95*100*size.height);
+    CHECK(supportedMatches(stereo, false) <= 100*size.height);
+    CHECK(supportedMatches(stereo, true) < 0.01*100*size.height);
+    stereo.rectified2 = other;
+    CHECK(supportedMatches(stereo, false) < 0.01*100*size.height);
+    stereo.rectified1 = stereo.rectified2 = cv::Mat(size, CV_8UC3, cv::Scalar::all(90));
+    CHECK(supportedMatches(stereo, false) == 0);
+}
