@@ -14,7 +14,7 @@ using cv::Size;
 
 namespace {
 
-const Size PATCH(13, 13);
+const Size PATCH(13, 13), NEAR(7, 7);
 const int STEPS = 2, ENOUGH = 200;      // of a few values nothing is said
 const float NONE = std::numeric_limits<float>::quiet_NaN();
 
@@ -54,7 +54,6 @@ Mat meanSlope(const Mat& a, const Mat& b, int byX, int byY)
 leave them as they are. */
 void levelSteps(Mat& disparity, const Mat& weight)
 {
-    const Size NEAR(7, 7);
     const double ONE_SURFACE = 1.5, FAR_AWAY = 1e9;
     const Mat known = weight > 0, element = cv::getStructuringElement(cv::MORPH_RECT, NEAR);
     Mat low = disparity.clone(), high = disparity.clone();
@@ -78,7 +77,7 @@ independent, patches are not moved copies of each other. Third differences along
 that no pixel is in two patches, know of no surface up to second order; 95 % of them shall be within 1.96 sigma. */
 double inflation(const Mat& disparity, const Mat& sigma)
 {
-    const int APART = 2*PATCH.width, EVERY = 3;
+    const int APART = PATCH.width + NEAR.width + 2, EVERY = 3;      // 2: of the interpolation
     const float EDGE = 3, weights[] = {1, -3, 3, -1};
     std::vector<float> ratios;
     for (const Point step : {Point(APART, 0), Point(0, APART)})
