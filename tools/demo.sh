@@ -31,4 +31,11 @@ done
 $bin/refract_epilines out/calib.yml "$data/measure1/z600_1.jpg" "$data/measure2/z600_1.jpg" $target --out=out/epilines.png
 
 echo
-echo "Look at out/report.html (the calibration) and out/epilines.png (where partners lie)."
+echo "A whole scene through two tilted windows of 25 mm:"
+scene=samples/data/scene
+$bin/refract_stereo $scene/truth.yml $scene/glass1/scene.jpg $scene/glass2/scene.jpg --depth=400,1300 \
+  --out=out/scene.ply --picture=out/scene_depth.png
+
+echo
+echo "Look at out/report.html (the calibration), out/epilines.png (where partners lie), out/scene_depth.png and out/scene.ply (the"
+echo "depth of the scene $scene/glass1/scene.jpg)."

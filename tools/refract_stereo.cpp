@@ -36,7 +36,7 @@ deviation of x, y, z; nan: unknown). depth.tiff: float32, z of each raw pixel of
 same in colours, with a scale. --out-dir writes STEM.ply, STEM_depth.tiff and STEM_depth.png of each pair; frames of videos
 are called frame000001 and so on.
 
-The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the mean sz; the
+The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the median sz; the
 row error stated, which a rectification for one plane leaves over the range (RMS, largest; the second pass removes it); the
 row error found in the images (RMS). If that is more than 0.5 px, calibration and images do not fit.
 
@@ -70,7 +70,7 @@ struct PairFiles
 struct PairResult
 {
     std::string stem;
-    double matched = 0, supported = 0, near = 0, far = 0, meanSigma = NAN, rowOffset = NAN, seconds = 0;
+    double matched = 0, supported = 0, near = 0, far = 0, typicalSigma = NAN, rowOffset = NAN, seconds = 0;
 };
 
 cv::Vec2d parseDepthRange(const std::string& text)
@@ -210,17 +210,17 @@ cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vect
     return range;
 }
 
-double meanSigmaZ(const Cloud& cloud)
+//! The median: a few far points have any sz.
+double typicalSigmaZ(const Cloud& cloud)
 {
-    double sum = 0;
-    int count = 0;
+    std::vector<float> known;
     for (const CloudPoint& point : cloud)
         if (point.sigma[2] == point.sigma[2])
-        {
-            sum += point.sigma[2];
-            count++;
-        }
-    return sum/count;
+            known.push_back(point.sigma[2]);
+    if (known.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    std::nth_element(known.begin(), known.begin() + known.size()/2, known.end());
+    return known[known.size()/2];
 }
 
 void printComparison(const DepthComparison& c)
@@ -260,7 +260,7 @@ public:
         const double rare = 0.01;
         result.near = percentile(sorted, rare);
         result.far = percentile(sorted, 1 - rare);
-        result.meanSigma = meanSigmaZ(cloud);
+        result.typicalSigma = typicalSigmaZ(cloud);
         result.rowOffset = stereo.rowOffset;
         result.seconds = (double)(cv::getTickCount() - start)/cv::getTickFrequency();
         write(files, stereo, cloud, depth);
@@ -304,7 +304,7 @@ std::string orUnknown(double value, const char* how)
 
 std::vector<std::string> rowOf(const PairResult& r, const RectifiedRig& rig)
 {
-    return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.meanSigma, "%.3g"),
+    return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.typicalSigma, "%.3g"),
             format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), orUnknown(r.rowOffset, "%.2f"), format("%.1f", r.seconds)};
 }
 
@@ -313,11 +313,11 @@ PairResult summaryOf(const std::vector<PairResult>& results)
 {
     PairResult all = results[0];
     all.stem = format("all %d pairs", (int)results.size());
-    all.matched = all.meanSigma = all.seconds = 0;
+    all.matched = all.typicalSigma = all.seconds = 0;
     for (const PairResult& r : results)
     {
         all.matched += r.matched/(double)results.size();
-        all.meanSigma += r.meanSigma/(double)results.size();
+        all.typicalSigma += r.typicalSigma/(double)results.size();
         all.near = std::min(all.near, r.near);
         all.far = std::max(all.far, r.far);
         all.rowOffset = std::fmax(all.rowOffset, r.rowOffset);
@@ -330,7 +330,7 @@ void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
 {
     const size_t most = 30;     // rows that one reads
     const std::string unit = rig.calibration().unit, in = unit.empty() ? "" : ", " + unit;
-    Table table({"", "pixels matched", "depth z" + in, "mean sz" + in, "rows stated, px", "rows found, px", "seconds"});
+    Table table({"", "pixels matched", "depth z" + in, "median sz" + in, "rows stated, px", "rows found, px", "seconds"});
     if (results.size() <= most)
         for (const PairResult& r : results)
             table.add(rowOf(r, rig));
