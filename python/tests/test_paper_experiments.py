@@ -134,6 +134,19 @@ def test_plane_without_noise(output):
         assert row["ours, 10 pairs"] < 1.2*row[WITHOUT] + 0.0005
 
 
+def test_dense_matching(output):
+    found = table(output, "Section 4.3.1")
+    matched, right, depth = "matched, %", "right by 2 %, % of these", "their depth, mm (RMS)"
+    for position in ("position 1", "position 2"):
+        bare, ignored, first, second = (found[f"{position}: {name}"] for name in (WITHOUT, IGNORED, "ours, first pass",
+                                                                                  "ours, second pass"))
+        assert second["rows, px (RMS)"] <= 0.02 and first["rows, px (RMS)"] <= 0.1
+        for ours in (first, second):
+            assert ours[matched] > 0.95*bare[matched] and ours[right] > 99.5 and ours[depth] < 1.1*bare[depth]
+            assert ours[depth] < ignored[depth]/20
+    assert found["position 1: " + IGNORED][matched] < 5
+
+
 def test_matching(output):
     found = table(output, "Figure 17")
     for name, row in found.items():

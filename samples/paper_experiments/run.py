@@ -7,6 +7,7 @@ and says what to make of it. Everything random comes from one seed; it takes a m
 """
 import argparse
 
+import dense
 import deviations
 import matching
 import normals
@@ -25,6 +26,7 @@ deviations.run(folder)
 normals.run(trials=200)
 plane.run(40, folder)
 matching.run(20, folder)
+dense.run()
 triangulation.run(40, folder)
 pollution.run(200)
 own_rows.run()
