@@ -4,7 +4,12 @@
 #include "scenes.hpp"
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/refract.hpp>
+#if CV_VERSION_MAJOR >= 5
+#include <opencv2/stereo.hpp>
+#endif
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iostream>
@@ -345,6 +350,104 @@ TEST_CASE("openptv_cavity: dots in water through glass, 3-D", "[real]")
         CHECK(refractive < pair.limit);
         CHECK(refractive < f);
         CHECK(refractive < fck);
+    }
+}
+
+namespace {
+
+//! Two passes of cv::StereoSGBM over a real pair; points in the rectified frame, and the way there.
+struct DensePair
+{
+    Mat R1, R2, P1, P2, Q, points;
+
+    DensePair(const Placed& a, const Placed& b, const Matx33d& R, const Vec3d& T, const Mat& image1, const Mat& image2, const Vec2d& range)
+    {
+        const Size size = image1.size();
+        refractiveStereoRectify(a.camera, b.camera, R, T, size, range, R1, R2, P1, P2, Q, 0);
+        const int nearest = cvCeil(disparityAt(range[0])) + 8, farthest = cvFloor(disparityAt(range[1])) - 8;
+        const Ptr<StereoSGBM> matcher = StereoSGBM::create(farthest, (nearest - farthest + 15)/16*16, 9, 648, 2592, 1, 31, 5, 50, 2);
+        Mat depth1(1, 1, CV_64F, Scalar(2/(1/range[0] + 1/range[1]))), depth2 = depth1, disparity;
+        for (int pass = 0; pass < 2; pass++)
+        {
+            Mat map11, map12, map21, map22, rectified1, rectified2;
+            initRefractiveStereoRectifyMap(a.camera, depth1, R1, P1, noArray(), size, CV_32FC1, map11, map12);
+            initRefractiveStereoRectifyMap(b.camera, depth2, R2, P2, T, size, CV_32FC1, map21, map22);
+            remap(image1, rectified1, map11, map12, INTER_CUBIC);
+            remap(image2, rectified2, map21, map22, INTER_CUBIC);
+            matcher->compute(rectified1, rectified2, disparity);
+            disparity.convertTo(disparity, CV_32F, 1./StereoMatcher::DISP_SCALE);
+            if (pass == 0)
+                refractiveRectifiedDepth(disparity, P1, P2, size, depth1, depth2, true);
+        }
+        refractiveReprojectImageTo3D(disparity, points, a.camera, b.camera, R, T, R1, R2, P1, P2, depth1, depth2, true);
+    }
+
+    Vec2d shownAt(const Vec3d& X, const Mat& P) const
+    {
+        const Vec3d x = Matx34d(P.ptr<double>())*Vec4d(X[0], X[1], X[2], 1);
+        return Vec2d(x[0]/x[2], x[1]/x[2]);
+    }
+    double disparityAt(double z) const { return shownAt(Vec3d(0, 0, z), P1)[0] - shownAt(Vec3d(0, 0, z), P2)[0]; }
+};
+
+} // namespace
+
+TEST_CASE("openptv_cavity: the dots in depths of whole images", "[real]")
+{
+    json data;
+    if (!load("openptv_cavity/points.json", data))
+        return;
+    const Object object = objectOf(data["object_points_mm"]);
+    const TankCamera tankA = tankCamera(data, 3), tankB = tankCamera(data, 4);
+    const char* fromEnvironment = std::getenv("REFRACT_DATA_DIR");
+    const std::string folder = std::string(fromEnvironment ? fromEnvironment : REFRACT_DATA_DIR) + "/openptv_cavity/cal/";
+    const Mat image1 = imread(folder + "cam3.tif", IMREAD_GRAYSCALE), image2 = imread(folder + "cam4.tif", IMREAD_GRAYSCALE);
+    REQUIRE(!image1.empty());
+    double ours = 0;
+    for (const bool ignored : { false, true })
+    {
+        const Placed a = ignored ? fitPinhole(tankA, object, CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_K1) : fitWindow(tankA, object);
+        const Placed b = ignored ? fitPinhole(tankB, object, CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_K1) : fitWindow(tankB, object);
+        Matx33d Ra, Rb;
+        Rodrigues(a.rvec, Ra);
+        Rodrigues(b.rvec, Rb);
+        const Matx33d R = Rb*Ra.t();
+        double near = scenes::INF, far = 0;
+        for (const Point3d& X : object)
+        {
+            const double z = (Ra*Vec3d(X) + a.tvec)[2];
+            near = std::min(near, z);
+            far = std::max(far, z);
+        }
+        const DensePair dense(a, b, R, b.tvec - R*a.tvec, image1, image2, Vec2d(near - 20, far + 20));
+        std::vector<double> errors;
+        int seen = 0;
+        for (size_t i = 0; i < object.size(); i++)
+        {
+            if (std::isnan(tankA.pixels[i].x) || std::isnan(tankB.pixels[i].x))
+                continue;
+            seen++;
+            const Vec3d X = Matx33d(dense.R1.ptr<double>())*(Ra*Vec3d(object[i]) + a.tvec);
+            const Vec2d at = dense.shownAt(X, dense.P1);
+            const Point pixel(cvRound(at[0]), cvRound(at[1]));
+            if (!Rect(Point(), image1.size()).contains(pixel) || std::isnan(dense.points.at<Vec3f>(pixel)[2]))
+                continue;
+            errors.push_back(std::abs(dense.points.at<Vec3f>(pixel)[2] - X[2]));
+        }
+        std::sort(errors.begin(), errors.end());
+        REQUIRE(!errors.empty());
+        std::cout << "[numbers] openptv_cavity cameras 3+4, cv::StereoSGBM in two passes, " << (ignored ? "pinhole f" : "air-glass-water")
+                  << ": " << errors.size() << " of " << seen << " dots have a depth, its error is " << errors[errors.size()/2]
+                  << " mm (median), " << errors[errors.size()*9/10] << " (90 %)" << std::endl;
+        const double median = errors[errors.size()/2];
+        if (ignored)
+            CHECK(median > 3*ours);
+        else
+        {
+            CHECK((int)errors.size() > 0.85*seen);
+            CHECK(median < 0.1);
+            ours = median;
+        }
     }
 }
 
