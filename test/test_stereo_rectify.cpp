@@ -152,6 +152,9 @@ double rms(const std::vector<double>& values)
     return std::sqrt(sum/values.size());
 }
 
+//! NaN is larger than all.
+double larger(double a, double b) { return b <= a ? a : b; }
+
 double middle(const Vec2d& range) { return 2/(1/range[0] + 1/range[1]); }
 
 } // namespace
@@ -212,18 +215,20 @@ TEST_CASE("Behind no window cv::stereoRectify and cv::reprojectImageTo3D answer"
         Mat disparity(48, 64, CV_32F), points, theirs;
         Random random(5);
         for (float& d : Mat_<float>(disparity))
-            d = (float)random.uniform(20, 90)*(c.T[0] > 0 ? -1 : 1);
+            d = (float)random.uniform(20, 90)*(c.T[ours.axis()] > 0 ? -1 : 1);
         // All of the principal points' difference would leave no disparity for the scene.
         const double shift = P1.at<double>(ours.axis(), 2) - P2.at<double>(ours.axis(), 2);
         disparity += shift;
+        Mat status;
         refractiveReprojectImageTo3D(disparity, points, rig.camera1, rig.camera2, c.R, c.T, R1, R2, P1, P2, noArray(), noArray(),
-                                     false, CV_64F);
+                                     false, CV_64F, status);
+        CHECK(countNonZero(status) == 0);
         reprojectImageTo3D(disparity, theirs, Q);
         theirs.convertTo(theirs, CV_64F);
         double worst = 0;
         for (int y = 0; y < points.rows; y++)
             for (int x = 0; x < points.cols; x++)
-                worst = std::max(worst, norm(points.at<Vec3d>(y, x) - theirs.at<Vec3d>(y, x))/norm(theirs.at<Vec3d>(y, x)));
+                worst = larger(worst, norm(points.at<Vec3d>(y, x) - theirs.at<Vec3d>(y, x))/norm(theirs.at<Vec3d>(y, x)));
         std::cout << "[numbers] 3-D from disparity without windows, against cv::reprojectImageTo3D: " << worst << " relative" << std::endl;
         CAPTURE(c.T, seed());
         CHECK(worst < 1e-6);
@@ -271,7 +276,7 @@ TEST_CASE("alpha 0 leaves no invalid pixel, alpha 1 loses no raw one", "[stereo_
                                            map, none);
             int outside = 0;
             for (const Vec2f& p : Mat_<Vec2f>(map))
-                outside += !(p[0] >= -1 && p[1] >= -1 && p[0] <= rig.size.width && p[1] <= rig.size.height);
+                outside += !(p[0] > -0.9 && p[1] > -0.9 && p[0] <= rig.size.width && p[1] <= rig.size.height);     // none is (-1, -1)
             CHECK(outside == 0);
             for (const Vec2d& corner : { Vec2d(0, 0), Vec2d(rig.size.width - 1, rig.size.height - 1) })
             {
@@ -308,6 +313,7 @@ TEST_CASE("A rectified map is where the raw image shows what its pinhole sees", 
             CAPTURE(rig.name, c, seed());
             const Matx33d K(P.colRange(0, 3).clone().ptr<double>());
             const Vec3d centre = -(K.inv()*Vec3d(P.col(3).clone().ptr<double>()));
+            int compared = 0;
             for (int y = 0; y < size.height; y++)
                 for (int x = 0; x < size.width; x++)
                 {
@@ -321,15 +327,17 @@ TEST_CASE("A rectified map is where the raw image shows what its pinhole sees", 
                     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, raw);
                     if (norm(raw[0]) < 1e4)
                         REQUIRE(norm(Vec2d(onPlane.at<Vec2f>(y, x)) - raw[0]) < 5e-4);
-                    if (!(z > 0))
+                    if (!(z > 0) || std::isnan(raw[1][0]))
                         REQUIRE(perPixel.at<Vec2f>(y, x) == Vec2f(-1, -1));
                     else if (norm(raw[1]) < 1e4)
                     {
+                        compared++;
                         REQUIRE(norm(Vec2d(perPixel.at<Vec2f>(y, x)) - raw[1]) < 5e-4);
                         REQUIRE(single.at<float>(y, x) == Approx(raw[1][0]).margin(1e-2));
                         REQUIRE(std::abs(sixteen.at<Vec2s>(y, x)[0] - raw[1][0]) <= 1.02);
                     }
                 }
+            CHECK(compared > size.area()/2);
         }
     }
 }
@@ -363,7 +371,7 @@ TEST_CASE("A disparity becomes the point that both raw pixels see", "[stereo_rec
             refractiveReprojectImageTo3D(disparity, points, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, depth, depth,
                                          false, CV_64F, status);
             const Vec3d expected = Vec3d(h[0], h[1], h[2])/h[3];
-            worst = std::max(worst, norm(points.at<Vec3d>(pixel) - expected)/norm(expected));
+            worst = larger(worst, norm(points.at<Vec3d>(pixel) - expected)/norm(expected));
             CHECK(countNonZero(status) == (int)status.total() - 1);
             CHECK(status.at<uchar>(0, 0) == REFRACT_NOT_FINITE);
             CHECK(std::isnan(points.at<Vec3d>(0, 0)[2]));
@@ -467,7 +475,7 @@ TEST_CASE("A coarse disparity with gaps tells the depths of both images", "[ster
     CHECK_THAT(thrown([&] { refractiveRectifiedDepth(Mat(half, CV_32F, Scalar(9)), r.P1, r.P2, Size(640, 300), depth1, depth2); }),
                Contains("disparity is 640x512"));
     CHECK_THAT(thrown([&] { refractiveRectifiedDepth(disparity, r.P1, r.P1, rig.size, depth1, depth2); }), Contains("P1 and P2"));
-    CHECK_THAT(thrown([&] { refractiveRectifiedDepth(disparity, r.R1, r.P2, rig.size, depth1, depth2); }), Contains("P1 has 9 values"));
+    CHECK_THAT(thrown([&] { refractiveRectifiedDepth(disparity, r.R1, r.P2, rig.size, depth1, depth2); }), Contains("P1 is 3x3"));
 }
 
 TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rectify]")
@@ -504,9 +512,9 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     { return thrown([&] { initRefractiveStereoRectifyMap(good.camera2, d, R, P, T, Size(64, 48), CV_32FC1, map1, map2); }); };
     CHECK_THAT(map(noArray(), r.R2, r.P2, good.T), Contains("depth"));
     CHECK_THAT(map(std::vector<double>{ -3 }, r.R2, r.P2, good.T), Contains("depth is -3"));
-    CHECK_THAT(map(Mat(20, 20, CV_32F, Scalar(3)), r.R2, r.P2, good.T), Contains("depth has 400 values"));
+    CHECK_THAT(map(Mat(20, 30, CV_32F, Scalar(3)), r.R2, r.P2, good.T), Contains("depth is 30x20 CV_32FC1") && Contains("size 64x48"));
     CHECK_THAT(map(depth, r.P2, r.P2, good.T), Contains("R"));
-    CHECK_THAT(map(depth, r.R2, r.R2, good.T), Contains("P has 9 values"));
+    CHECK_THAT(map(depth, r.R2, r.R2, good.T), Contains("P is 3x3"));
     CHECK_THAT(map(depth, r.R2, r.P2, r.P2), Contains("T"));
 
     Mat points, disparity(48, 64, CV_32F, Scalar(300)), covariance;
@@ -519,8 +527,28 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     const Mat once = covariance.clone();
     CHECK(reproject(disparity, r.R1, depth, Vec4d(0.1, 0, 0, 0)).empty());      // a number from Python
     CHECK(norm(once.reshape(1), covariance.reshape(1), NORM_INF) == 0);
-    CHECK(reproject(disparity, r.R1, depth, Mat(disparity.size(), CV_32F, Scalar(0.1))).empty());
-    CHECK(norm(once.reshape(1), covariance.reshape(1), NORM_INF) < 1e-6*norm(once.reshape(1), NORM_INF));
+    // One sigma for each pixel; where it is unknown so is the covariance.
+    Mat sigmas(disparity.size(), CV_32F);
+    for (int y = 0; y < sigmas.rows; y++)
+        for (int x = 0; x < sigmas.cols; x++)
+            sigmas.at<float>(y, x) = (float)(0.01*(x + 100*y) + 0.01);
+    sigmas.at<float>(7, 9) = (float)NaN;
+    CHECK(reproject(disparity, r.R1, depth, sigmas).empty());
+    typedef Vec<double, 9> Vec9d;
+    for (const Point& p : { Point(3, 5), Point(60, 2), Point(0, 47) })
+        CHECK(std::sqrt(covariance.at<Vec9d>(p)[8]/once.at<Vec9d>(p)[8]) == Approx(sigmas.at<float>(p)/0.1).epsilon(1e-6));
+    CHECK(std::isnan(covariance.at<Vec9d>(7, 9)[8]));
+    CHECK(reproject(disparity, r.R1, depth, Vec4d()).empty());      // 0 from Python
+    CHECK(norm(covariance.reshape(1), NORM_INF) == 0);
+    CHECK_NOTHROW(refractiveReprojectImageTo3D(disparity, points, good.camera1, good.camera2, good.R, good.T, r.R1, r.R2, r.P1, r.P2,
+                                               depth, depth, false, -1, noArray(), 0.1, noArray(), noArray()));
+    Mat R1, R2, P1, P2;
+    CHECK_NOTHROW(refractiveStereoRectify(good.camera1, good.camera2, good.R, good.T, good.size, good.range, R1, R2, P1, P2, noArray()));
+    bad = good;
+    bad.camera1 = bad.camera2 = RefractiveCamera::create(PLAIN_K, noArray(), paperPane());
+    bad.R = Matx33d::eye();
+    bad.T = Vec3d(0, 0, -100);
+    CHECK_THAT(refusal(bad), Contains("looks along the line between both"));
     CHECK_THAT(reproject(Mat_<double>(disparity), r.R1, depth, 0.1), Contains("disparity is CV_64FC1"));
     CHECK_THAT(reproject(disparity, r.R2, depth, 0.1), Contains("R1, R2 and R"));
     CHECK_THAT(reproject(disparity, r.R1, noArray(), 0.1), Contains("depth2"));
@@ -557,4 +585,63 @@ TEST_CASE("A disparity image of any type, empty, or with missing values", "[ster
     CHECK(countNonZero(status) == 1);
     CHECK(norm(reproject(whole(Rect(0, 0, 64, 4)), false), reference(Rect(0, 0, 64, 4)), NORM_INF) == 0);
     CHECK(reproject(Mat(), false).empty());
+
+    // What has no depth does not take its neighbours along, and an infinite disparity is none.
+    Mat holes(whole.size(), CV_32F, Scalar(700));
+    holes.at<float>(20, 30) = (float)NaN;
+    whole.at<float>(9, 9) = (float)INF;
+    Mat out;
+    refractiveReprojectImageTo3D(whole, out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, holes, depth, false, -1, status);
+    CHECK(countNonZero(status) == 2);
+    CHECK(status.at<uchar>(9, 9) == REFRACT_NOT_FINITE);
+    CHECK(status.at<uchar>(20, 30) != 0);
+    refractiveReprojectImageTo3D(Mat(), out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, holes, holes);
+    CHECK(out.empty());
+}
+
+TEST_CASE("Depths of a disparity of any size, orientation and fault", "[stereo_rectify]")
+{
+    for (const StereoRig& rig : allRigs())
+    {
+        const Rectified r = rectify(rig, -1, Size(), 0);
+        CAPTURE(rig.name);
+        const Matx44d Q(r.Q.ptr<double>());
+        const double d = projected(r.P1, Vec3d(0, 0, 800))[r.axis()] - projected(r.P2, Vec3d(0, 0, 800))[r.axis()];
+        for (const Size& size : { rig.size, Size(rig.size.width, rig.size.height + 1), Size(rig.size.width + 1, rig.size.height + 9) })
+        {
+            const Size half(size.width/2, size.height/2);
+            Mat disparity(half, CV_32F, Scalar(d/2)), depth1, depth2;
+            disparity(Rect(100, 100, 4, 4)).setTo(INF);
+            disparity(Rect(100, 200, 40, 40)).setTo(NaN);
+            disparity(Rect(200, 200, 40, 40)).setTo(-INF);
+            refractiveRectifiedDepth(disparity, r.P1, r.P2, size, depth1, depth2);
+            CHECK(depth1.size() == size);
+            CHECK(checkRange(depth1, true, nullptr, 799, 801));     // the size may not be exactly twice as large
+            CHECK(checkRange(depth2, true, nullptr, 799, 801));
+        }
+    }
+    // Nothing takes long, however large a gap or a value is.
+    const StereoRig rig = paperRig();
+    const Rectified r = rectify(rig);
+    Mat disparity(rig.size, CV_32F, Scalar(NaN)), depth1, depth2;
+    disparity(Rect(0, 0, 4, 4)).setTo(300);
+    refractiveRectifiedDepth(disparity, r.P1, r.P2, rig.size, depth1, depth2);
+    CHECK(checkRange(depth1, true, nullptr, 100, 5000));
+    disparity(Rect(100, 100, 40, 40)).setTo(1e30);      // what is there is in no place of the other image
+    const std::string fault = thrown([&] { refractiveRectifiedDepth(disparity, r.P1, r.P2, rig.size, depth1, depth2); });
+    CHECK((fault.empty() || Contains("disparity").match(fault)));
+}
+
+TEST_CASE("Lenses wider than a half-space are rectified, if all of the image is not asked for", "[stereo_rectify]")
+{
+    const Matx33d K(400, 0, 640, 0, 400, 512, 0, 0, 1);
+    for (const GlassWindow& window : { GlassWindow(), GlassWindow(Vec3d(0.1, 0, 1), 10, 1.5, 20) })
+    {
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(K, noArray(), window);
+        const StereoRig rig = { "wide", camera, camera, Matx33d::eye(), Vec3d(-100, 0, 0), Size(1280, 1024), Vec2d(300, 3000) };
+        const Rectified r = rectify(rig, -1, Size(), 0);
+        CHECK(r.P1.at<double>(0, 0) > 0);
+        CHECK(r.roi1.empty());
+        CHECK_THAT(thrown([&] { rectify(rig, 0, Size(), 0); }), Contains("alpha is 0") && Contains("too wide"));
+    }
 }

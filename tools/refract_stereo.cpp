@@ -314,15 +314,18 @@ PairResult summaryOf(const std::vector<PairResult>& results)
     PairResult all = results[0];
     all.stem = format("all %d pairs", (int)results.size());
     all.matched = all.typicalSigma = all.seconds = 0;
+    const auto isKnown = [](const PairResult& r) { return !std::isnan(r.typicalSigma); };
+    const auto known = (double)std::count_if(results.begin(), results.end(), isKnown);
     for (const PairResult& r : results)
     {
         all.matched += r.matched/(double)results.size();
-        all.typicalSigma += r.typicalSigma/(double)results.size();
+        all.typicalSigma += isKnown(r) ? r.typicalSigma : 0;
         all.near = std::min(all.near, r.near);
         all.far = std::max(all.far, r.far);
         all.rowOffset = std::fmax(all.rowOffset, r.rowOffset);
         all.seconds += r.seconds;
     }
+    all.typicalSigma /= known;
     return all;
 }
 

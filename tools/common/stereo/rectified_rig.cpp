@@ -68,6 +68,10 @@ void RectifiedRig::findDisparities()
         }
     minDisparity_ = cvFloor(least) - 1;
     disparities_ = cvCeil((most + 1 - minDisparity_)/16)*16;
+    const int LARGEST = 2047;       // that cv::StereoSGBM can say, in 16 bits of which 4 are fractions
+    if (minDisparity_ < -LARGEST || minDisparity_ + disparities_ > LARGEST)
+        throw Failure(cv::format("disparities would be from %d to %d pixels, and cv::StereoSGBM knows up to %d: make images and "
+                                 "calibration half as large", minDisparity_, minDisparity_ + disparities_, LARGEST));
 }
 
 } // namespace tools

@@ -433,7 +433,7 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
 
 Each camera is replaced by a pinhole at its *virtual centre*, a point of the axis through its centre of projection along the
 window's normal, that is chosen so that over depthRange the rows of both new images differ least; on one plane in the middle
-of it, z = 2/(1/near + 1/far), they agree exactly. With maps for that plane any matcher finds most of the scene; with maps for
+of it, z = 2/(1/near + 1/far) in the rectified frame, they agree exactly. With maps for that plane any matcher finds most of the scene; with maps for
 the depths that it found (refractiveRectifiedDepth) rows agree everywhere. refractiveReprojectImageTo3D is exact whatever the
 rows do.
 
@@ -453,9 +453,11 @@ virtual centres (and, as calib3d has it, in P2 the base line).
 @param Q 4x4, (x, y, disparity, 1) -> rectified frame, for cv::reprojectImageTo3D: nearly right on maps for a plane, right on
 maps for a depth per pixel.
 @param flags RECTIFY_ZERO_DISPARITY or 0.
-@param alpha as cv::stereoRectify: 0 all new pixels are valid, 1 no raw pixel is lost, negative: neither is asked for.
+@param alpha as cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative: neither is
+asked for.
 @param newImageSize of the new images; Size(): imageSize.
-@param validPixROI1 rectangle of the new image 1 in which all pixels are valid.
+@param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty behind a lens so wide
+that a border of the raw image has no place in the new one.
 @param validPixROI2 the same of the new image 2.
 @return RMS and largest difference of rows (columns, if the cameras stand one above the other) over the common view and
 depthRange with maps for the plane, in pixels.
@@ -484,7 +486,8 @@ image's size, CV_32F or CV_64F, with the z of each new pixel. All in the rectifi
 in initRefractiveUndistortRectifyMap.
 @param R R1 or R2 of refractiveStereoRectify.
 @param P P1 or P2.
-@param T translation camera 1 -> camera; empty for camera 1.
+@param T translation camera 1 -> camera for camera 2; empty for camera 1. P knows where the pinhole is, only T where the camera
+is: left out for camera 2, it gives a map that is wrong by the base line.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
 @param map1 first map; pixels with no answer, as those whose depth is NaN, map to (-1, -1).
@@ -500,7 +503,7 @@ CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputA
 /** @brief From a first disparity, which may be coarse and have gaps, to a smooth depth of every pixel of both rectified images,
 for the maps of a second pass.
 @param disparity of the new image 1, or of both new images made smaller by one factor; CV_8U, CV_16S, CV_32S or CV_32F, in its
-own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN: unknown.
+own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN or infinite: unknown.
 @param P1 of the full size.
 @param P2 of the full size.
 @param size full size.
@@ -516,7 +519,7 @@ CV_EXPORTS_W void refractiveRectifiedDepth(InputArray disparity, InputArray P1, 
 Rectified pixels are taken back to the raw ones and these triangulated (triangulateRefractive), so that what the rectification
 left of row errors has no part in the result.
 
-@param disparity of the new image 1; types as cv::reprojectImageTo3D, without fractional bits. NaN: none.
+@param disparity of the new image 1; types as cv::reprojectImageTo3D, without fractional bits. NaN or infinite: none.
 @param _3dImage points of the rectified frame, three channels; multiply by R1's inverse for the frame of camera 1. NaN where
 there is none.
 @param camera1 lens and window of camera 1.
@@ -554,7 +557,8 @@ CV_EXPORTS_W void refractiveReprojectImageTo3D(InputArray disparity, OutputArray
 @param handleMissingValues as above.
 @param ddepth as above.
 @param status as above.
-@param disparitySigma standard deviation of the disparity, one number or one per pixel.
+@param disparitySigma standard deviation of the disparity, one number or one per pixel; the pixel of image 1 is the one that was
+asked, so that the error is along its line of sight. NaN: unknown, and so is the covariance.
 @param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
 @param covariance 9 channels CV_64F: the 3x3 covariance of each point row by row, rectified frame.
 */

@@ -13,7 +13,10 @@ Disparity::Disparity(InputArray disparity, bool handleMissingValues)
         CV_Error_(Error::StsUnsupportedFormat, ("disparity is %s; it must be CV_8UC1, CV_16SC1, CV_32SC1 or CV_32FC1",
                                                 typeToString(type).c_str()));
     disparity.getMat().convertTo(image_, CV_32F);
-    if (!handleMissingValues || image_.empty())
+    if (image_.empty())
+        return;
+    image_.setTo(std::numeric_limits<float>::quiet_NaN(), cv::abs(image_) > FLT_MAX);
+    if (!handleMissingValues)
         return;
     float least = std::numeric_limits<float>::infinity();
     for (int y = 0; y < image_.rows; y++)

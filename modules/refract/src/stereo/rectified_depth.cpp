@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "stereo/disparity.hpp"
-#include "points/map.hpp"
+#include "stereo/rectified_projection.hpp"
 #include "opencv2/imgproc.hpp"
 
 /* From a first, coarse disparity with gaps to the depth of every pixel of both rectified images, for maps that leave next to no
@@ -17,34 +17,22 @@ namespace {
 
 const int CELL = 4;     // pixels of the disparity
 
-//! What P1 and P2 say of a pair: disparity = focal base/z + shift.
+//! What P1 and P2 say of a pair: disparity = focal base/z + shift, z from the pinholes.
 struct Geometry
 {
     Geometry(InputArray P1, InputArray P2)
     {
-        const Matx34d first = read(P1, "P1"), second = read(P2, "P2");
-        focal = first(0, 0);
-        const Vec3d c1 = centreOf(first), c2 = centreOf(second), between = c2 - c1;
-        axis = std::abs(between[0]) >= std::abs(between[1]) ? 0 : 1;
-        base = between[axis];
-        shift = first(axis, 2) - second(axis, 2);
-        centreZ = c1[2];
+        const RectifiedProjection first(P1, "P1"), second(P2, "P2");
+        axis = axisOf(first, second);
+        focal = first.K(0, 0);
+        base = (second.centre - first.centre)[axis];
+        shift = first.K(axis, 2) - second.K(axis, 2);
+        centreZ = first.centre[2];
         if (base == 0)
             CV_Error(Error::StsBadArg, "P1 and P2 are those of one pinhole");
     }
     double focal, base, shift, centreZ;
     int axis;
-
-private:
-    static Matx34d read(InputArray P, const char* name)
-    {
-        const std::vector<double> p = readNumbers(P, name);
-        if (p.size() != 12)
-            CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 3x4", name, (int)p.size()));
-        return Matx34d(p.data());
-    }
-    static Vec3d centreOf(const Matx34d& P)
-    { return -(inverseCameraMatrix(P.get_minor<3, 3>(0, 0), "P")*Vec3d(P(0, 3), P(1, 3), P(2, 3))); }
 };
 
 //! The median of each cell that a quarter of its pixels have a value of; else 0.
@@ -72,19 +60,35 @@ Mat cellMedians(const Mat& inverse)
     return cells;
 }
 
-//! What is not positive gets the mean of its neighbours, from the borders inwards.
+/* What is unknown (weight 0, else 1) gets what its surroundings, as large as it takes, are in the mean. Something is known. */
+void fillUnknown(Mat& values, const Mat& weight)
+{
+    const Mat unknown = weight == 0;
+    if (countNonZero(unknown) == 0)
+        return;
+    const Size half((values.cols + 1)/2, (values.rows + 1)/2);
+    Mat coarse, share, wide;
+    resize(values.mul(weight), coarse, half, 0, 0, INTER_AREA);
+    resize(weight, share, half, 0, 0, INTER_AREA);
+    const Mat isKnown = share > 0;
+    coarse /= share;
+    coarse.setTo(0, ~isKnown);
+    isKnown.convertTo(share, CV_32F, 1./255);
+    fillUnknown(coarse, share);
+    resize(coarse, wide, values.size(), 0, 0, INTER_LINEAR);
+    wide.copyTo(values, unknown);
+}
+
+//! What is not positive is unknown.
 void fill(Mat& cells)
 {
-    if (countNonZero(cells > 0) == 0)
+    const Mat isKnown = cells > 0;
+    if (countNonZero(isKnown) == 0)
         CV_Error(Error::StsBadArg, "disparity: no part of it has values enough to tell a depth from");
-    for (Mat known = cells > 0; countNonZero(known) < (int)known.total(); known = cells > 0)
-    {
-        Mat sum, count, one;
-        known.convertTo(one, CV_32F, 1./255);
-        boxFilter(cells, sum, CV_32F, Size(3, 3), Point(-1, -1), false, BORDER_CONSTANT);
-        boxFilter(one, count, CV_32F, Size(3, 3), Point(-1, -1), false, BORDER_CONSTANT);
-        Mat(sum/count).copyTo(cells, (count > 0) & ~known);
-    }
+    Mat weight;
+    isKnown.convertTo(weight, CV_32F, 1./255);
+    cells.setTo(0, ~isKnown);
+    fillUnknown(cells, weight);
 }
 
 void smooth(Mat& cells)
@@ -94,7 +98,7 @@ void smooth(Mat& cells)
     GaussianBlur(median, cells, Size(), 1, 1, BORDER_REPLICATE);
 }
 
-//! The same surface as the other image sees it; pixelsOf: disparity in cells of a unit of inverse distance.
+//! The same surface as the other image sees it; disparity, in cells, is perUnit times the inverse distance + shift.
 Mat inOtherImage(const Mat& cells, double perUnit, double shift, int axis)
 {
     Mat other = Mat::zeros(cells.size(), CV_32F);
@@ -103,6 +107,8 @@ Mat inOtherImage(const Mat& cells, double perUnit, double shift, int axis)
         {
             const float value = cells.at<float>(y, x);
             const double place = (axis == 0 ? x : y) - (perUnit*value + shift);
+            if (!(std::abs(place) < 2*std::max(cells.cols, cells.rows)))
+                continue;
             for (int k = cvFloor(place); k <= cvFloor(place) + 1; k++)
             {
                 const Point p = axis == 0 ? Point(k, y) : Point(x, k);
@@ -118,10 +124,9 @@ void writeDepth(const Mat& cells, double scale, double centreZ, Size size, Outpu
 {
     if (!depth.needed())
         return;
-    // The last cells may reach beyond the image.
-    const Size covered(cvRound(cells.cols*CELL/scale), cvRound(cells.rows*CELL/scale));
-    Mat inverse, result;
-    resize(cells, inverse, covered, 0, 0, INTER_LINEAR);
+    Mat more, inverse, result;      // one cell more than the image may need, whatever was rounded
+    copyMakeBorder(cells, more, 0, 1, 0, 1, BORDER_REPLICATE);
+    resize(more, inverse, Size(), CELL/scale, CELL/scale, INTER_LINEAR);
     divide(1., inverse(Rect(Point(), size)), result);
     result += centreZ;
     result.copyTo(depth);

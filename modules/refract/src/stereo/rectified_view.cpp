@@ -6,31 +6,28 @@
 
 namespace cv { namespace refract {
 
-//! P = (K, p), both of a 3x4 array.
-static Matx34d readP(InputArray P, const char* name)
+//! What the view is to show, if not a depth for each pixel.
+static Vec4d planeOf(InputArray depth, Size size, bool isNeeded, const char* name)
 {
-    const std::vector<double> p = readNumbers(P, name);
-    if (p.size() != 12 || P.getMat().channels() != 1 || P.getMat().rows != 3)
-        CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 3x4, as refractiveStereoRectify gives it", name, (int)p.size()));
-    return Matx34d(p.data());
+    if (depth.total() > 4)
+        CV_Error_(Error::StsBadSize, ("%s is %dx%d %s; it must be one number (z), four (a plane), or CV_32F or CV_64F of the "
+                                      "rectified image's size %dx%d", name, depth.cols(), depth.rows(),
+                                      typeToString(depth.type()).c_str(), size.width, size.height));
+    return scenePlane(depth, isNeeded, name);
 }
 
 RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
                              const Names& names)
-    : R_(readRotation(R, names.R)), pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
+    : R_(readRotation(R, names.R)), projection_(P, names.P), pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
 {
-    const Matx34d p = readP(P, names.P);
-    K_ = p.get_minor<3, 3>(0, 0);
-    const Matx33d inverse = inverseCameraMatrix(K_, names.P);
-    centre_ = -(inverse*Vec3d(p(0, 3), p(1, 3), p(2, 3)));
     const Vec3d t = T.empty() ? Vec3d() : readVec3(T, "T");
-    pinhole_.newToCamera = R_.t()*inverse;
-    pinhole_.centre = R_.t()*centre_ + t;
+    pinhole_.newToCamera = R_.t()*projection_.inverseK;
+    pinhole_.centre = R_.t()*projection_.centre + t;
     Vec4d plane(0, 0, 1, 0);
     if (!depth.empty() && depth.size() == size && (depth.type() == CV_32F || depth.type() == CV_64F) && size.area() > 1)
         depths_ = depth.getMat();
     else
-        plane = scenePlane(depth, camera.refracts(), names.depth);
+        plane = planeOf(depth, size, camera.refracts(), names.depth);
     const Vec3d normal = R_.t()*Vec3d(plane[0], plane[1], plane[2]);
     shift_ = normal.dot(t);
     pinhole_.plane = Vec4d(normal[0], normal[1], normal[2], plane[3] + shift_);
@@ -55,10 +52,12 @@ static double between(const Mat& depths, double x, double y)
     if (!(x >= 0 && y >= 0 && x <= depths.cols - 1 && y <= depths.rows - 1))
         return std::numeric_limits<double>::quiet_NaN();
     const int column = (int)x, row = (int)y, right = column + 1 < depths.cols, below = row + 1 < depths.rows;
-    const double a = x - column, b = y - row;
+    // A pixel that has no part in the answer may be NaN.
+    const auto mix = [](double first, double second, double part) { return part == 0 ? first : (1 - part)*first + part*second; };
     const T* p = depths.ptr<T>(row) + column;
     const T* q = depths.ptr<T>(row + below) + column;
-    return (1 - b)*((1 - a)*p[0] + a*p[right]) + b*((1 - a)*q[0] + a*q[right]);
+    const double a = x - column;
+    return mix(mix(p[0], p[right], a), mix(q[0], q[right], a), y - row);
 }
 
 void RectifiedView::interpolate(int n, const double* x, const double* y, double* planeD) const

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_RECTIFIED_VIEW_HPP
 
 #include "points/map.hpp"
+#include "stereo/rectified_projection.hpp"
 
 namespace cv { namespace refract {
 
@@ -36,13 +37,11 @@ public:
     void interpolate(int n, const double* x, const double* y, double* planeD) const;
 
     const Matx33d& R() const { return R_; }
-    //! P = K [I, -centre]
-    const Matx33d& K() const { return K_; }
-    const Vec3d& centre() const { return centre_; }
+    const RectifiedProjection& projection() const { return projection_; }
 
 private:
-    Matx33d R_, K_;
-    Vec3d centre_;
+    Matx33d R_;
+    RectifiedProjection projection_;
     Mat depths_;
     double shift_;          //!< depth -> d of the plane z = depth in the frame of the camera
     PinholeView pinhole_;

@@ -72,24 +72,24 @@ struct NewBorders
     NewBorders(const StereoPair& pair, const VirtualPair& v, Size imageSize, double depth)
     {
         const Border border(imageSize);
-        for (int i = 0; i < 4; i++)
+        const std::vector<Point2d> centre = { Point2d((imageSize.width - 1)/2., (imageSize.height - 1)/2.) };
+        for (int c = 0; c < 2; c++)
         {
-            sides[0][i] = normalized(pair.camera1, border.sides[i], v.R1, Vec3d(), v.centre1, depth);
-            sides[1][i] = normalized(pair.camera2, border.sides[i], v.R2, pair.T, v.centre2, depth);
-            for (int c = 0; c < 2; c++)
-                if (sides[c][i].empty())
-                    CV_Error_(Error::StsBadArg, ("a border of the image of camera%d sees nothing that a pinhole could show: "
-                                                 "its lens is too wide, or imageSize %dx%d not its own", c + 1,
-                                                 imageSize.width, imageSize.height));
+            const auto shown = [&](const std::vector<Point2d>& pixels)
+            { return c == 0 ? normalized(pair.camera1, pixels, v.R1, Vec3d(), v.centre1, depth)
+                            : normalized(pair.camera2, pixels, v.R2, pair.T, v.centre2, depth); };
+            const std::vector<Point2d> found = shown(centre);
+            if (found.empty())
+                CV_Error_(Error::StsBadArg, ("R, T: camera%d looks along the line between both, or away from the scene", c + 1));
+            middle[c] = found[0];
+            for (int i = 0; i < 4; i++)
+                sides[c][i] = shown(border.sides[i]);
         }
-        const std::vector<Point2d> pixel = { Point2d((imageSize.width - 1)/2., (imageSize.height - 1)/2.) };
-        const std::vector<Point2d> middle1 = normalized(pair.camera1, pixel, v.R1, Vec3d(), v.centre1, depth),
-                                   middle2 = normalized(pair.camera2, pixel, v.R2, pair.T, v.centre2, depth);
-        if (middle1.empty() || middle2.empty())
-            CV_Error(Error::StsBadArg, "R, T: a camera looks along the line between both");
-        middle[0] = middle1[0];
-        middle[1] = middle2[0];
     }
+
+    //! False: a side sees nothing that a pinhole could show.
+    bool isComplete(int c) const
+    { return std::none_of(sides[c], sides[c] + 4, [](const std::vector<Point2d>& side) { return side.empty(); }); }
 
     //! Inside of all sides.
     Rect2d inner(int c) const
@@ -152,6 +152,10 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
         double covers = 0, fits = DBL_MAX;
         for (int c = 0; c < 2; c++)
         {
+            if (!borders.isComplete(c))
+                CV_Error_(Error::StsBadArg, ("alpha is %g: a border of the image of camera%d sees nothing that a pinhole could "
+                                             "show; its lens is too wide, or imageSize %dx%d not its own. Leave alpha negative",
+                                             wishes.alpha, c + 1, wishes.imageSize.width, wishes.imageSize.height));
             covers = std::max(covers, scaleTo(borders.inner(c), result.focal, p[c], size, true));
             fits = std::min(fits, scaleTo(borders.outer(c), result.focal, p[c], size, false));
         }
@@ -261,11 +265,13 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
         Mat(v.R2).copyTo(R2);
         projectionMatrix(focal, cameras.principal[0], v.centre1).copyTo(P1);
         projectionMatrix(focal, cameras.principal[1], v.centre2).copyTo(P2);
-        disparityToPoint(cameras, v).copyTo(Q);
+        if (Q.needed())
+            disparityToPoint(cameras, v).copyTo(Q);
         Rect* const rois[] = { validPixROI1, validPixROI2 };
         for (int c = 0; c < 2; c++)
             if (rois[c])
-                *rois[c] = validPixels(borders.inner(c), focal, cameras.principal[c], wishes.newImageSize);
+                *rois[c] = borders.isComplete(c) ? validPixels(borders.inner(c), focal, cameras.principal[c], wishes.newImageSize)
+                                                 : Rect();
     }
     return sizeOf(samples.differences(v, depth), focal);
 }

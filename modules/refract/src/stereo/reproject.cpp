@@ -23,8 +23,9 @@ struct RectifiedPair
     double enough;          //!< see refineBlock
 
     //! disparity = perInverse()/distance from the pinholes + shift()
-    double perInverse() const { return first.K()(0, 0)*(second.centre() - first.centre())[axis]; }
-    double shift() const { return first.K()(axis, 2) - second.K()(axis, 2); }
+    double perInverse() const
+    { return first.projection().K(0, 0)*(second.projection().centre - first.projection().centre)[axis]; }
+    double shift() const { return first.projection().K(axis, 2) - second.projection().K(axis, 2); }
 };
 
 //! A run of pixels of one row that have a disparity.
@@ -103,8 +104,8 @@ private:
         const double LEAST = 2;     // pixels of disparity, beside which what pinholes leave is small
         const RectifiedView& first = rectified_.first;
         const double perInverse = rectified_.perInverse(), shift = rectified_.shift();
-        const Matx33d turn = first.R().t(), toDirection = turn*first.K().inv();
-        const Vec3d centre = turn*first.centre();
+        const Matx33d turn = first.R().t(), toDirection = turn*first.projection().inverseK;
+        const Vec3d centre = turn*first.projection().centre;
         double distance[BLOCK];
         double *x = run.pairs.x, *y = run.pairs.y, *z = run.pairs.z;
         for (int i = 0; i < run.size; i++)
@@ -175,12 +176,13 @@ Mat readSigma(InputArray sigma, Size size)
 {
     Mat values;
     sigma.getMat().convertTo(values, CV_64F);
-    const bool isScalar = values.total() == 4 && values.size() != size && countNonZero(values) <= 1 && values.at<double>(0) != 0;
-    if (values.channels() != 1 || !(values.total() == 1 || isScalar || values.size() == size))
+    const bool isPython = values.total() == 4 && values.size() != size && values.reshape(1, 1).at<double>(1) == 0 &&
+                          values.reshape(1, 1).at<double>(2) == 0 && values.reshape(1, 1).at<double>(3) == 0;
+    if (values.channels() != 1 || !(values.total() == 1 || isPython || values.size() == size))
         CV_Error_(Error::StsBadSize, ("disparitySigma is %dx%d; it must be one number, or one for each pixel of disparity (%dx%d)",
                                       values.cols, values.rows, size.width, size.height));
-    if (!checkRange(values, true, NULL, 0, DBL_MAX))
-        CV_Error(Error::StsOutOfRange, "disparitySigma must not be negative anywhere, nor NaN");
+    if (countNonZero(values < 0) > 0)
+        CV_Error(Error::StsOutOfRange, "disparitySigma must not be negative anywhere");
     return values.size() == size ? values : values.reshape(1, (int)values.total()).row(0).clone();
 }
 
@@ -191,6 +193,12 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
 {
     const Disparity disparity(disparity_, handleMissingValues);
     const Size size = disparity.size();
+    if (size.empty())
+    {
+        for (const _OutputArray* output : { &_3dImage, &status_, &covariance_ })
+            output->release();
+        return;
+    }
     const Camera& cam1 = cameraOf(camera1, "camera1");
     const Camera& cam2 = cameraOf(camera2, "camera2");
     if (ddepth == -1)
@@ -200,8 +208,7 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
     RectifiedPair rectified = { StereoPair(cam1, cam2, R, T), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
                                 RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0, 0 };
     checkRectification(rectified.first.R(), rectified.second.R(), rectified.pair.R);
-    const Vec3d base = rectified.second.centre() - rectified.first.centre();
-    rectified.axis = std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
+    rectified.axis = axisOf(rectified.first.projection(), rectified.second.projection());
     rectified.enough = ddepth == CV_32F ? 1e-2 : 0;     // of which a thousandth is left, below the rounding of what is stored
     const PointCovariance pointCovariance(rectified.pair, calibrationCovariance);
     const Reprojector reprojector(rectified, sigma ? &pointCovariance : NULL, sigma ? readSigma(*sigma, size) : Mat());
@@ -212,8 +219,7 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
     points.setTo(none);
     if (sigma)
     {
-        covariance_.create(size, CV_64FC(9));
-        covariance = covariance_.getMat();
+        covariance.create(size, CV_64FC(9));
         covariance.reshape(1).setTo(none);
     }
     parallel_for_(Range(0, size.height), [&](const Range& range)
@@ -223,6 +229,8 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
     });
     if (status_.needed())
         status.copyTo(status_);
+    if (sigma && covariance_.needed())
+        covariance.copyTo(covariance_);
 }
 
 } // namespace

@@ -79,8 +79,9 @@ RowSamples::RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& dept
                 }
         }
     if (rays1_.empty())
-        CV_Error_(Error::StsBadArg, ("depthRange is (%g, %g): both cameras together see no point of it beyond their windows",
-                                     depthRange[0], depthRange[1]));
+        CV_Error_(Error::StsBadArg, ("depthRange is (%g, %g): both cameras together see no point of it%s",
+                                     depthRange[0], depthRange[1],
+                                     first.refracts() || second.refracts() ? " beyond their windows" : ""));
 }
 
 //! The row (column) in which the pinhole at the centre shows where a ray meets the plane z = depth; rectified frame.
