@@ -83,6 +83,7 @@ int main(int argc, char** argv)
     addPointRows(rows, count);
     addPairRows(rows, count);
     addCallRows(rows, count);
+    addStereoRows(rows);
     addCalibrationRows(rows);
     std::printf("instructions: %s, points: %d, rounds: %d, ns per point\n", instructions().c_str(), count, rounds);
     std::printf("%-39s %-30s%10s%10s%10s%10s%10s%10s%10s%10s%10s %-12s answers\n", "work", "peer (without window)", "ours", "peer",

@@ -15,6 +15,8 @@ void addPointRows(std::vector<Row>& rows, int count);
 void addPairRows(std::vector<Row>& rows, int count);
 //! Whole images, one point a call, float32, two threads.
 void addCallRows(std::vector<Row>& rows, int count);
+//! Dense stereo of a pair of images.
+void addStereoRows(std::vector<Row>& rows);
 //! Calibration of 50 pairs.
 void addCalibrationRows(std::vector<Row>& rows);
 
