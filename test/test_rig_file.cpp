@@ -15,7 +15,7 @@ namespace {
 struct Rig
 {
     std::vector<Ptr<RefractiveCamera> > cameras;
-    std::vector<Matx33d> Rs;
+    std::vector<Mat> Rs;
     std::vector<Vec3d> Ts;
     std::vector<int> windows;
     Mat covariance;
@@ -30,7 +30,7 @@ Rig makeRig(int count, Random& random)
         rig.cameras.push_back(makeCamera(allLenses()[c%allLenses().size()],
                                          makeWindow(allWindows()[c%allWindows().size()], random)));
         rig.cameras[c]->setImageSize(Size(1280 + c, 1024));
-        Matx33d R;
+        Mat R;
         Rodrigues(c ? random.vector(0.5) : Vec3d(), R);
         rig.Rs.push_back(R);
         rig.Ts.push_back(c ? random.vector(300) : Vec3d());
@@ -62,13 +62,14 @@ void checkSame(const Rig& a, const Rig& b)
         CHECK(a.cameras[c]->lensModel() == b.cameras[c]->lensModel());
         CHECK(a.cameras[c]->imageSize() == b.cameras[c]->imageSize());
         CHECK(largestDifference(a.cameras[c]->lensParameters(), b.cameras[c]->lensParameters()) == 0);
-        CHECK(norm(a.cameras[c]->window().normal - b.cameras[c]->window().normal) == 0);
+        CHECK(norm(a.cameras[c]->window().normal - b.cameras[c]->window().normal) < 1e-15);     // it is normalised
         CHECK(a.cameras[c]->window().thickness == b.cameras[c]->window().thickness);
-        CHECK(norm(a.Rs[c] - b.Rs[c]) < 1e-15);     // the nearest rotation is taken
+        CHECK(norm(a.Rs[c], b.Rs[c]) < 1e-15);     // the nearest rotation is taken
         CHECK(norm(a.Ts[c] - b.Ts[c]) == 0);
     }
     CHECK(a.windows == b.windows);
-    CHECK(largestDifference(a.covariance, b.covariance) == 0);
+    REQUIRE(a.covariance.size() == b.covariance.size());
+    CHECK((a.covariance.empty() || norm(a.covariance, b.covariance, NORM_INF) == 0));
 }
 
 std::string contentsOf(const std::string& path)
@@ -128,7 +129,7 @@ TEST_CASE("A rig's file is what RefractiveCamera::read and FileStorage read", "[
         Mat R, T;
         fs["R" + own] >> R;
         fs["T" + own] >> T;
-        CHECK((c == 0 || norm(R, Mat(rig.Rs[c])) < 1e-15));
+        CHECK((c == 0 || norm(R, rig.Rs[c]) < 1e-15));
         CHECK((c == 0 || norm(T, Mat(rig.Ts[c])) == 0));
     }
     CHECK(fs["R1"].empty());
@@ -148,25 +149,25 @@ TEST_CASE("Rigs that the tools and mrcal write are read", "[rig_file]")
     Mat R, T;
     fs["R"] >> R;
     fs["T"] >> T;
-    CHECK(norm(Mat(rig.Rs[1]), R) < 1e-15);
+    CHECK(norm(rig.Rs[1], R) < 1e-15);
     CHECK(norm(Mat(rig.Ts[1]), T) == 0);
-    CHECK(norm(rig.Rs[0] - Matx33d::eye()) + norm(rig.Ts[0]) == 0);
+    CHECK(norm(rig.Rs[0], Mat::eye(3, 3, CV_64F)) + norm(rig.Ts[0]) == 0);
     CHECK(largestDifference(rig.cameras[1]->lensParameters(), RefractiveCamera::read(path, "camera2")->lensParameters()) == 0);
 
     const TemporaryFile mrcal(".cameramodel", "{ 'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [ 1, 2, 3, 4 ] }");
     CHECK(readAll(mrcal.path).cameras.at(0)->lensModel() == "LENSMODEL_PINHOLE");
-    CHECK(norm(readAll(mrcal.path).Rs.at(0) - Matx33d::eye()) == 0);
+    CHECK(norm(readAll(mrcal.path).Rs.at(0), Mat::eye(3, 3, CV_64F)) == 0);
 }
 
 TEST_CASE("R and T may be lists and rotation vectors, as written by hand", "[rig_file]")
 {
     const TemporaryFile file(".yml", THREE);
     const Rig rig = readAll(file.path);
-    Matx33d R;
+    Mat R;
     Rodrigues(Vec3d(0, 0.1, 0), R);
     REQUIRE(rig.cameras.size() == 3);
-    CHECK(norm(rig.Rs[1] - R) < 1e-15);
-    CHECK(rig.Rs[2](2, 1) == 1);
+    CHECK(norm(rig.Rs[1], R) < 1e-15);
+    CHECK(rig.Rs[2].at<double>(2, 1) == 1);
     CHECK(rig.Ts[2] == Vec3d(5, 6, 7));
     CHECK(rig.windows.empty());
     CHECK(rig.covariance.empty());
@@ -215,12 +216,11 @@ TEST_CASE("A rig's file cut anywhere is read or refused by name; what is read is
         CAPTURE(suffix, length);
         const TemporaryFile cut(suffix, text.substr(0, length));
         std::vector<Ptr<RefractiveCamera> > cameras;
-        std::vector<Matx33d> Rs;
-        std::vector<Vec3d> Ts;
+        std::vector<Mat> Rs, Ts;
         try { readRig(cut.path, cameras, Rs, Ts); }
         catch (const cv::Exception& e) { CHECK_THAT(e.what(), Contains(cut.path)); continue; }
         for (size_t c = 0; c < cameras.size(); c++)
-            CHECK(norm(Rs[c] - rig.Rs[c]) < 1e-15);
+            CHECK(norm(Rs[c], rig.Rs[c]) < 1e-15);
     }
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("A rig that cannot be written is named and leaves what was there", "[r
     bad.Ts[0][2] = 3;
     CHECK_THAT(refused(bad), Contains("Ts[0]") && Contains("3"));
     bad = rig;
-    bad.Rs[1] = bad.Rs[1]*2;
+    bad.Rs[1] = Mat(rig.Rs[1]*2);
     CHECK_THAT(refused(bad), Contains("Rs[1] is not a rotation"));
     bad = rig;
     bad.windows = { 0 };
@@ -258,6 +258,7 @@ TEST_CASE("A rig that cannot be written is named and leaves what was there", "[r
     bad.covariance = Mat::eye(3, 3, CV_64F);
     CHECK_THAT(refused(bad), Contains("covariance is 3x3"));
     bad = rig;
+    bad.covariance = rig.covariance.clone();
     bad.covariance.at<double>(1, 1) = NaN;
     CHECK_THAT(refused(bad), Contains("covariance"));
     CHECK_THAT(refused(Rig()), Contains("cameras is empty"));

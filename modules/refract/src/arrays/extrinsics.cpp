@@ -42,28 +42,23 @@ std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfAr
     return extrinsics;
 }
 
-static void writeList(const std::vector<Mat>& items, OutputArrayOfArrays list)
-{
-    if (!list.needed())
-        return;
-    list.create((int)items.size(), 1, CV_64F);
-    for (int c = 0; c < (int)items.size(); c++)
-    {
-        list.create(items[c].size(), CV_64F, c, true);
-        items[c].copyTo(list.getMat(c));
-    }
-}
-
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts)
 {
-    std::vector<Mat> R, T;
-    for (const RigidTransform& camera : extrinsics)
+    const int count = (int)extrinsics.size();
+    if (Rs.needed() && !Rs.isMatVector())
+        CV_Error(Error::StsBadArg, "Rs must be a std::vector<Mat>");
+    if (Rs.needed())
+        Rs.create(count, 1, CV_64F);
+    std::vector<Vec3d> T;
+    for (int c = 0; c < count; c++)
     {
-        R.push_back(Mat(camera.R, true));
-        T.push_back(Mat(camera.T, true));
+        T.push_back(extrinsics[c].T);
+        if (!Rs.needed())
+            continue;
+        Rs.create(3, 3, CV_64F, c, true);
+        Mat(extrinsics[c].R).copyTo(Rs.getMat(c));
     }
-    writeList(R, Rs);
-    writeList(T, Ts);
+    writeVectors(T, Ts);
 }
 
 }} // namespace

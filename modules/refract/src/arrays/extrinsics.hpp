@@ -24,7 +24,7 @@ String numbered(const char* name, int i);
 rounding; it is exact in the result. */
 std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 
-//! As they are read; whatever is not wanted is left out.
+//! 3x3 and 3x1 CV_64F; whatever is not wanted is left out.
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts);
 
 }} // namespace
