@@ -52,14 +52,15 @@ enum RefractiveStatus {
     REFRACT_TOTAL_REFLECTION = 4,   //!< no light gets from there to here: total reflection in some layer
     REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
-    REFRACT_PARALLEL_RAYS = 7,      //!< the two rays, or the ray and the plane, are parallel
-    REFRACT_NO_INTERSECTION = 8     //!< the two rays come closest, or the ray meets the plane, behind an origin
+    REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, are parallel
+    REFRACT_NO_INTERSECTION = 8,    //!< the rays come closest, or the ray meets the plane, behind an origin
+    REFRACT_TOO_FEW_VIEWS = 9       //!< fewer than two cameras saw the point
 };
 
 //! Flags of triangulateRefractive
 enum TriangulateFlags {
-    TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in both images
-    TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
+    TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in all images
+    TRIANGULATE_MIDPOINT = 1        //!< least squared distance from all rays; of two, the midpoint of the shortest segment
 };
 
 //! Flags of refractiveStereoRectify
@@ -469,6 +470,42 @@ CV_EXPORTS_W void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, co
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputArray R, InputArray T, InputArray points1, InputArray points2,
+        OutputArray points3D, OutputArray status, int flags,
+        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+
+/** @brief Triangulates points seen by any number of cameras, each behind its own window, several behind one, or none.
+@param cameras lens and window of each.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+@param Ts 3x1 translation, as Rs; the first is 0.
+@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than two cameras saw the point. A pixel that
+was seen must have a ray: the reason of the first one that has none is the point's.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+
+Of two cameras, the same as triangulateRefractive for two. Wrong matches are not looked for: one among many cameras moves the
+point.
+*/
+CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
+        OutputArray points3D, OutputArray status = noArray(), int flags = 0);
+
+/** @brief triangulateRefractive for any number of cameras, with the covariance of each point.
+@param cameras lens and window of each.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+@param Ts 3x1 translation, as Rs; the first is 0.
+@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+@param pixelSigma standard deviation of each pixel coordinate.
+@param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras, then
+rvec and T of each but the first; it is carried to the points.
+@param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
+*/
+CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
+        const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
         OutputArray points3D, OutputArray status, int flags,
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
 
