@@ -1,0 +1,52 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "points/pixel_block.hpp"
+
+namespace cv { namespace refract {
+
+uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images,
+                     std::vector<std::vector<double> >* parameters)
+{
+    images.errors.setZero();
+    images.byPoint.setZero();
+    for (int c = 0; c < (int)cameras.size(); c++)
+    {
+        if (!block.isSeen(c, i))
+            continue;
+        Vec2d pixel;
+        Matx23d J;
+        const uchar status = cameras[c].camera->projectJacobian(cameras[c].place.apply(X), pixel, J.val,
+                                                                parameters ? (*parameters)[c].data() : NULL);
+        if (status != REFRACT_OK)
+            return status;
+        J = J*cameras[c].place.R;
+        for (int k = 0; k < 2; k++)
+        {
+            images.errors[2*c + k] = pixel[k] - block.pixel(2*c + k)[i];
+            images.byPoint.row(2*c + k) << J(k, 0), J(k, 1), J(k, 2);
+        }
+    }
+    return REFRACT_OK;
+}
+
+void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n)
+{
+    for (int c = 0; c < (int)cameras.size(); c++)
+    {
+        const Layers& layers = cameras[c].camera->layers();
+        const RigidTransform& place = cameras[c].place;
+        // The last surface in the frame of camera 1.
+        const Vec3d normal = place.R.t()*layers.normal();
+        const double distance = layers.stack().total - layers.normal().dot(place.T);
+        for (int i = 0; i < n && layers.stack().refracts; i++)
+        {
+            const bool isBeyond = normal[0]*block.x[i] + normal[1]*block.y[i] + normal[2]*block.z[i] > distance;
+            if (!isBeyond && block.status[i] == REFRACT_OK && block.isSeen(c, i))
+                block.status[i] = REFRACT_BEHIND_WINDOW;
+        }
+    }
+}
+
+}} // namespace
