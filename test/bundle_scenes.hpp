@@ -111,11 +111,11 @@ inline void keepWhatAllSee(BundleScene& scene)
     scene = kept;
 }
 
-/** Arguments and results of one call. The start: the true lens; windows that look straight ahead, at nine tenths of their
-distance; R, T and the poses off by a degree and a hundredth of the range, but for the first pose, which stays. */
+/** Arguments and results of one call. The start: the true lens; windows that look straight ahead, at so much of their distance;
+R, T and the poses off by so many degrees and hundredths of the range, but for the first pose, which stays. off 0: the truth. */
 struct BundleCall
 {
-    BundleCall(const RigTruth& rig, const BundleScene& scene, Random& random, double off = 1)
+    BundleCall(const RigTruth& rig, const BundleScene& scene, Random& random, double off = 1, double distance = 1)
         : lengths(scene.lengths), windows(rig.windows)
     {
         const auto turned = [&](const cv::Vec3d& rvec) { return rvec + random.vector(off*CV_PI/180); };
@@ -124,8 +124,7 @@ struct BundleCall
             GlassWindow window = rig.cameras[c]->window();
             if (off > 0)
                 window.normal = cv::Vec3d(0, 0, 1);
-            if (window.innerIndex != window.outerIndex && off > 0)
-                window.distance *= 0.9;
+            window.distance *= distance;
             cameras.push_back(RefractiveCamera::create(rig.cameras[c]->cameraMatrix(), rig.cameras[c]->distCoeffs(), window));
             cv::Vec3d rvec;
             cv::Rodrigues(rig.Rs[c], rvec);

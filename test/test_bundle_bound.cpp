@@ -76,7 +76,7 @@ Attained attained(const Situation& s, int trials, int salt)
         BundleScene scene = s.cameras > 1 ? makeWandScene(rig, 40, random, SIGMA) : makeMovingScene(rig, 6, 40, random, SIGMA);
         keepWhatAllSee(scene);
         const BundleBound bound(rig, scene, s.free, SIGMA);
-        BundleCall call(rig, scene, random);
+        BundleCall call(rig, scene, random, 1, s.free & D ? 0.9 : 1);
         call.run((s.free & X ? GLASS_FREE_EXTRINSICS : 0) | (s.free & D ? GLASS_FREE_DISTANCE : 0) |
                  (s.free & T ? GLASS_FREE_THICKNESS : 0));
         for (int c = 0; c < s.cameras; c++)

@@ -95,7 +95,7 @@ private:
 bool BundleProblem::isAtMinimum()
 {
     const double NEGLIGIBLE = 1e-3;     // standard deviations
-    const double LEAST_SIGMA = 1e-6;    // px: perfect data end in rounding errors
+    const double LEAST_SIGMA = 1e-3;    // px: perfect data end in rounding errors, those of normal equations
     const double variance = freedom() > 0 ? squaredError()/freedom() : 0;
     return ReducedBundle(*this, false).stepLeft() < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
 }

@@ -263,7 +263,8 @@ void RigProblem::setObjectPoints(const std::vector<Point3d>& points)
 {
     for (RigImage& image : images_)
         for (size_t i = 0; i < image.points.index.size(); i++)
-            image.points.object[i] = points[image.points.index[i]];
+            if (std::isfinite(points[image.points.index[i]].x))     // derivatives are finite whatever the weight
+                image.points.object[i] = points[image.points.index[i]];
 }
 
 bool RigProblem::hasPriors() const

@@ -125,7 +125,7 @@ public:
     const double* knownPoseValues(int view) const { return knownPoses_[view].data(); }
     bool isAdjusted(int view) const { return isSeen_[view] && knowledgeOf(view) != PoseKnowledge::EXACT; }
     bool isUncertain(int view) const { return isSeen_[view] && knowledgeOf(view) == PoseKnowledge::UNCERTAIN; }
-    //! The scene that each view's target is, where it is not known: one for all views.
+    //! The scene that each view's target is, where it is not known: one for all views. NaN: that point has no weight.
     void setObjectPoints(const std::vector<Point3d>& points);
     PoseKnowledge::Kind knowledgeOf(int view) const { return known_.empty() ? PoseKnowledge::UNKNOWN : known_[view].kind; }
     bool hasPriors() const;             //!< poses or parameters known with a covariance
