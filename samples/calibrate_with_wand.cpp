@@ -63,7 +63,7 @@ static std::vector<Mat> waveWand(const Rig& rig, RNG& random)
 //! Prints truth and result; false if they are more than four standard deviations apart.
 static bool compare(const String& what, double truth, double found, double sigma)
 {
-    std::cout << format("%-26s %10.3f  found %10.3f +- %.3f\n", what.c_str(), truth, found, sigma);
+    std::cout << format("%-22s %9.4f  found %9.4f +- %.4f\n", what.c_str(), truth, found, sigma);
     return std::abs(found - truth) < 4*sigma;
 }
 

@@ -1,5 +1,6 @@
 // A robot carries a camera behind a window before a board that stays: cv::calibrateHandEye on the board's poses through the
-// window, then the window from all images and the robot's poses together. Both are simulated, with the robot's errors.
+// window, then the window from all images and the robot's poses together. Both are simulated, with the robot's errors. The +- takes
+// the hand-eye transform as exact: its own errors come on top.
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/affine.hpp>
@@ -111,7 +112,8 @@ int main()
     const Affine3d boardToBase(Vec3d(3, 0.1, 0.2), Vec3d(700, 50, 20));
     const Recording recording = record(truth, cameraToGripper, boardToBase, random);
 
-    // The start: a window straight ahead. Each round the hand-eye transform is that of the window found so far.
+    // The start: a window straight ahead, for which the hand-eye transform makes up as far as it can. So the two take turns
+    // until the window stays where it is.
     const Ptr<refract::RefractiveCamera> camera = refract::RefractiveCamera::create(K, D, straight);
     const std::vector<std::vector<Point3d> > targets(VIEWS, board());
     const double turn = ROBOT_RAD*ROBOT_RAD, move = ROBOT_MM*ROBOT_MM;
@@ -119,8 +121,11 @@ int main()
     Mat deviations;
     Affine3d eye;
     double rms = 0;
-    for (int round = 0; round < 4; round++)
+    double moved = 1;
+    int rounds = 0;
+    for (; rounds < 100 && moved > 1e-5; rounds++)
     {
+        const Vec3d before = camera->window().normal;
         const std::vector<Affine3d> seen = boardPoses(recording, camera);
         eye = handEye(recording.gripperToBase, seen);
         const Affine3d stand = meanBoard(recording, eye, seen);
@@ -136,11 +141,10 @@ int main()
                                          std::vector<Ptr<refract::RefractiveCamera> >(1, camera), std::vector<int>(), Rs, Ts,
                                          rvecs, tvecs, deviations, noArray(), noArray(), noArray(), noArray(), noArray(),
                                          refract::GLASS_USE_POSES, std::vector<Mat>(VIEWS, covariance));
-        std::cout << format("round %d: %.3f px RMS, normal (%.4f, %.4f, %.4f)\n", round + 1, rms, camera->window().normal[0],
-                            camera->window().normal[1], camera->window().normal[2]);
+        moved = norm(camera->window().normal - before);
     }
 
-    std::cout << "truth and result, with one standard deviation:\n";
+    std::cout << format("%d rounds, %.3f px RMS; truth and result, with one standard deviation:\n", rounds, rms);
     bool isGood = true;
     for (int i = 0; i < 2; i++)
     {
