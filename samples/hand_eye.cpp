@@ -1,6 +1,6 @@
 // A robot carries a camera behind a window before a board that stays: cv::calibrateHandEye on the board's poses through the
-// window, then the window from all images and the robot's poses together. Both are simulated, with the robot's errors. The +- takes
-// the hand-eye transform as exact: its own errors come on top.
+// window, then the window from all images and the robot's poses together. Both are simulated, with the robot's errors. The
+// +- takes the hand-eye transform as exact: its own errors come on top.
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/affine.hpp>

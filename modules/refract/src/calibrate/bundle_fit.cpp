@@ -36,6 +36,7 @@ public:
             CV_Error(Error::StsBadArg, "lengths has none between two points that are seen in two images or more, by rays "
                                        "that meet beyond the windows; nothing else tells the scale");
         checkFreedom();
+        approach();
         solve();
         if (usePointsThatStartedBadly())
             solve();
@@ -53,6 +54,7 @@ public:
 
 private:
     void checkFreedom() const;
+    void approach();
     void solve();
     bool usePointsThatStartedBadly();
     void graduate();
@@ -78,6 +80,22 @@ void BundleAdjustment::checkFreedom() const
         CV_Error_(Error::StsBadArg, ("points that are seen in two images or more give %d equations, with lengths and poses; %d "
                                      "fewer than are needed; take more points, or points that more images see",
                                      bundle_.equationCount(), 1 - bundle_.freedom()));
+}
+
+/** Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up for
+them, into other minima. */
+void BundleAdjustment::approach()
+{
+    const auto hold = [this](bool isHeld)
+    {
+        for (RigBlock& block : rig().blocks())
+            if (block.kind == RigBlock::MEDIA || block.kind == RigBlock::LENS)
+                for (size_t i = 0; i < block.isFree.size(); i++)
+                    block.isHeld[i] = isHeld && block.isFree[i];
+    };
+    hold(true);
+    bundle_.solve(TermCriteria(TermCriteria::COUNT, 20, 0), isRobust_ ? 1. : 0.);
+    hold(false);
 }
 
 //! Until lengths and poses are weighed against the pixels' own noise.
