@@ -3,7 +3,7 @@
 
 namespace bench {
 
-/** Table of whole bundle adjustments by the clock, all threads: time, memory, how far the windows are from the truth in their
+/** Table of whole bundle adjustments in processor time of all threads: time, memory, how far the windows are from the truth in their
 standard deviations. OpenCV has nothing to stand beside them. */
 void printBundles();
 

@@ -61,7 +61,7 @@ int main(int argc, char** argv)
     int count = 100000, rounds = 15;
     app.add_flag("--quick", quick, "few points, one round: a check of the answers only");
     app.add_flag("--growth", growth, "time against points, layers, incidence and views instead of the table");
-    app.add_flag("--bundles", bundles, "large bundle adjustments by the clock instead of the table");
+    app.add_flag("--bundles", bundles, "large bundle adjustments, processor time, instead of the table");
     app.add_option("--only", only, "rows whose key begins with this");
     app.add_option("--isa", isa, "the highest instruction set to use")->check(CLI::IsMember({ "baseline", "avx2", "avx512" }));
     app.add_option("--points", count, "points in an array")->check(CLI::PositiveNumber);

@@ -209,10 +209,11 @@ TEST_CASE("Wrong matches are found and left out", "[bundle]")
     robust.run(GLASS_FREE_EXTRINSICS | GLASS_ROBUST);
     for (const auto& w : wrong)
         CHECK(robust.inliers[w.first].at<uchar>(w.second) == 0);
-    int lost = 0;
+    int lost = 0;               // of the points that all images have right
     for (int c = 0; c < 4; c++)
-        lost += countSeen(scene.pixels[c][0]) - countNonZero(robust.inliers[c]);
-    CHECK(lost < 20 + 5);       // nearly no good one with them
+        for (int i = 0; i < 200; i++)
+            lost += i % 10 != 0 && isSeen(scene.pixels[c][0][i]) && !robust.inliers[c].at<uchar>(i);
+    CHECK(lost <= 1);
     for (int c = 0; c < 4; c++)
     {
         CHECK(normalError(robust, truth, c) < 2*normalError(clean, truth, c) + 0.02);
