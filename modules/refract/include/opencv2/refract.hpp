@@ -68,7 +68,8 @@ enum RectifyFlags {
     RECTIFY_ZERO_DISPARITY = 1024   //!< both new images have one principal point; cv::CALIB_ZERO_DISPARITY's value
 };
 
-/** @brief Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free.
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust; the normal is free
+but for GLASS_FIX_NORMAL.
 
 With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is estimated, also where they start at 0: a lens
 without coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. The GLASS_FIX_... flags keep what
@@ -81,11 +82,11 @@ enum GlassCalibrationFlags {
     GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal inner and outer media, where it has no effect
     GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
     GLASS_FREE_INTRINSICS = 16,     //!< all lens parameters (overloads with RefractiveCamera only)
-    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig)
+    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
     GLASS_ROBUST = 256,             //!< leave out wrong points and images; without: pure maximum likelihood of all points
-    GLASS_USE_POSES = 512,          //!< the targets' poses are known (calibrateGlassRigExtended's form only)
+    GLASS_USE_POSES = 512,          //!< the views' poses are known (the Extended forms only)
     GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
     GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
     GLASS_FIX_K2 = 4096,
@@ -95,7 +96,8 @@ enum GlassCalibrationFlags {
     GLASS_FIX_K6 = 65536,
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
-    GLASS_FIX_TAUX_TAUY = 524288        //!< the sensor's tilt stays
+    GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
+    GLASS_FIX_NORMAL = 1048576          //!< the normal stays (refractiveBundleAdjust only)
 };
 
 //! What became of one image in calibrateGlassRig
@@ -847,6 +849,69 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+/** @brief Bundle adjustment without a target: cameras, their windows, poses and scene points from matches alone, in the unit of
+a known length.
+
+One view: the rig stands still, as in motion capture and particle tracking; each point is one place where something was seen, so
+that a wand of known length at M/2 moments gives M points, and M/2 lengths between them. Several views: the rig (or one camera)
+moves through a static scene. All of it is one maximum-likelihood fit under equal isotropic pixel noise, which is estimated; the
+points are eliminated (Schur complement), as in Triggs et al., Bundle adjustment - a modern synthesis, 2000.
+
+The scene's frame is that of the first view, whose pose stays; with one view and without rvecs, tvecs that is camera 1's. Its
+scale comes from lengths, from R and T of several cameras if they are not free, or from the poses with GLASS_USE_POSES; without
+any of them this throws, as through windows the scale hardly shows (doc/uncertainty.md tells how little, and what the normal,
+the distance and the thickness can be told from without a target). What is determined, but hardly, is not refused: stdDeviations
+say so.
+
+@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64; NaN: not seen in that image. An
+empty view was not taken.
+@param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
+@param windowOfCamera per camera: which window it looks through, as calibrateGlassRig; empty: each has its own.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+Start and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
+@param Ts 3x1, as Rs.
+@param rvecs scene -> camera 1 rotation vector of each view, start and result; with one view it may be empty.
+@param tvecs scene -> camera 1 translation of each view; as rvecs.
+@param points3D M scene points, start and result, Nx1 3-channel; empty, or NaN for a point: it starts where its rays come
+closest. Result NaN for a point that is seen (or, with GLASS_ROBUST, right) in fewer than two images, or whose rays do not meet.
+@param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
+deviation > 0; noArray(): none.
+@param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
+@param covariance PxP in the same order; poses and points unknown; the pixels' variance is that of the residuals.
+@param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, with what cameras and poses add; NaN
+where the point is.
+@param perViewErrors VxC CV_64F: RMS of each image; NaN where there is none.
+@param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or is left out; empty where there is no image.
+@param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. GLASS_FIX_NORMAL and nothing else: poses
+and points only, with cameras as they are, also without windows. With GLASS_ROBUST wrong matches are found and left out: a
+start under Cauchy's loss, then a hard decision with a chance of 1e-4 for a good one.
+@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is exact;
+noArray(): all are exact.
+@param criteria iterations and relative change of the cost at which to stop, as calibrateGlass.
+@return RMS reprojection error in pixels over all points that were used.
+
+Throws where the data cannot determine what is free, naming it.
+*/
+CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
+        const std::vector<std::vector<Mat> >& imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        InputOutputArray points3D, InputArray lengths,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
+        OutputArrayOfArrays inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+/** @overload
+The short form, for a rig that stands still: imagePoints is one array of Mx2 pixels per camera, points are in the frame of
+camera 1.
+*/
+CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArray points3D, InputArray lengths, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).

@@ -5,7 +5,7 @@
 #ifndef OPENCV_REFRACT_COVARIANCE_HPP
 #define OPENCV_REFRACT_COVARIANCE_HPP
 
-#include "calibrate/rig_problem.hpp"
+#include "calibrate/information.hpp"
 
 namespace cv { namespace refract {
 
@@ -13,6 +13,9 @@ namespace cv { namespace refract {
 naming the direction, if the data do not determine what is free.
 @param variance of a pixel coordinate */
 Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance);
+
+//! The same from information that also scene points left; only what is lost altogether is refused.
+Eigen::MatrixXd rigCovariance(const RigProblem& rig, const Information& information, double variance);
 
 }} // namespace
 

@@ -13,11 +13,8 @@
 
 namespace cv { namespace refract {
 
-namespace {
+static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-const double NaN = std::numeric_limits<double>::quiet_NaN();
-
-//! Both limits in force: what the caller left open is generous.
 TermCriteria checkedCriteria(TermCriteria criteria)
 {
     if (!(criteria.type & (TermCriteria::COUNT | TermCriteria::EPS)))
@@ -30,6 +27,8 @@ TermCriteria checkedCriteria(TermCriteria criteria)
         CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must not be negative", criteria.epsilon));
     return criteria;
 }
+
+namespace {
 
 void checkFreedom(const RigProblem& rig)
 {

@@ -34,6 +34,9 @@ struct RigFit
     Mat otherMinima;                //!< one row a camera: normal, excess
 };
 
+//! Both limits in force: what the caller left open is generous.
+TermCriteria checkedCriteria(TermCriteria criteria);
+
 //! Starts, fit, and what it tells. rig is start and result.
 RigFit fitRig(Rig& rig, const RigTask& task);
 
