@@ -821,6 +821,39 @@ CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray i
         bool useExtrinsicGuess = false, InputArray rvec = noArray(), InputArray tvec = noArray(),
         OutputArray reprojectionError = noArray());
 
+/** @brief Pose of a known target among wrong matches: cv::solvePnPRansac through a window.
+
+Samples of three points (the same ones every time) give poses exactly, each pixel's ray with its own origin; all points
+judge them, by their distance from where the pose has them in the raw image. The best is refined (maximum likelihood) on the
+points that agree with it, but for those that stand out among these, if there are a dozen: a right one by a chance of 1e-4.
+
+@param objectPoints N 3-D points, some perhaps of the wrong pixel.
+@param imagePoints N raw pixels; a NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvec object -> camera rotation vector.
+@param tvec object -> camera translation.
+@param useExtrinsicGuess rvec, tvec are one more candidate, and the first.
+@param iterationsCount samples at most. With a part w of right points and a confidence p it takes log(1 - p)/log(1 - w^3): 169
+for w = 0.3 and p = 0.99.
+@param reprojectionError pixels from its image within which a point agrees.
+@param confidence chance of a sample without wrong points, after which the search ends; less than 1.
+@param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
+@return false if there is no pose with which at least 4 points agree, not on a line, and more than poses of random samples would
+find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is empty.
+*/
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false, int iterationsCount = 100,
+        float reprojectionError = 8.0f, double confidence = 0.99, OutputArray inliers = noArray());
+
+//! @overload
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
+        double confidence = 0.99, OutputArray inliers = noArray());
+
 //! @}
 
 }} // namespace cv::refract
