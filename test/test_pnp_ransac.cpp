@@ -160,7 +160,7 @@ TEST_CASE("The right matches are found, whatever lens and window", "[pnp][ransac
 
 TEST_CASE("Seventy of a hundred matches wrong", "[pnp][ransac]")
 {
-    const int TRIALS = trials(40);
+    const int TRIALS = trials(20);
     for (const Camera3& c : ransacCameras())
         for (bool planar : { false, true })
             for (float limit : { 8.f, 2.f })

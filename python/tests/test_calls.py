@@ -232,6 +232,21 @@ def test_both_poses_of_a_board(rig, board):
     assert found is False and rvec is None
 
 
+def test_epipolar_distances(rig):
+    from conftest import rotation
+    off = rig.pixels2.copy()
+    off.reshape(-1, 2)[::2] += (0, 5)
+    for cameras in (rig.lens1 + rig.lens2, (rig.camera1, rig.camera2)):
+        distances, status = refract.refractiveEpipolarDistance(rig.pixels1, off, *cameras, rig.R, rig.T)
+        assert distances.shape == (40, 1) and not status.any()
+        assert np.abs(distances[1::2]).max() < 1e-8 and np.abs(distances[::2]).min() > 3
+    distances, status, depths, jacobian = refract.refractiveEpipolarDistanceExtended(
+        rig.pixels1, rig.pixels2, rig.camera1, rig.camera2, rig.R, rig.T, 2, (300., 1500.))
+    assert jacobian.shape == (40, 10) and np.abs(distances).max() < 1e-8
+    x2 = rotation(rig.R) @ rig.points.T + rig.T[:, None]
+    np.testing.assert_allclose(depths.ravel(), x2[2], atol=1e-3)
+
+
 def test_pose_among_wrong_matches(rig, board):
     pixels = board.glass1[0].copy()
     wrong = np.arange(0, len(pixels), 4)

@@ -383,6 +383,64 @@ CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray R, InputArray T, const Vec2d& depthRange,
         OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
 
+/** @brief How far the two pixels of each match are from agreeing: the distance of one from the curve of the other's possible
+partners (computeRefractiveEpilines), to filter matches by.
+
+The curve is that of a pixel's ray from depthRange's near end, or where it leaves the window, to its far end. A pixel beyond an
+end of the curve has its distance from the end, so that a small distance always tells of a match whose point is there. Exact to
+1e-6 px near the curve.
+
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2, the supposed partners.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels: positive to the right of the curve as it runs to larger depths (u to the right, v down). NaN where
+status is not 0.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param whichImage 1: the curves are those of points1, distances are in image 2; 2: the other way.
+@param depthRange z of the scene, near and far, in the frame of camera whichImage; near may be 0, far infinity: all that the ray
+meets.
+*/
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+//! @overload
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+/** @brief refractiveEpipolarDistance with its derivative and the depth of the nearest point of the curve.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels.
+@param status Nx1 CV_8U.
+@param whichImage as above.
+@param depthRange as above.
+@param depths Nx1 CV_64F: z of the point of the curve that is nearest, in the frame of camera whichImage; an end of depthRange
+(infinity too) where the pixel lies beyond it.
+@param jacobian Nx10 CV_64F: derivative of the distance by u1, v1, u2, v2, by the rotation vector of R (3) and by T (3). The
+distance over the root of the sum of the squares of the first four is, to first order, how far the two pixels are from agreeing
+(Sampson's error), and a standard normal number times the pixels' noise.
+*/
+CV_EXPORTS_AS(refractiveEpipolarDistanceExtended) void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status, int whichImage, const Vec2d& depthRange,
+        OutputArray depths, OutputArray jacobian);
+
 /** @brief Triangulates points seen by two cameras, each behind its own window (@cite Plate2024, section 3.3).
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
