@@ -35,8 +35,8 @@ MatchedPair matchedPair(const LensKind& lens, WindowKind kind, Random& random, i
 std::vector<double> byPolylines(const MatchedPair& m, int whichImage, const Vec2d& range)
 {
     std::vector<std::vector<Point2d> > lines;
-    computeRefractiveEpilines(whichImage == 1 ? m.pixels1 : m.pixels2, whichImage, m.camera1, m.camera2, m.rvec, m.T, range, lines,
-                              1e-7);
+    computeRefractiveEpilines(whichImage == 1 ? m.pixels1 : m.pixels2, whichImage, m.camera1, m.camera2, m.rvec, m.T, range,
+                              lines, 1e-7);
     std::vector<double> distances;
     for (size_t i = 0; i < lines.size(); i++)
     {
@@ -283,8 +283,8 @@ TEST_CASE("Epipolar distances: no answer, types, errors", "[epipolar]")
     SECTION("one centre of projection: a curve that is a point")
     {
         const Ptr<RefractiveCamera> bare = paperCamera(GlassWindow());
-        refractiveEpipolarDistance(std::vector<Point2d>(1, Point2d(600, 500)), std::vector<Point2d>(1, Point2d(603, 504)), bare, bare,
-                                   Vec3d(), Vec3d(), distances, status);
+        refractiveEpipolarDistance(std::vector<Point2d>(1, Point2d(600, 500)), std::vector<Point2d>(1, Point2d(603, 504)), bare,
+                                   bare, Vec3d(), Vec3d(), distances, status);
         CHECK(std::abs(distances[0]) == Approx(5));
     }
     SECTION("errors")

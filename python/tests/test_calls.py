@@ -247,6 +247,22 @@ def test_epipolar_distances(rig):
     np.testing.assert_allclose(depths.ravel(), x2[2], atol=1e-3)
 
 
+def test_relative_pose_among_wrong_matches(rig):
+    from conftest import rotation
+    off = rig.pixels2.copy()
+    off.reshape(-1, 2)[::4] += (50, 70)
+    for cameras in (rig.lens1 + rig.lens2, (rig.camera1, rig.camera2)):
+        count, R, T, mask = refract.refractiveRecoverPose(rig.pixels1, off, *cameras)
+        assert 30 <= count == mask.sum() <= 31
+        np.testing.assert_allclose(R, rotation(rig.R), atol=1e-3)
+        np.testing.assert_allclose(T.ravel()/np.linalg.norm(T), rig.T/np.linalg.norm(rig.T), atol=1e-3)
+    count, R, T, mask, covariance, interval = refract.refractiveRecoverPoseExtended(
+        rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.)
+    assert covariance.shape == (6, 6) and interval[0] <= np.linalg.norm(T)
+    unseen = np.full_like(off, np.nan)
+    assert refract.refractiveRecoverPose(rig.pixels1, unseen, rig.camera1, rig.camera2)[0] == 0
+
+
 def test_pose_among_wrong_matches(rig, board):
     pixels = board.glass1[0].copy()
     wrong = np.arange(0, len(pixels), 4)

@@ -12,8 +12,8 @@ HAVE_CV2 = importlib.util.find_spec("cv2") is not None
 CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "computeRefractiveEpilines",
          "initRefractiveUndistortRectifyMap", "refractivePointsOnPlane", "refractiveProjectPoints",
          "refractiveProjectPointsExtended", "refractiveEpipolarDistance", "refractiveEpipolarDistanceExtended",
-         "refractiveSolvePnP", "refractiveSolvePnPRansac", "refractiveUndistortPoints", "refractiveUnprojectPoints",
-         "stereoCalibrateGlass", "triangulateRefractive", "triangulateRefractiveExtended"]
+         "refractiveRecoverPose", "refractiveRecoverPoseExtended", "refractiveSolvePnP", "refractiveSolvePnPRansac",
+         "refractiveUndistortPoints", "refractiveUnprojectPoints", "stereoCalibrateGlass", "triangulateRefractive", "triangulateRefractiveExtended"]
 
 
 def test_every_call_is_here_with_its_docstring():

@@ -912,6 +912,63 @@ CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray i
         bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
         double confidence = 0.99, OutputArray inliers = noArray());
 
+/** @brief Relative pose of two calibrated cameras from matches of which some are wrong: cv::recoverPose through windows, which
+also gives the distance between the cameras, as well as refraction tells it.
+
+A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
+in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
+refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
+of T are always determined as well as a pinhole pair's.
+
+@param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
+@param points2 N raw pixels of camera 2.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 CV_64F, camera 1 -> camera 2.
+@param T 3x1 CV_64F, camera 1 -> camera 2; of length 1 where no scale shows at all (no window refracts), of the least length that
+is likely (scaleInterval's low end) where the most likely one is infinite.
+@param prob chance of a sample without wrong matches, after which the search ends; less than 1.
+@param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
+images.
+@param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
+@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6, and with more
+than poses of random samples would find among strewn pixels (or all).
+*/
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+//! @overload
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+/** @brief refractiveRecoverPose with what the estimate is worth.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1, taken as exact.
+@param camera2 lens and window of camera 2, taken as exact.
+@param R 3x3 CV_64F.
+@param T 3x1 CV_64F.
+@param prob as above.
+@param threshold as above.
+@param mask as above.
+@param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. Where scaleInterval has no upper end it
+is that of R and the direction alone, for the length that T has (its rank is 5).
+@param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile: where
+refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
+@return as above.
+*/
+CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob, double threshold, OutputArray mask,
+        OutputArray covariance, CV_OUT Vec2d& scaleInterval);
+
 //! @}
 
 }} // namespace cv::refract

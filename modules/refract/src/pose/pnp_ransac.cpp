@@ -6,6 +6,7 @@
 their squared distances from its images, cut off at the limit (MSAC: Torr & Zisserman, CVIU 2000). A pose that is better than
 all before is refined on the points that agree with it (LO-RANSAC: Chum, Matas & Kittler, DAGM 2003). */
 
+#include "pose/chance.hpp"
 #include "pose/poses.hpp"
 #include "pose/three_rays.hpp"
 #include "arrays/arrays.hpp"
@@ -195,24 +196,11 @@ Candidate searchPose(const Camera& camera, const ImagePoints& points, const Jury
     return best;
 }
 
-/* Whether so many points would agree with some pose if all pixels were strewn evenly over the part of the image that has any:
-the expected number of sets of k points of which three give a pose that the others agree with (Moisan & Stival, IJCV 2004), one
-or more. */
-bool isChance(const ImagePoints& points, int agreeing, double limit)
+//! How likely strewn pixels agree with a pose of three of them.
+Sampling samplingOf(const ImagePoints& points, double limit)
 {
-    const int n = (int)points.pixel.size(), k = agreeing;
-    if (k == n)
-        return false;
-    double u[2] = { DBL_MAX, -DBL_MAX }, v[2] = { DBL_MAX, -DBL_MAX };
-    for (const Point2d& p : points.pixel)
-    {
-        u[0] = std::min(u[0], p.x); u[1] = std::max(u[1], p.x);
-        v[0] = std::min(v[0], p.y); v[1] = std::max(v[1], p.y);
-    }
-    const double disc = CV_PI*limit*limit, area = std::max((u[1] - u[0])*(v[1] - v[0]), disc);
-    const auto logBinomial = [](int a, int b) { return std::lgamma(a + 1.) - std::lgamma(b + 1.) - std::lgamma(a - b + 1.); };
     const double POSES = 2;             // of a sample, on average
-    return std::log(POSES*(n - 3)) + logBinomial(n, k) + logBinomial(k, 3) + (k - 3)*std::log(disc/area) >= 0;
+    return { 3, POSES, CV_PI*limit*limit/std::max(extentOf(points.pixel).area(), DBL_MIN) };
 }
 
 } // namespace
@@ -248,7 +236,8 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
     for (int k = 0; k < 10 && improve(camera, points, jury, 100, best); k++) {}
     settle(camera, points, jury, best);
     const ImagePoints agreeing = select(points, best.agreeing);
-    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2 || isChance(points, (int)agreeing.pixel.size(), limit))
+    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2
+        || isChance((int)points.pixel.size(), (int)agreeing.pixel.size(), samplingOf(points, limit)))
         return Pose();
     inliers = agreeing.index;
     return poseOf(best.motion);
