@@ -918,7 +918,7 @@ also gives the distance between the cameras, as well as refraction tells it.
 A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
 in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
 refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
-of T are always determined as well as a pinhole pair's.
+of T are always determined, if less well than a pinhole pair's, as the length is estimated with them.
 
 @param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
 @param points2 N raw pixels of camera 2.
