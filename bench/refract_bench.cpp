@@ -89,6 +89,7 @@ int main(int argc, char** argv)
     std::vector<Row> rows;
     addPointRows(rows, count);
     addPairRows(rows, count);
+    addRobustRows(rows);
     addCallRows(rows, count);
     addStereoRows(rows);
     addCalibrationRows(rows);

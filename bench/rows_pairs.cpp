@@ -48,6 +48,8 @@ struct Pair
     std::vector<Point3d> points;
     std::vector<uchar> status;
     std::vector<std::vector<Point2d> > lines;
+    std::vector<double> distances;
+    std::vector<Vec3d> straight;        //!< epipolar lines
 };
 
 using reference::dot;
@@ -248,6 +250,55 @@ double curveError(const Data& d)
     return worst;
 }
 
+//! What a user without this call has: F, one line a point, the other's distance from it.
+void distancesFromLines(const Data& d)
+{
+    const Matx33d cross(0, -T[2], T[1], T[2], 0, -T[0], -T[1], T[0], 0);
+    const Matx33d F = d->scene2.K.inv().t()*cross*R*d->scene1.K.inv();
+    computeCorrespondEpilines(d->pixels1, 1, F, d->straight);
+    d->distances.resize(d->pixels1.size());
+    for (size_t i = 0; i < d->pixels2.size(); i++)
+        d->distances[i] = d->straight[i].dot(Vec3d(d->pixels2[i].x, d->pixels2[i].y, 1));
+}
+
+//! Largest error of the distances, against a ternary search along the exact curve.
+double distanceError(const Data& d)
+{
+    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
+    long double worst = 0;
+    for (int i : sample((int)d->distances.size(), 100))
+    {
+        const auto ray = c1.unproject(exact(d->pixels1[i]));
+        const auto distance = [&](long double s)
+        {
+            const Pixel p = c2.project(toCamera2(reference::add(ray.origin, s, ray.direction)));
+            return std::hypot(p[0] - d->pixels2[i].x, p[1] - d->pixels2[i].y);
+        };
+        long double low = 200, high = 1e5L;
+        for (int k = 0; k < 200; k++)
+        {
+            const long double a = low + (high - low)/3, b = high - (high - low)/3;
+            (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+        }
+        worst = std::max(worst, std::abs(distance(low) - std::abs(d->distances[i])));
+    }
+    return (double)worst;
+}
+
+Row distanceRow(const Data& d, const std::string& key, const std::string& work)
+{
+    Row r = triangulateRow(d, key, work, 0, 0);
+    r.bytes = 41;
+    r.peerName = "cv::computeCorrespondEpilines, distance";
+    r.ours = [=] { refractiveEpipolarDistance(d->pixels1, d->pixels2, d->scene1.camera, d->scene2.camera, R, T, d->distances,
+                                              d->status); };
+    r.peer = [=] { distancesFromLines(d); };
+    r.error = [=] { return distanceError(d); };
+    r.tolerance = 1e-6;
+    r.unit = "px";
+    return r;
+}
+
 } // namespace
 
 void addPairRows(std::vector<Row>& rows, int count)
@@ -272,6 +323,11 @@ void addPairRows(std::vector<Row>& rows, int count)
     lines.tolerance = 0.01;
     lines.unit = "px";
     rows.push_back(lines);
+    rows.push_back(distanceRow(many, "epipolar_distance", "epipolar distance"));
+    const Data wrong = std::make_shared<Pair>(count);       // 40 % of the matches
+    for (size_t i = 0; i + 5 < wrong->pixels2.size(); i += 5)
+        std::swap(wrong->pixels2[i], wrong->pixels2[i + 3]);
+    rows.push_back(distanceRow(wrong, "epipolar_distance_wrong", "epipolar distance, 40 % wrong"));
 }
 
 } // namespace bench

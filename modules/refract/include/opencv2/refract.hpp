@@ -429,6 +429,64 @@ CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray R, InputArray T, const Vec2d& depthRange,
         OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
 
+/** @brief How far the two pixels of each match are from agreeing: the distance of one from the curve of the other's possible
+partners (computeRefractiveEpilines), to filter matches by.
+
+The curve is that of a pixel's ray from depthRange's near end, or where it leaves the window, to its far end. A pixel beyond an
+end of the curve has its distance from the end, so that a small distance always tells of a match whose point is there. Exact to
+1e-6 px near the curve.
+
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2, the supposed partners.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels: positive to the right of the curve as it runs to larger depths (u to the right, v down). NaN where
+status is not 0.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param whichImage 1: the curves are those of points1, distances are in image 2; 2: the other way.
+@param depthRange z of the scene, near and far, in the frame of camera whichImage; near may be 0, far infinity: all that the ray
+meets.
+*/
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+//! @overload
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+/** @brief refractiveEpipolarDistance with its derivative and the depth of the nearest point of the curve.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels.
+@param status Nx1 CV_8U.
+@param whichImage as above.
+@param depthRange as above.
+@param depths Nx1 CV_64F: z of the point of the curve that is nearest, in the frame of camera whichImage; an end of depthRange
+(infinity too) where the pixel lies beyond it.
+@param jacobian Nx10 CV_64F: derivative of the distance by u1, v1, u2, v2, by the rotation vector of R (3) and by T (3). The
+distance over the root of the sum of the squares of the first four is, to first order, how far the two pixels are from agreeing
+(Sampson's error), and a standard normal number times the pixels' noise.
+*/
+CV_EXPORTS_AS(refractiveEpipolarDistanceExtended) void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status, int whichImage, const Vec2d& depthRange,
+        OutputArray depths, OutputArray jacobian);
+
 /** @brief Triangulates points seen by two cameras, each behind its own window (@cite Plate2024, section 3.3).
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
@@ -965,6 +1023,96 @@ CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray i
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         bool useExtrinsicGuess = false, InputArray rvec = noArray(), InputArray tvec = noArray(),
         OutputArray reprojectionError = noArray());
+
+/** @brief Pose of a known target among wrong matches: cv::solvePnPRansac through a window.
+
+Samples of three points (the same ones every time) give poses exactly, each pixel's ray with its own origin; all points
+judge them, by their distance from where the pose has them in the raw image. The best is refined (maximum likelihood) on the
+points that agree with it, but for those that stand out among these, if there are a dozen: a right one by a chance of 1e-4.
+
+@param objectPoints N 3-D points, some perhaps of the wrong pixel.
+@param imagePoints N raw pixels; a NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvec object -> camera rotation vector.
+@param tvec object -> camera translation.
+@param useExtrinsicGuess rvec, tvec are one more candidate, and the first.
+@param iterationsCount samples at most. With a part w of right points and a confidence p it takes log(1 - p)/log(1 - w^3): 169
+for w = 0.3 and p = 0.99.
+@param reprojectionError pixels from its image within which a point agrees.
+@param confidence chance of a sample without wrong points, after which the search ends; less than 1.
+@param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
+@return false if there is no pose with which at least 4 points agree, not on a line, and more than poses of random samples would
+find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is empty.
+*/
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false, int iterationsCount = 100,
+        float reprojectionError = 8.0f, double confidence = 0.99, OutputArray inliers = noArray());
+
+//! @overload
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
+        double confidence = 0.99, OutputArray inliers = noArray());
+
+/** @brief Relative pose of two calibrated cameras from matches of which some are wrong: cv::recoverPose through windows, which
+also gives the distance between the cameras, as well as refraction tells it.
+
+A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
+in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
+refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
+of T are always determined, if less well than a pinhole pair's, as the length is estimated with them.
+
+@param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
+@param points2 N raw pixels of camera 2.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 CV_64F, camera 1 -> camera 2.
+@param T 3x1 CV_64F, camera 1 -> camera 2; of length 1 where no scale shows at all (no window refracts), of the least length that
+is likely (scaleInterval's low end) where the most likely one is infinite.
+@param prob chance of a sample without wrong matches, after which the search ends; less than 1.
+@param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
+images.
+@param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
+@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6, and with more
+than poses of random samples would find among strewn pixels (or all).
+*/
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+//! @overload
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+/** @brief refractiveRecoverPose with what the estimate is worth.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1, taken as exact.
+@param camera2 lens and window of camera 2, taken as exact.
+@param R 3x3 CV_64F.
+@param T 3x1 CV_64F.
+@param prob as above.
+@param threshold as above.
+@param mask as above.
+@param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. Where scaleInterval has no upper end it
+is that of R and the direction alone, for the length that T has (its rank is 5).
+@param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile: where
+refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
+@return as above.
+*/
+CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob, double threshold, OutputArray mask,
+        OutputArray covariance, CV_OUT Vec2d& scaleInterval);
 
 //! @}
 
