@@ -5,6 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/staged_start.hpp"
 #include "arrays/arrays.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
@@ -108,19 +109,22 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
 
 std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
-    const double ROUNDING = 1e-6;
+    const double ROUNDING = 1e-6;       // of single precision
     std::vector<Pose> extrinsics(1);
     if (cameras == 1)
         return extrinsics;
     std::vector<Mat> R, T;
     Rs.getMatVector(R);
     Ts.getMatVector(T);
+    double size = 1;
+    for (const Mat& t : T)
+        size = std::max(size, norm(t, NORM_INF));
     checkCount(R.size(), cameras, "Rs", false);
     checkCount(T.size(), cameras, "Ts", false);
     for (int c = 0; c < cameras; c++)
     {
         const Pose pose = readPose(R[c], T[c], numbered("Rs", c), numbered("Ts", c));
-        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > ROUNDING)
+        if (c == 0 && norm(pose.rvec) + norm(pose.tvec)/size > ROUNDING)
             CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
                                          "be the identity and 0", norm(pose.rvec), norm(pose.tvec)));
         if (c > 0)
@@ -285,7 +289,6 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    rig.extrinsics = readExtrinsics(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
@@ -293,6 +296,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     readCameraKnowledge(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
+    rig.extrinsics = Rs.empty() && Ts.empty() && isStaged(task) ? std::vector<Pose>(count) : readExtrinsics(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
