@@ -144,7 +144,8 @@ struct CrudeCall
         using namespace cv::refract;
         return calibrateGlassRig(object, std::vector<std::vector<cv::Mat> >(), refracted, cameras, windows, Rs, Ts, rvecs, tvecs,
                                  deviations, covariance, cv::noArray(), cv::noArray(), cv::noArray(), otherMinima,
-                                 flags | GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS | GLASS_FIX_TANGENT_DIST,
+                                 flags | GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS |
+                                 GLASS_FIX_TANGENT_DIST,
                                  cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12),
                                  nothingKnown);
     }
