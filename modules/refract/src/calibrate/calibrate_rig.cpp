@@ -296,7 +296,8 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     readCameraKnowledge(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
-    rig.extrinsics = Rs.empty() && Ts.empty() && isStaged(task) ? std::vector<Pose>(count) : readExtrinsics(Rs, Ts, count);
+    const bool placesFollow = isStaged(task) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
+    rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsics(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
