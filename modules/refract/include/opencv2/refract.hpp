@@ -75,6 +75,12 @@ With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is es
 without coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. The GLASS_FIX_... flags keep what
 they name at its start, as CALIB_FIX_... do in cv::calibrateCamera and cv::fisheye::calibrate; one that names what the lens
 does not have changes nothing.
+
+A rig is sealed if GLASS_FREE_INTRINSICS is set and nothing but images through the windows tells of it: no direct image, no
+known pose, no known camera. Lens, window and place are exchanged for each other there, along directions that hardly change
+what is measured; such a parameter comes with its large standard deviation and its correlations, which carry what is known of
+lengths, and is refused only where a GLASS_REQUIRE_... flag asks for it. Otherwise each free parameter must be determined by
+itself.
 */
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
@@ -97,7 +103,10 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
-    GLASS_FIX_NORMAL = 1048576          //!< the normal stays (refractiveBundleAdjust only)
+    GLASS_FIX_NORMAL = 1048576,         //!< the normal stays (refractiveBundleAdjust only)
+    GLASS_REQUIRE_WINDOW = 2097152,     //!< a sealed rig is refused if a free parameter of a window is undetermined by itself
+    GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
+    GLASS_REQUIRE_EXTRINSICS = 8388608  //!< the same of R and T
 };
 
 //! What became of one image in calibrateGlassRig
@@ -753,8 +762,10 @@ start of the normal comes from the data. Out: the estimate.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels, by cv::calibrateCamera's definition, over all observed points.
 
-Throws where the data cannot determine what is free; the text names the direction that is undetermined. Throws too if
-criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
+Throws where the data cannot determine what is free; the text names the direction that is undetermined (sealed cameras: see
+GlassCalibrationFlags). What is returned is a minimum: its step to the least squares is below 1e-3 standard deviations. A
+sealed camera's is looked for from many starts, so that its focal length need be known to some 10 %, its window's distance to
+a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
 Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
 same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
 */
@@ -845,6 +856,10 @@ start from random samples (the same ones every time), a graduated redescending l
 chance of 1e-4 for a good point, so that clean data give what they give without. For a view of an unmoved target whose
 direct and refracted images contradict each other, beyond what all views do, the direct images go.
 
+A sealed rig (GlassCalibrationFlags) with GLASS_FREE_EXTRINSICS need not start well: each camera is calibrated alone, from
+many starts, then in pairs through the window that they share, then all. R and T then follow from the views. GLASS_ROBUST does
+without that.
+
 With GLASS_USE_POSES the poses rvecs, tvecs are known from outside (a robot, a jig). A view with a covariance moves within
 it: one prior residual, weighed against the pixels' own noise, which is estimated. If also lens, thickness and index are
 known, one view determines the normal.
@@ -858,7 +873,7 @@ view was not taken, an empty list holds no view.
 @param windowOfCamera per camera: which window it looks through; equal numbers share one, empty: each has its own. The first
 camera of a shared window brings its start, what the others see of it follows from R and T.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
-Result with GLASS_FREE_EXTRINSICS. Not used for one camera.
+Result with GLASS_FREE_EXTRINSICS. Not used for one camera. May be empty, with Ts, for a sealed rig with GLASS_FREE_EXTRINSICS.
 @param Ts 3x1, as Rs.
 @param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view of which
 nothing is left.
@@ -870,10 +885,10 @@ none or it was left out.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
 where there is no image.
-@param otherMinima Cx4 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
-minimum and how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel.
-Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found. The row,
-and the frame of the normal, is the first camera's of the window.
+@param otherMinima Cx5 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
+minimum, how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel, and its
+distance. Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found.
+The row, and the frame of the normal, is the first camera's of the window.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.

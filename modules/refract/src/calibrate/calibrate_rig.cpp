@@ -5,6 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/staged_start.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
 
@@ -255,7 +256,6 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
@@ -266,6 +266,8 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     readCameraKnowledge(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
+    const bool placesFollow = isStaged(task) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
+    rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);

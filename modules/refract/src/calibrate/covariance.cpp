@@ -4,8 +4,8 @@
 
 /* Covariance = s^2 A^-1 of the free parameters; s^2: variance of a pixel coordinate, A = R^T R: information.hpp.
 
-Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters whose
-standard deviation is so large that the value is no answer. */
+Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters that are
+required and whose standard deviation is so large that the value is no answer. */
 
 #include "calibrate/covariance.hpp"
 #include "calibrate/information.hpp"
@@ -49,7 +49,14 @@ double meanRange(const RigProblem& rig)
     return sum/count;
 }
 
-std::vector<FreeParameter> freeParameters(const RigProblem& rig)
+//! The GLASS_REQUIRE_... flag of a block.
+int requirementOf(RigBlock::Kind kind)
+{
+    return kind == RigBlock::LENS ? GLASS_REQUIRE_INTRINSICS : kind == RigBlock::EXTRINSICS ? GLASS_REQUIRE_EXTRINSICS :
+           GLASS_REQUIRE_WINDOW;
+}
+
+std::vector<FreeParameter> freeParameters(const RigProblem& rig, int required)
 {
     const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(rig);
     std::vector<FreeParameter> parameters;
@@ -67,7 +74,7 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
             const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
             const bool isLength = block.kind == RigBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
                                   block.kind == RigBlock::EXTRINSICS && i >= 3;
-            p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
+            p.hopeless = !(required & requirementOf(block.kind)) ? infinity : isAngle ? CV_PI/4 : isLength ? range :
                 block.kind == RigBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);
         }
@@ -160,9 +167,9 @@ MatrixXd publicCovariance(const RigProblem& rig, const MatrixXd& half, double va
 
 } // namespace
 
-MatrixXd rigCovariance(const RigProblem& rig, double variance)
+MatrixXd rigCovariance(const RigProblem& rig, double variance, int required)
 {
-    const std::vector<FreeParameter> parameters = freeParameters(rig);
+    const std::vector<FreeParameter> parameters = freeParameters(rig, required);
     const MatrixXd half = halfCovariance(parameters, rigInformation(rig));
     refuseHopeless(parameters, half, variance);
     return publicCovariance(rig, half, variance);
@@ -172,7 +179,7 @@ MatrixXd rigCovariance(const RigProblem& rig, const Information& information, do
 {
     if (information.effect.size() == 0)     // only poses and points are free
         return MatrixXd::Zero(rig.publicCount(), rig.publicCount());
-    return publicCovariance(rig, halfCovariance(freeParameters(rig), information), variance);
+    return publicCovariance(rig, halfCovariance(freeParameters(rig, 0), information), variance);
 }
 
 }} // namespace

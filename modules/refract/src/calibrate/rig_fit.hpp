@@ -31,7 +31,7 @@ struct RigFit
     Mat jacobian;                   //!< if wanted
     Mat imageStatus;                //!< GlassImageStatus, as perViewErrors
     std::vector<Mat> inliers;       //!< of each element of perViewErrors, row by row
-    Mat otherMinima;                //!< one row a camera: normal, excess
+    Mat otherMinima;                //!< one row a camera: normal, excess, distance
 };
 
 //! Both limits in force: what the caller left open is generous.
