@@ -235,6 +235,49 @@ private:
     RefractiveCamera& operator=(const RefractiveCamera&);
 };
 
+/** @brief Reads all cameras of a rig and where they are, from a file such as refract_calib writes (YAML, XML or JSON).
+
+One camera is at the top level of the file. Several are in the maps `camera1`, `camera2`, ..., as RefractiveCamera::write
+writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on. A .cameramodel of mrcal
+is one camera.
+
+@param filename path.
+@param cameras one or more.
+@param Rs 3x3 CV_64F rotation camera 1 -> camera, one per camera; the first is the identity.
+@param Ts 3x1 CV_64F, as Rs; the first is 0.
+
+Throws cv::Exception with the file's name and the key if something is missing or is not what it should be.
+*/
+CV_EXPORTS_W void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
+        OutputArrayOfArrays Rs, OutputArrayOfArrays Ts);
+
+/** @brief readRig with what else the module's functions take of a calibration.
+@param filename path.
+@param cameras as above.
+@param Rs as above.
+@param Ts as above.
+@param windowOfCamera which window each camera looks through, equal numbers share one, as calibrateGlassRig takes it (key
+`window_of_camera`); empty where the file does not say.
+@param covariance PxP CV_64F of all cameras' parameters, then rvec (3) and T (3) of each but the first, as
+calibrateGlassRigExtended returns it (key `covariance`); empty where the file has none.
+*/
+CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
+        OutputArrayOfArrays Rs, OutputArrayOfArrays Ts, CV_OUT std::vector<int>& windowOfCamera, OutputArray covariance);
+
+/** @brief Writes a file that readRig() reads: the whole of it or, if that fails (which throws), nothing. A file of that name is
+replaced, with whatever else was in it.
+@param filename path; its extension chooses the format: .xml, .json, else YAML.
+@param cameras one or more.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding. May
+be empty for one camera.
+@param Ts 3x1, as Rs.
+@param windowOfCamera see readRig; empty: the file does not say.
+@param covariance see readRig; empty: none.
+*/
+CV_EXPORTS_W void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, const std::vector<int>& windowOfCamera = std::vector<int>(),
+        InputArray covariance = noArray());
+
 /** @brief Projects object points through lens and window.
 
 The refracted path is found by Newton's method in the tangent of the angle in the rarest medium, where the function is
