@@ -40,11 +40,11 @@ int checkedPointCount(const std::vector<PixelViews>& pixels, size_t given)
 
 KnownLength checkedLength(const double* row, int i, int pointCount)
 {
-    const KnownLength length = { (int)row[0], (int)row[1], row[2], row[3] };
     const auto isIndex = [&](double value) { return value >= 0 && value < pointCount && value == std::floor(value); };
-    if (!isIndex(row[0]) || !isIndex(row[1]) || length.a == length.b)
+    if (!isIndex(row[0]) || !isIndex(row[1]) || row[0] == row[1])
         CV_Error_(Error::StsOutOfRange, ("lengths[%d] is between points %g and %g; they must be two different ones of the %d "
                                          "of the scene, counted from 0", i, row[0], row[1], pointCount));
+    const KnownLength length = { (int)row[0], (int)row[1], row[2], row[3] };
     if (!(length.length > 0 && std::isfinite(length.length)) || !(length.sigma > 0 && std::isfinite(length.sigma)))
         CV_Error_(Error::StsBadArg, ("lengths[%d] is %g with a standard deviation of %g; both must be positive", i,
                                      length.length, length.sigma));

@@ -94,8 +94,12 @@ void BundleAdjustment::approach()
                     block.isHeld[i] = isHeld && block.isFree[i];
     };
     hold(true);
-    bundle_.solve(TermCriteria(TermCriteria::COUNT, 20, 0), isRobust_ ? 1. : 0.);
+    if (isRobust_)
+        graduate();
+    else
+        bundle_.solve(TermCriteria(TermCriteria::COUNT, 20, 0), 0.);
     hold(false);
+    scale_ = 0;
 }
 
 //! Until lengths and poses are weighed against the pixels' own noise.
