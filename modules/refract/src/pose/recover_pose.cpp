@@ -13,6 +13,8 @@ only in how the rays miss the mean origins; its likelihood has one parameter, th
 #include "arrays/views.hpp"
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
+#include <array>
+#include <set>
 
 namespace cv { namespace refract {
 
@@ -375,6 +377,15 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     return true;
 }
 
+//! How many of the matches are not copies of others, which tell nothing.
+size_t countDifferent(const PixelMatches& matches, const std::vector<int>& chosen)
+{
+    std::set<std::array<double, 4> > different;
+    for (int i : chosen)
+        different.insert({ { matches.pixel1[i].x, matches.pixel1[i].y, matches.pixel2[i].x, matches.pixel2[i].y } });
+    return different.size();
+}
+
 bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& matches, double prob, double threshold,
              Estimate& e)
 {
@@ -387,7 +398,7 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
         if (c.cost < best.cost)
             best = c;
     }
-    return best.agreeing.size() > 6 && estimate(pair, matches, threshold, best, e)
+    return countDifferent(matches, best.agreeing) > 6 && estimate(pair, matches, threshold, best, e)
            && !isChance((int)matches.size(), (int)e.agreeing.size(), samplingOf(matches, threshold));
 }
 
