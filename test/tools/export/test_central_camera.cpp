@@ -29,7 +29,8 @@ void checkError(const Ptr<RefractiveCamera>& camera, const Vec2d& range, int coe
     std::vector<Point2d> pixels;
     for (int i = 0; i < 3000; i++)
     {
-        const std::vector<Point2d> pixel = { Point2d(rng.uniform(0., 639.), rng.uniform(0., 479.)) };
+        const double u = rng.uniform(0., 639.), v = rng.uniform(0., 479.);      // one by one: compilers differ in the order
+        const std::vector<Point2d> pixel = { Point2d(u, v) };
         std::vector<Point3d> X;
         refractivePointsOnPlane(pixel, X, camera, Vec4d(0, 0, 1, 1/rng.uniform(1/range[1], 1/range[0])));
         if (X[0].z != X[0].z)
@@ -53,9 +54,11 @@ void checkError(const Ptr<RefractiveCamera>& camera, const Vec2d& range, int coe
     }
     rms = std::sqrt(rms);
     CAPTURE(rms, most, central.error.rms, central.error.max);
-    CHECK(rms == Approx(central.error.rms).epsilon(0.15).margin(1e-7));
+    // The grid of what is stated has the image's border in it, where the error is largest; these points hardly ever.
+    CHECK(rms <= 1.05*central.error.rms + 1e-7);
+    CHECK(rms >= 0.7*central.error.rms - 1e-7);
     CHECK(most <= 1.05*central.error.max + 1e-7);
-    CHECK(most >= 0.5*central.error.max - 1e-7);
+    CHECK(most >= 0.3*central.error.max - 1e-7);
 }
 
 } // namespace
