@@ -11,12 +11,11 @@ namespace {
 RigData sixPairs(const RigModel& rig, scenes::Random& random)
 {
     RigData data;
-    data.objectPoints = board(6, 5);
     data.imageSize[0] = Size(1280, 1024);
     for (int i = 0; i < 6; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
-        data.moments.push_back(observe(rig, data.objectPoints, random.vector(0.4), tvec, true, 0.1, random));
+        data.moments.push_back(observe(rig, board(6, 5), random.vector(0.4), tvec, true, 0.1, random));
         data.moments.back().stem = "pair" + std::to_string(i);
     }
     return data;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 using namespace cv;
 
@@ -39,6 +40,49 @@ double residualSigma(const std::vector<Point2d>& seenPixels, const std::vector<P
     return std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
 }
 
+//! Each point by the first two cameras that see it; the calibration taken as exact.
+void triangulateByPairs(const Calibration& rig, const RigPixels& pixels, double pixelSigma, Measurement& result, Mat& covariance)
+{
+    std::map<std::pair<size_t, size_t>, std::vector<size_t>> pointsOf;
+    const size_t count = pixels[0].size();
+    for (size_t i = 0; i < count; i++)
+    {
+        std::vector<size_t> views;
+        for (size_t c = 0; c < pixels.size(); c++)
+            if (seen(pixels[c][i]))
+                views.push_back(c);
+        if (views.size() > 1)
+            pointsOf[{views[0], views[1]}].push_back(i);
+    }
+    result.points.assign(count, Point3d(NOT_KNOWN, NOT_KNOWN, NOT_KNOWN));
+    result.status.assign(count, refract::REFRACT_NOT_FINITE);
+    covariance = Mat(Mat::ones((int)count, 9, CV_64F)*NOT_KNOWN);
+    for (const auto& entry : pointsOf)
+    {
+        const size_t a = entry.first.first, b = entry.first.second;
+        const Matx33d R = rig.Rs[b]*rig.Rs[a].t();
+        std::vector<Point2d> first, second;
+        for (size_t i : entry.second)
+        {
+            first.push_back(pixels[a][i]);
+            second.push_back(pixels[b][i]);
+        }
+        std::vector<Point3d> points;
+        std::vector<uchar> status;
+        Mat C;
+        refract::triangulateRefractive(rig.cameras[a].camera, rig.cameras[b].camera, Mat(R), rig.Ts[b] - R*rig.Ts[a], first, second,
+                                       points, status, refract::TRIANGULATE_OPTIMAL, pixelSigma, noArray(), C);
+        for (size_t k = 0; k < points.size(); k++)
+        {
+            const size_t i = entry.second[k];
+            result.points[i] = rig.Rs[a].t()*(Vec3d(points[k]) - rig.Ts[a]);
+            result.status[i] = status[k];
+            const Matx33d turned = rig.Rs[a].t()*Matx33d(C.ptr<double>((int)k))*rig.Rs[a];
+            Mat(1, 9, CV_64F, (void*)turned.val).copyTo(covariance.row((int)i));
+        }
+    }
+}
+
 } // namespace
 
 int Measurement::answers() const
@@ -54,24 +98,36 @@ int Measurement::inconsistent() const
 int Measurement::seenPoints() const
 {
     int count = 0;
-    for (size_t i = 0; i < pixels1.size(); i++)
-        count += seen(pixels1[i]) && (pixels2.empty() || seen(pixels2[i]));
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const auto views = std::count_if(pixels.begin(), pixels.end(), [i](const auto& image) { return seen(image[i]); });
+        count += views >= (pixels.size() == 1 ? 1 : 2);
+    }
     return count;
 }
 
-Measurement measureStereo(const Calibration& calibration, const std::vector<Point2d>& pixels1,
-                          const std::vector<Point2d>& pixels2, double pixelSigma)
+RigPixels glassPixels(const Moment& moment, int cameraCount)
+{
+    RigPixels pixels(moment.glass.begin(), moment.glass.begin() + cameraCount);
+    for (std::vector<Point2d>& image : pixels)
+        image.resize(moment.objectPoints.size(), Point2d(NOT_KNOWN, NOT_KNOWN));
+    return pixels;
+}
+
+Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, double pixelSigma)
 {
     Measurement result;
-    result.pixels1 = pixels1;
-    result.pixels2 = pixels2;
+    result.pixels = pixels;
     Mat covariance;
-    refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.R,
-        calibration.T, pixels1, pixels2, result.points, result.status, refract::TRIANGULATE_OPTIMAL,
-        pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
-    result.sigma.assign(pixels1.size(), Vec3d::all(NOT_KNOWN));
+    if (pixels.size() == 2)
+        refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, Mat(calibration.Rs[1]),
+            calibration.Ts[1], pixels[0], pixels[1], result.points, result.status, refract::TRIANGULATE_OPTIMAL,
+            pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
+    else
+        triangulateByPairs(calibration, pixels, pixelSigma > 0 ? pixelSigma : 1., result, covariance);
+    result.sigma.assign(result.points.size(), Vec3d::all(NOT_KNOWN));
     if (pixelSigma > 0)
-        for (size_t i = 0; i < pixels1.size(); i++)
+        for (size_t i = 0; i < result.points.size(); i++)
         {
             const double* c = covariance.ptr<double>((int)i);
             result.sigma[i] = Vec3d(std::sqrt(c[0]), std::sqrt(c[4]), std::sqrt(c[8]));
@@ -86,7 +142,7 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
 {
     const auto& camera = calibration.cameras[0].camera;
     Measurement result;
-    result.pixels1 = pixels;
+    result.pixels = {pixels};
     refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
     const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
     const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
@@ -103,19 +159,19 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
 }
 
 /* The pose of least squares: dpose = K^+ (du - A dp), K: pixels by pose. */
-Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<Point2d>& pixels,
-                          double pixelSigma)
+Measurement measureTarget(const Calibration& calibration, const std::vector<Point3d>& objectPoints,
+                          const std::vector<Point2d>& pixels, double pixelSigma)
 {
     const auto& camera = calibration.cameras[0].camera;
     Vec3d rvec, tvec;
-    if (!refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec))
+    if (!refract::refractiveSolvePnP(objectPoints, pixels, camera, rvec, tvec))
         throw Failure("no pose of the target explains its points: check --size and --square");
     std::vector<Point3d> seenPoints;
     std::vector<Point2d> seenPixels, predicted;
     for (size_t i = 0; i < pixels.size(); i++)
         if (seen(pixels[i]))
         {
-            seenPoints.push_back(target.objectPoints()[i]);
+            seenPoints.push_back(objectPoints[i]);
             seenPixels.push_back(pixels[i]);
         }
     Measurement result;
@@ -135,8 +191,8 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
     Mat jacobian;                               // 3x9: by rvec, of R row by row
     Rodrigues(rvec, R, jacobian);
     const MatrixXd dR = toEigen(jacobian);
-    result.pixels1 = pixels;
-    for (const Point3d& point : target.objectPoints())
+    result.pixels = {pixels};
+    for (const Point3d& point : objectPoints)
     {
         const Vec3d X(point);
         result.points.push_back(Point3d(R*X + tvec));

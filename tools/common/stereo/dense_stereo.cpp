@@ -36,7 +36,7 @@ std::pair<Mat, Mat> rectify(const RectifiedRig& rig, const Mat& image1, const Ma
     {
         const int64 start = cv::getTickCount();
         Mat map1, map2;
-        const Mat T = c ? Mat(rig.calibration().T) : Mat();
+        const Mat T = c ? Mat(rig.calibration().Ts[c]) : Mat();
         cv::refract::initRefractiveStereoRectifyMap(cameras[c].camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1,
                                                     scaled(c ? rig.P2 : rig.P1, scale), T, size, CV_16SC2, map1, map2);
         seconds += secondsSince(start);
@@ -118,7 +118,7 @@ void findPoints(const RectifiedRig& rig, DenseStereo& result)
     const int64 start = cv::getTickCount();
     const Calibration& c = rig.calibration();
     Mat points;
-    cv::refract::refractiveReprojectImageTo3D(result.disparity, points, c.cameras[0].camera, c.cameras[1].camera, c.R, c.T, rig.R1,
+    cv::refract::refractiveReprojectImageTo3D(result.disparity, points, c.cameras[0].camera, c.cameras[1].camera, c.Rs[1], c.Ts[1], rig.R1,
                                               rig.R2, rig.P1, rig.P2, result.depth1, result.depth2);
     cv::transform(points, result.points, rig.R1.t());
     result.mapSeconds += secondsSince(start);
