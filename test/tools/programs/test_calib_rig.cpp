@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
 #include <iostream>
 
 using namespace cv;
@@ -440,7 +441,7 @@ TEST_CASE("Sixteen simulated cameras with known poses, exact and uncertain", "[.
         noisy << ",0.01,0.1\n";
     }
     noisy.close();
-    for (const std::string& poses : {std::string(), "poses.csv", "noisy.csv"})
+    for (const std::string poses : {"", "poses.csv", "noisy.csv"})
     {
         const ToolResult result = runTool(calib + (poses.empty() ? "" : " --poses=" + folder / poses) + " --report="
                                           + folder / "report.html --out=" + folder / "calib.yml");

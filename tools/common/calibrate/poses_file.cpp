@@ -39,7 +39,7 @@ public:
     PosesFile(const std::string& path, const std::string& unit)
         : table_(path, {"view"}, "a file of known poses"), sigma_(table_, "sigma", unit)
     {
-        for (const std::string& axis : {"x", "y", "z"})
+        for (const std::string axis : {"x", "y", "z"})
         {
             lengths_.emplace_back(table_, "t" + axis, unit);
             if (lengths_.back().column.empty())
