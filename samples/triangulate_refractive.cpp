@@ -42,10 +42,13 @@ int main(int argc, char** argv)
         "{right | samples/data/stereo/measure2/z600_1.jpg | image of camera 2}"
         "{cols  | 6 | inner corners in a row} {rows | 5 | inner corners in a column} {square | 39 | side of a square}");
     const String filename = args.get<String>("calib");
-    const Ptr<refract::RefractiveCamera> camera1 = refract::RefractiveCamera::read(filename, "camera1");
-    const Ptr<refract::RefractiveCamera> camera2 = refract::RefractiveCamera::read(filename, "camera2");
-    const FileStorage file(filename, FileStorage::READ);
-    const Mat R = file["R"].mat(), T = file["T"].mat();
+    std::vector<Ptr<refract::RefractiveCamera> > cameras;
+    std::vector<Mat> Rs, Ts;                // camera 1 -> each camera
+    refract::readRig(filename, cameras, Rs, Ts);
+    if (cameras.size() < 2)
+        CV_Error(Error::StsError, filename + " has only one camera");
+    const Ptr<refract::RefractiveCamera> camera1 = cameras[0], camera2 = cameras[1];
+    const Mat R = Rs[1], T = Ts[1];
 
     const Size size(args.get<int>("cols"), args.get<int>("rows"));
     const std::vector<Point2f> left = findCorners(args.get<String>("left"), size);

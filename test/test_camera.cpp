@@ -1,10 +1,10 @@
 // RefractiveCamera: making, changing, reading and writing.
 #include "scenes.hpp"
+#include "temporary_file.hpp"
 #include "temporary_folder.hpp"
 
 #include <opencv2/core/utils/filesystem.hpp>
 
-#include <cstdio>
 #include <fcntl.h>
 #include <fstream>
 #include <sys/stat.h>
@@ -17,17 +17,6 @@ using namespace scenes;
 using Catch::Matchers::Contains;
 
 namespace {
-
-//! A file that is gone when the test is over.
-struct TemporaryFile
-{
-    explicit TemporaryFile(const std::string& suffix, const std::string& text = "") : path(cv::tempfile(suffix.c_str()))
-    {
-        std::ofstream(path, std::ios::binary) << text;
-    }
-    ~TemporaryFile() { std::remove(path.c_str()); }
-    const std::string path;
-};
 
 std::vector<Vec2d> someProjections(const Ptr<RefractiveCamera>& camera)
 {

@@ -112,6 +112,26 @@ def test_triangulate_extended(rig):
     assert (sigma > 0.001).all() and (sigma < 1.).all() and not status.any()
 
 
+def test_triangulate_by_any_number_of_cameras(rig):
+    zero, R3, T3 = np.zeros(3), np.array([0., -0.3, 0.]), np.array([180., 0., 25.])
+    cameras = [rig.camera1, rig.camera2, rig.camera1.clone()]
+    pixels3 = refract.refractiveProjectPoints(rig.points, R3, T3, cameras[2])[0]
+    Rs, Ts = [np.eye(3), rig.R, R3], [zero, rig.T, T3]
+    images = [rig.pixels1[:, 0].copy(), rig.pixels2[:, 0].copy(), pixels3[:, 0].copy()]
+    images[0][3] = images[1][4] = images[2][5] = images[0][6] = images[1][6] = np.nan
+    for pixels in (images, [image.astype(np.float64)[:, None] for image in images], np.array(images)):
+        for flags in (refract.TRIANGULATE_OPTIMAL, refract.TRIANGULATE_MIDPOINT):
+            points, status = refract.triangulateRefractive(cameras, Rs, Ts, pixels, flags=flags)
+            assert points.shape == (40, 1, 3) and status[6] == refract.REFRACT_TOO_FEW_VIEWS and np.isnan(points[6]).all()
+            seen = np.arange(40) != 6
+            np.testing.assert_allclose(points[seen, 0], rig.points[seen], atol=1e-6)
+            assert not status[seen].any()
+    points, status, covariance = refract.triangulateRefractiveExtended(cameras, Rs, Ts, images, 0, 0.1, None)
+    assert covariance.shape == (40, 9) and np.isnan(covariance[6]).all() and (covariance[seen, 8] > 0).all()
+    with pytest.raises(refract.error, match="imagePoints has 2 elements; cameras has 3"):
+        refract.triangulateRefractive(cameras, Rs, Ts, images[:2])
+
+
 def test_calibrate_normal(rig, board):
     for camera in ((rig.K1, rig.D1), (rig.camera1,)):
         rms, normal, center, covariance = refract.calibrateGlassNormal(board.direct1, board.glass1, *camera)

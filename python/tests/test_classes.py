@@ -145,3 +145,21 @@ def test_a_saved_camera_is_read_back(tmp_path):
     assert back.window().normal == window.normal
     with pytest.raises(refract.error, match="no/camera.yml cannot be written"):
         camera.save(str(tmp_path / "no" / "camera.yml"))
+
+
+def test_a_rig_is_read_back(tmp_path):
+    windows = [refract.GlassWindow((0.1*i, 0.05, 1), 20, 1.5437, 50) for i in range(3)]
+    cameras = [refract.RefractiveCamera.create(K, np.array([-0.1, 0.01, 0, 0]), window) for window in windows]
+    Rs, Ts = [np.eye(3), np.array([0., 0.1, 0.]), np.array([0., -0.1, 0.])], [np.zeros(3), np.array([-9., 0, 1]), np.ones(3)]
+    name = str(tmp_path / "rig.yml")
+    refract.writeRig(name, cameras, Rs, Ts)
+    back, R, T = refract.readRig(name)
+    assert len(back) == len(R) == len(T) == 3 and R[1].shape == (3, 3) and T[1].shape == (3, 1)
+    np.testing.assert_array_equal(back[2].lensParameters(), cameras[2].lensParameters())
+    np.testing.assert_array_equal(np.ravel(T[1]), Ts[1])
+    count = sum(len(camera.parameterNames()) for camera in cameras) + 12
+    refract.writeRig(name, cameras, R, T, [0, 0, 1], np.eye(count))
+    back, R, T, window_of_camera, covariance = refract.readRigExtended(name)
+    assert list(window_of_camera) == [0, 0, 1] and covariance.shape == (count, count)
+    with pytest.raises(refract.error, match="missing.yml"):
+        refract.readRig(str(tmp_path / "missing.yml"))

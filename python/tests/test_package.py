@@ -12,7 +12,8 @@ HAVE_CV2 = importlib.util.find_spec("cv2") is not None
 CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "computeRefractiveEpilines",
          "initRefractiveUndistortRectifyMap", "refractivePointsOnPlane", "refractiveProjectPoints",
          "refractiveProjectPointsExtended", "refractiveSolvePnP", "refractiveUndistortPoints",
-         "refractiveUnprojectPoints", "stereoCalibrateGlass", "triangulateRefractive", "triangulateRefractiveExtended"]
+         "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass", "triangulateRefractive", "triangulateRefractiveExtended",
+         "writeRig"]
 
 
 def test_every_call_is_here_with_its_docstring():

@@ -25,11 +25,7 @@ def length_error(points):
 
 
 calib = os.path.join(DATA, "truth.yml")
-camera1 = refract.RefractiveCamera.read(calib, "camera1")
-camera2 = refract.RefractiveCamera.read(calib, "camera2")
-file = cv2.FileStorage(calib, cv2.FILE_STORAGE_READ)
-R = file.getNode("R").mat()
-T = file.getNode("T").mat()
+(camera1, camera2), (_, R), (_, T) = refract.readRig(calib)
 
 left, right = find_corners("measure1/z600_1.jpg"), find_corners("measure2/z600_1.jpg")
 points, status = refract.triangulateRefractive(camera1, camera2, R, T, left, right)

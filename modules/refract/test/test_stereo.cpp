@@ -96,6 +96,36 @@ TEST(Refract_Triangulate, covariance_is_the_spread)
     EXPECT_NEAR(1, std::sqrt(variance/covariance.at<double>(0, 8)), 0.1);
 }
 
+TEST(Refract_Triangulate, by_three_cameras_of_a_file)
+{
+    std::vector<Ptr<RefractiveCamera> > cameras(1, camera1());
+    cameras.push_back(camera2());
+    cameras.push_back(camera1()->clone());
+    std::vector<Mat> Rs(1, Mat::eye(3, 3, CV_64F)), Ts(1, Mat::zeros(3, 1, CV_64F));
+    Rs.push_back(Mat(R()));
+    Ts.push_back(Mat(T()));
+    Rs.push_back((Mat_<double>(3, 1) << 0, -0.3, 0));
+    Ts.push_back((Mat_<double>(3, 1) << 180, 0, 25));
+    const String filename = cv::tempfile(".yml");
+    writeRig(filename, cameras, Rs, Ts);
+    readRig(filename, cameras, Rs, Ts);
+    remove(filename.c_str());
+    ASSERT_EQ(3u, cameras.size());
+    PixelViews pixels;
+    for (int c = 0; c < 3; c++)
+        pixels.push_back(project(scenePoints(), cameras[c], Matx33d(Rs[c]), Vec3d(Ts[c])));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    pixels[1][0] = pixels[1][1] = pixels[2][1] = Point2d(none, none);
+    std::vector<Point3d> points;
+    std::vector<uchar> status;
+    triangulateRefractive(cameras, Rs, Ts, pixels, points, status);
+    EXPECT_EQ(REFRACT_TOO_FEW_VIEWS, status[1]);
+    EXPECT_TRUE(cvIsNaN(points[1].x));
+    for (size_t i = 0; i < points.size(); i++)
+        if (i != 1)
+            EXPECT_NEAR(0, cv::norm(points[i] - scenePoints()[i]), 1e-6);
+}
+
 TEST(Refract_Triangulate, parallel_rays)
 {
     const std::vector<Point2d> same(1, Point2d(0, 0));

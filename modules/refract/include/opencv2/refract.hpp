@@ -52,14 +52,15 @@ enum RefractiveStatus {
     REFRACT_TOTAL_REFLECTION = 4,   //!< no light gets from there to here: total reflection in some layer
     REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
-    REFRACT_PARALLEL_RAYS = 7,      //!< the two rays, or the ray and the plane, are parallel
-    REFRACT_NO_INTERSECTION = 8     //!< the two rays come closest, or the ray meets the plane, behind an origin
+    REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, are parallel
+    REFRACT_NO_INTERSECTION = 8,    //!< the rays come closest, or the ray meets the plane, behind an origin
+    REFRACT_TOO_FEW_VIEWS = 9       //!< fewer than two cameras saw the point
 };
 
 //! Flags of triangulateRefractive
 enum TriangulateFlags {
-    TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in both images
-    TRIANGULATE_MIDPOINT = 1        //!< midpoint of the shortest segment between the two rays
+    TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in all images
+    TRIANGULATE_MIDPOINT = 1        //!< least squared distance from all rays; of two, the midpoint of the shortest segment
 };
 
 //! Flags of refractiveStereoRectify
@@ -234,6 +235,49 @@ private:
     RefractiveCamera(const RefractiveCamera&);
     RefractiveCamera& operator=(const RefractiveCamera&);
 };
+
+/** @brief Reads all cameras of a rig and where they are, from a file such as refract_calib writes (YAML, XML or JSON).
+
+One camera is at the top level of the file. Several are in the maps `camera1`, `camera2`, ..., as RefractiveCamera::write
+writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on. A .cameramodel of mrcal
+is one camera.
+
+@param filename path.
+@param cameras one or more.
+@param Rs 3x3 CV_64F rotation camera 1 -> camera, one per camera; the first is the identity.
+@param Ts 3x1 CV_64F, as Rs; the first is 0.
+
+Throws cv::Exception with the file's name and the key if something is missing or is not what it should be.
+*/
+CV_EXPORTS_W void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
+        OutputArrayOfArrays Rs, OutputArrayOfArrays Ts);
+
+/** @brief readRig with what else the module's functions take of a calibration.
+@param filename path.
+@param cameras as above.
+@param Rs as above.
+@param Ts as above.
+@param windowOfCamera which window each camera looks through, equal numbers share one, as calibrateGlassRig takes it (key
+`window_of_camera`); empty where the file does not say.
+@param covariance PxP CV_64F of all cameras' parameters, then rvec (3) and T (3) of each but the first, as
+calibrateGlassRigExtended returns it (key `covariance`); empty where the file has none.
+*/
+CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
+        OutputArrayOfArrays Rs, OutputArrayOfArrays Ts, CV_OUT std::vector<int>& windowOfCamera, OutputArray covariance);
+
+/** @brief Writes a file that readRig() reads: the whole of it or, if that fails (which throws), nothing. A file of that name is
+replaced, with whatever else was in it.
+@param filename path; its extension chooses the format: .xml, .json, else YAML.
+@param cameras one or more.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding. May
+be empty for one camera.
+@param Ts 3x1, as Rs.
+@param windowOfCamera see readRig; empty: the file does not say.
+@param covariance see readRig; empty: none.
+*/
+CV_EXPORTS_W void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, const std::vector<int>& windowOfCamera = std::vector<int>(),
+        InputArray covariance = noArray());
 
 /** @brief Projects object points through lens and window.
 
@@ -426,6 +470,42 @@ CV_EXPORTS_W void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, co
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputArray R, InputArray T, InputArray points1, InputArray points2,
+        OutputArray points3D, OutputArray status, int flags,
+        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+
+/** @brief Triangulates points seen by any number of cameras, each behind its own window, several behind one, or none.
+@param cameras lens and window of each.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+@param Ts 3x1 translation, as Rs; the first is 0.
+@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than two cameras saw the point. A pixel that
+was seen must have a ray: the reason of the first one that has none is the point's.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+
+Of two cameras, the same as triangulateRefractive for two. Wrong matches are not looked for: one among many cameras moves the
+point.
+*/
+CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
+        OutputArray points3D, OutputArray status = noArray(), int flags = 0);
+
+/** @brief triangulateRefractive for any number of cameras, with the covariance of each point.
+@param cameras lens and window of each.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+@param Ts 3x1 translation, as Rs; the first is 0.
+@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param points3D N points in the frame of camera 1, Nx1 3-channel.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+@param pixelSigma standard deviation of each pixel coordinate.
+@param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras, then
+rvec and T of each but the first; it is carried to the points.
+@param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
+*/
+CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
+        const std::vector<Ptr<RefractiveCamera> >& cameras,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
         OutputArray points3D, OutputArray status, int flags,
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
 

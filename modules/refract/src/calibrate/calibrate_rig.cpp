@@ -5,7 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
-#include "arrays/arrays.hpp"
+#include "arrays/extrinsics.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
 
@@ -82,22 +82,11 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera)
     }
 }
 
-Pose readPose(const Mat& R, const Mat& T, const String& nameR, const String& nameT)
-{
-    Pose pose;
-    pose.rvec = rotationVector(readRotation(R, nameR.c_str()));
-    pose.tvec = readVec3(T, nameT.c_str());
-    pose.found = true;
-    return pose;
-}
-
 void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handles)
 {
     for (int c = 0; c < rig.count(); c++)
         cameraOf(handles[c]) = rig.cameras[c];
 }
-
-String numbered(const char* name, int i) { return format("%s[%d]", name, i); }
 
 //! One entry per camera; fewer only if it may be left out altogether.
 void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
@@ -106,48 +95,32 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
 }
 
-std::vector<Pose> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
+Pose poseOf(const RigidTransform& extrinsics)
 {
-    const double ROUNDING = 1e-6;
-    std::vector<Pose> extrinsics(1);
-    if (cameras == 1)
-        return extrinsics;
-    std::vector<Mat> R, T;
-    Rs.getMatVector(R);
-    Ts.getMatVector(T);
-    checkCount(R.size(), cameras, "Rs", false);
-    checkCount(T.size(), cameras, "Ts", false);
-    for (int c = 0; c < cameras; c++)
-    {
-        const Pose pose = readPose(R[c], T[c], numbered("Rs", c), numbered("Ts", c));
-        if (c == 0 && norm(pose.rvec) + norm(pose.tvec) > ROUNDING)
-            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
-                                         "be the identity and 0", norm(pose.rvec), norm(pose.tvec)));
-        if (c > 0)
-            extrinsics.push_back(pose);
-    }
-    return extrinsics;
+    Pose pose;
+    pose.rvec = rotationVector(extrinsics.R);
+    pose.tvec = extrinsics.T;
+    pose.found = true;
+    return pose;
 }
 
-void writeExtrinsics(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts)
+std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
-    std::vector<Mat> R, T;
-    for (const Pose& pose : rig.extrinsics)
+    std::vector<Pose> poses;
+    for (const RigidTransform& camera : cameras == 1 ? std::vector<RigidTransform>(1) : readExtrinsics(Rs, Ts, cameras))
+        poses.push_back(poseOf(camera));
+    return poses;
+}
+
+void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts)
+{
+    std::vector<RigidTransform> extrinsics(rig.extrinsics.size());
+    for (size_t c = 0; c < extrinsics.size(); c++)
     {
-        R.push_back(Mat(rotationMatrix(pose.rvec)));
-        T.push_back(Mat(pose.tvec, true));
+        extrinsics[c].R = rotationMatrix(rig.extrinsics[c].rvec);
+        extrinsics[c].T = rig.extrinsics[c].tvec;
     }
-    const auto write = [](const std::vector<Mat>& from, InputOutputArrayOfArrays to)
-    {
-        to.create((int)from.size(), 1, CV_64F);
-        for (int c = 0; c < (int)from.size(); c++)
-        {
-            to.create(from[c].size(), CV_64F, c, true);
-            from[c].copyTo(to.getMat(c));
-        }
-    };
-    write(R, Rs);
-    write(T, Ts);
+    writeExtrinsics(extrinsics, Rs, Ts);
 }
 
 //! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors.
@@ -285,7 +258,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    rig.extrinsics = readExtrinsics(Rs, Ts, count);
+    rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
@@ -297,7 +270,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
     if (flags & GLASS_FREE_EXTRINSICS)
-        writeExtrinsics(rig, Rs, Ts);
+        writeExtrinsicPoses(rig, Rs, Ts);
     return fit;
 }
 
@@ -351,7 +324,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_SHARED_WINDOW);
     Rig rig;
     rig.cameras = camerasOf({ camera1, camera2 }, { "camera1", "camera2" });
-    rig.extrinsics = { Pose(), readPose(R.getMat(), T.getMat(), "R", "T") };
+    rig.extrinsics = { Pose(), poseOf({ readRotation(R, "R"), readVec3(T, "T") }) };
     setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
     RigTask task;
     task.views.object = readObjectViews(objectPoints, "objectPoints");

@@ -6,15 +6,6 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
-#include <cstdio>
-#include <fstream>
-#ifdef _WIN32
-#define NOMINMAX
-#include <windows.h>
-#else
-#include <sys/stat.h>
-#include <unistd.h>
-#endif
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -58,8 +49,7 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
 {
     CV_INSTRUMENT_REGION();
 
-    const String suffix = ".cameramodel";
-    if (filename.size() > suffix.size() && filename.substr(filename.size() - suffix.size()) == suffix)
+    if (isCameraModel(filename))
     {
         const CameraModel model = readCameraModel(filename);
         Ptr<RefractiveCamera> camera = createMrcal(model.lensModel, model.intrinsics);
@@ -78,14 +68,6 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
     return readNode(node, filename);
 }
 
-//! path/name.yml -> path/name.part.yml: the extension chooses FileStorage's format.
-static String partName(const String& filename)
-{
-    const size_t slash = filename.find_last_of("/\\"), dot = filename.rfind('.');
-    const bool hasExtension = dot != String::npos && (slash == String::npos || dot > slash);
-    return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
-}
-
 void RefractiveCamera::write(const Ptr<FileStorage>& fs, const String& name) const
 {
     CV_INSTRUMENT_REGION();
@@ -99,67 +81,11 @@ void RefractiveCamera::write(const Ptr<FileStorage>& fs, const String& name) con
         *fs << "}";
 }
 
-//! In one step where the system has one.
-static bool moveOver(const String& from, const String& to)
-{
-#ifdef _WIN32
-    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
-#else
-    return std::rename(from.c_str(), to.c_str()) == 0;
-#endif
-}
-
-//! Where links lead to: they stay, what they lead to is replaced.
-static String targetOfLinks(const String& filename)
-{
-    String target = filename;
-#ifndef _WIN32
-    char next[4096];
-    for (int i = 0; i < 40; i++)
-    {
-        const ssize_t length = readlink(target.c_str(), next, sizeof(next));
-        if (length <= 0 || length == (ssize_t)sizeof(next))
-            break;
-        const size_t slash = next[0] == '/' ? String::npos : target.rfind('/');
-        target = (slash == String::npos ? String() : target.substr(0, slash + 1)) + String(next, length);
-    }
-#endif
-    return target;
-}
-
-//! A device or a pipe takes the bytes, and must not be replaced; a read-only file must stay, also if root asks.
-static void askWhatIsThere(const String& filename, bool& special, bool& readOnly)
-{
-    special = readOnly = false;
-#ifndef _WIN32
-    struct stat there;
-    if (stat(filename.c_str(), &there) != 0)
-        return;
-    special = !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
-    readOnly = S_ISREG(there.st_mode) && (!(there.st_mode & 0222) || access(filename.c_str(), W_OK) != 0);
-#endif
-}
-
 void RefractiveCamera::save(const String& filename) const
 {
     CV_INSTRUMENT_REGION();
 
-    bool special, readOnly;
-    askWhatIsThere(filename, special, readOnly);
-    const String target = targetOfLinks(filename), part = special ? filename : partName(target);
-    // FileStorage would log a line of its own. A pipe is opened once: closed, it would end for its reader.
-    if (readOnly || (!special && !std::ofstream(part.c_str())))
-        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    FileStorage fs(part, FileStorage::WRITE);
-    if (!fs.isOpened())
-        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    write(fs);
-    fs.release();
-    if (!special && !moveOver(part, target))
-    {
-        std::remove(part.c_str());
-        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    }
+    saveStorage(filename, [this](FileStorage& fs) { write(fs); });
 }
 
 }} // namespace

@@ -160,6 +160,12 @@ private:
 
 } // namespace
 
+bool isCameraModel(const String& filename)
+{
+    const String suffix = ".cameramodel";
+    return filename.size() > suffix.size() && filename.substr(filename.size() - suffix.size()) == suffix;
+}
+
 CameraModel readCameraModel(const String& filename)
 {
     std::ifstream file(filename.c_str());

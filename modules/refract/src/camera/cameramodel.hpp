@@ -17,6 +17,9 @@ struct CameraModel
     Size imageSize;
 };
 
+//! By its name.
+bool isCameraModel(const String& filename);
+
 /** Reads an mrcal .cameramodel: one Python dict of strings, numbers and nested lists, with # comments. Unknown keys (the
 optimization inputs) are passed over. Throws with the file's name. */
 CameraModel readCameraModel(const String& filename);

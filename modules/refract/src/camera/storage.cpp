@@ -3,7 +3,15 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "camera/storage.hpp"
+#include <cstdio>
 #include <fstream>
+#ifdef _WIN32
+#define NOMINMAX
+#include <windows.h>
+#else
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
 
 namespace cv { namespace refract {
 
@@ -67,9 +75,10 @@ Mat readStoredMatrix(const FileNode& map, const char* key, const String& filenam
     if (node.empty())
         return Mat();
     const bool isMap = node.isMap() && node["rows"].isInt() && node["cols"].isInt();
-    const int rows = isMap ? (int)node["rows"] : -1, cols = isMap ? (int)node["cols"] : -1;
+    const int rows = isMap ? (int)node["rows"] : node.isSeq() ? (int)node.size() : -1;
+    const int cols = isMap ? (int)node["cols"] : node.isSeq() ? 1 : -1;
     // In XML one number is no sequence, and none is an empty text.
-    const FileNode data = isMap ? node["data"] : FileNode();
+    const FileNode data = isMap ? node["data"] : node.isSeq() ? node : FileNode();
     const size_t count = data.isSeq() ? data.size() : isNumber(data) ? 1 : 0;
     if (rows < 0 || cols < 0 || (uint64)rows*cols != count)
         CV_Error_(Error::StsParseError, ("%s: %s is not a matrix of one channel, with rows x cols numbers as data",
@@ -85,6 +94,75 @@ Mat readStoredMatrix(const FileNode& map, const char* key, const String& filenam
         m.ptr<double>()[i++] = (double)number;
     }
     return m;
+}
+
+//! path/name.yml -> path/name.part.yml: the extension chooses FileStorage's format.
+static String partName(const String& filename)
+{
+    const size_t slash = filename.find_last_of("/\\"), dot = filename.rfind('.');
+    const bool hasExtension = dot != String::npos && (slash == String::npos || dot > slash);
+    return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
+}
+
+//! In one step where the system has one.
+static bool moveOver(const String& from, const String& to)
+{
+#ifdef _WIN32
+    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+#else
+    return std::rename(from.c_str(), to.c_str()) == 0;
+#endif
+}
+
+//! Where links lead to: they stay, what they lead to is replaced.
+static String targetOfLinks(const String& filename)
+{
+    String target = filename;
+#ifndef _WIN32
+    char next[4096];
+    for (int i = 0; i < 40; i++)
+    {
+        const ssize_t length = readlink(target.c_str(), next, sizeof(next));
+        if (length <= 0 || length == (ssize_t)sizeof(next))
+            break;
+        const size_t slash = next[0] == '/' ? String::npos : target.rfind('/');
+        target = (slash == String::npos ? String() : target.substr(0, slash + 1)) + String(next, length);
+    }
+#endif
+    return target;
+}
+
+//! A device or a pipe takes the bytes, and must not be replaced; a read-only file must stay, also if root asks.
+static void askWhatIsThere(const String& filename, bool& special, bool& readOnly)
+{
+    special = readOnly = false;
+#ifndef _WIN32
+    struct stat there;
+    if (stat(filename.c_str(), &there) != 0)
+        return;
+    special = !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
+    readOnly = S_ISREG(there.st_mode) && (!(there.st_mode & 0222) || access(filename.c_str(), W_OK) != 0);
+#endif
+}
+
+void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write)
+{
+    bool special, readOnly;
+    askWhatIsThere(filename, special, readOnly);
+    const String target = targetOfLinks(filename), part = special ? filename : partName(target);
+    // FileStorage would log a line of its own. A pipe is opened once: closed, it would end for its reader.
+    if (readOnly || (!special && !std::ofstream(part.c_str())))
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    FileStorage fs(part, FileStorage::WRITE);
+    if (!fs.isOpened())
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    write(fs);
+    fs.release();
+    if (!special && !moveOver(part, target))
+    {
+        std::remove(part.c_str());
+        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+    }
 }
 
 }} // namespace

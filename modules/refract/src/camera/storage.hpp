@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_STORAGE_HPP
 
 #include "precomp.hpp"
+#include <functional>
 
 /* Files of FileStorage that others may have written: whatever is in them, they are read or refused. FileStorage itself
 takes the memory that a matrix claims to need, and goes as deep as brackets do. */
@@ -14,8 +15,11 @@ namespace cv { namespace refract {
 //! Opened for reading. Throws StsObjectNotFound or StsParseError.
 FileStorage openStorage(const String& filename);
 
-//! The matrix of one channel called `key`, CV_64F; empty if there is none. Throws StsParseError.
+//! The matrix of one channel called `key`, CV_64F, a plain list is a column; empty if there is none. Throws StsParseError.
 Mat readStoredMatrix(const FileNode& map, const char* key, const String& filename);
+
+//! A new file of what `write` writes, complete, or as it was before; its extension chooses the format. Throws StsError.
+void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write);
 
 }} // namespace
 

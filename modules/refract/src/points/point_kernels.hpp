@@ -22,6 +22,23 @@ struct SurfaceTile
     double atCentre, middle, scale;
 };
 
+//! Rays of one camera, directions and axis in the frame of camera 1: origin = tau axis + centre.
+struct CameraRays
+{
+    const double* seen;         //!< NaN: there is no ray
+    const double *tau, *dx, *dy, *dz;
+    double axis[3], centre[3];
+};
+
+//! Pixels of one camera.
+struct CameraErrors
+{
+    const double* R;            //!< rotation from the frame of camera 1; null: none
+    Columns observed;           //!< 2x1; NaN: not seen
+    Columns predicted;          //!< 2x1
+    Columns byPoint;            //!< derivatives of the predicted pixels, in the frame of the camera
+};
+
 //! What the calls on points ask for, of blocks of them.
 struct PointKernels
 {
@@ -52,13 +69,14 @@ struct PointKernels
     //! The raw pixels of n places of a row of a tile, at their depths; row and columns as interpolate's.
     void (*interpolateSurface)(const SurfaceTile& tile, const double* row, const double* columns, const double* planeD, int n,
                                double* u, double* v);
-    /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in two images.
-    @param R rotation of camera 2
-    @param observed, predicted 4x1: u1, v1, u2, v2
-    @param byPoint1, byPoint2 derivatives of the predicted pixels, each in the frame of its camera
+    /** The points with the least squared distance from the rays of two or more cameras.
+    @param apart below about 1e-24 all rays are parallel; of two, half the square of the sine between them
+    @param nearest how far along its ray the camera sees the point that has it least far */
+    void (*meetRays)(int n, int cameras, const CameraRays* rays, double* x, double* y, double* z, double* apart,
+                     double* nearest);
+    /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in all images.
     @param moved square of the pixels that the step moves the predictions */
-    void (*gaussNewton)(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
-                        const Columns& byPoint2, double* x, double* y, double* z, double* moved);
+    void (*gaussNewton)(int n, int cameras, const CameraErrors* errors, double* x, double* y, double* z, double* moved);
 };
 
 const PointKernels& pointKernels();

@@ -174,43 +174,130 @@ void chainLinear(const double* A, int n, const double* px, const double* py, con
     });
 }
 
-void gaussNewton(int n, const double* R, const Columns& observed, const Columns& predicted, const Columns& byPoint1,
-                 const Columns& byPoint2, double* px, double* py, double* pz, double* pMoved)
+inline Vector keep(Mask m, const Vector& a)
+{
+    const Lanes zero = all(0);
+    return { select(m, a.x, zero), select(m, a.y, zero), select(m, a.z, zero) };
+}
+
+struct RayLanes { Mask seen; Vector d, o; };
+
+//! d is 0 where the ray is not seen.
+template<typename At>
+inline RayLanes loadRay(const CameraRays& rays, At at)
+{
+    const Lanes u = load(rays.seen, at), zero = all(0);
+    RayLanes ray;
+    ray.seen = u == u;
+    ray.d = keep(ray.seen, { load(rays.dx, at), load(rays.dy, at), load(rays.dz, at) });
+    const Lanes tau = select(ray.seen, load(rays.tau, at), zero);
+    ray.o = { tau*rays.axis[0] + rays.centre[0], tau*rays.axis[1] + rays.centre[1], tau*rays.axis[2] + rays.centre[2] };
+    return ray;
+}
+
+//! The first ray that each lane sees.
+template<typename At>
+inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
+{
+    RayLanes first = loadRay(rays[0], at);
+    for (int c = 1; c < cameras && any(isNot(first.seen)); c++)
+    {
+        const RayLanes next = loadRay(rays[c], at);
+        const auto otherwise = [&](Lanes a, Lanes b) { return select(first.seen, a, b); };
+        first.d = { otherwise(first.d.x, next.d.x), otherwise(first.d.y, next.d.y), otherwise(first.d.z, next.d.z) };
+        first.o = { otherwise(first.o.x, next.o.x), otherwise(first.o.y, next.o.y), otherwise(first.o.z, next.o.z) };
+        first.seen |= next.seen;
+    }
+    return first;
+}
+
+//! Two unit vectors across d and each other (Duff et al., Building an orthonormal basis, revisited, JCGT 2017).
+inline void vectorsAcross(const Vector& d, Vector& a, Vector& b)
+{
+    const Lanes sign = select(d.z < 0, all(-1), all(1)), k = -1/(sign + d.z), xy = d.x*d.y*k;
+    a = { 1 + sign*d.x*d.x*k, sign*xy, -sign*d.x };
+    b = { xy, sign + d.y*d.y*k, -d.y };
+}
+
+/* Least squares of (I - d d^T)(X - o), in a frame (s, a, b) with s along the first ray: there what is small between rays that
+are nearly parallel is a product of small numbers, not a difference of large ones. */
+void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
 {
     eachRegister(n, [&](auto at)
     {
-        Vector J[4], A[3] = {}, g = {};     // A: J^T J by rows
-        for (int k = 0; k < 4; k++)
+        const RayLanes first = firstRay(cameras, rays, at);
+        Vector a, b;
+        vectorsAcross(first.d, a, b);
+        Lanes ss = all(0), sa = all(0), sb = all(0), aa = all(0), ab = all(0), bb = all(0);
+        Vector g = {};
+        for (int c = 0; c < cameras; c++)
         {
-            J[k] = loadRow(k < 2 ? byPoint1 : byPoint2, k % 2, at);
-            if (k >= 2)
+            const RayLanes ray = loadRay(rays[c], at);
+            const Vector w = { ray.o.x - first.o.x, ray.o.y - first.o.y, ray.o.z - first.o.z };
+            const Lanes ds = dot(ray.d, first.d), da = dot(ray.d, a), db = dot(ray.d, b);
+            const Lanes ws = dot(w, first.d), wa = dot(w, a), wb = dot(w, b);
+            const Lanes along = da*wa + db*wb, across = da*da + db*db, aaOwn = ds*ds + db*db, bbOwn = ds*ds + da*da;
+            g = { g.x + across*ws - ds*along, g.y + aaOwn*wa - da*(ds*ws + db*wb), g.z + bbOwn*wb - db*(ds*ws + da*wa) };
+            ss += across; sa -= ds*da; sb -= ds*db; aa += aaOwn; ab -= da*db; bb += bbOwn;
+        }
+        const Lanes inverse = 1/(aa*bb - ab*ab), ka = (bb*sa - ab*sb)*inverse, kb = (aa*sb - ab*sa)*inverse;
+        const Lanes apart = ss - ka*sa - kb*sb, s = (g.x - ka*g.y - kb*g.z)/apart;
+        const Lanes ga = g.y - sa*s, gb = g.z - sb*s, A = (bb*ga - ab*gb)*inverse, B = (aa*gb - ab*ga)*inverse;
+        const Vector X = { first.o.x + s*first.d.x + A*a.x + B*b.x, first.o.y + s*first.d.y + A*a.y + B*b.y,
+                           first.o.z + s*first.d.z + A*a.z + B*b.z };
+        Lanes nearest = s;
+        for (int c = 0; c < cameras; c++)
+        {
+            const RayLanes ray = loadRay(rays[c], at);
+            const Lanes far = dot(ray.d, { X.x - ray.o.x, X.y - ray.o.y, X.z - ray.o.z });
+            nearest = select(ray.seen & (far < nearest), far, nearest);
+        }
+        store(X.x, px, at);
+        store(X.y, py, at);
+        store(X.z, pz, at);
+        store(apart, pApart, at);
+        store(nearest, pNearest, at);
+    });
+}
+
+void gaussNewton(int n, int cameras, const CameraErrors* errors, double* px, double* py, double* pz, double* pMoved)
+{
+    const double LEAST = 1e-13;     // of the determinant: below it, A is too near to a singular one for its inverse
+    eachRegister(n, [&](auto at)
+    {
+        Vector A[3] = {}, g = {};       // A: J^T J by rows
+        for (int c = 0; c < cameras; c++)
+        {
+            const CameraErrors& camera = errors[c];
+            for (int k = 0; k < 2; k++)
             {
-                const Vector D = J[k];
-                J[k] = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
+                const Lanes observed = load(camera.observed.at(k, 0), at);
+                const Mask seen = observed == observed;
+                const Lanes e = select(seen, observed - load(camera.predicted.at(k, 0), at), all(0));
+                Vector D = keep(seen, loadRow(camera.byPoint, k, at));
+                if (const double* R = camera.R)
+                    D = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
+                g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
+                A[0] = { A[0].x + D.x*D.x, A[0].y + D.x*D.y, A[0].z + D.x*D.z };
+                A[1] = { A[0].y, A[1].y + D.y*D.y, A[1].z + D.y*D.z };
+                A[2] = { A[0].z, A[1].z, A[2].z + D.z*D.z };
             }
-            const Lanes e = load(observed.at(k, 0), at) - load(predicted.at(k, 0), at);
-            const Vector& D = J[k];
-            g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
-            A[0] = { A[0].x + D.x*D.x, A[0].y + D.x*D.y, A[0].z + D.x*D.z };
-            A[1] = { A[0].y, A[1].y + D.y*D.y, A[1].z + D.y*D.z };
-            A[2] = { A[0].z, A[1].z, A[2].z + D.z*D.z };
         }
         // The rows of the inverse are cross products of the rows over the determinant.
         const Vector a = cross(A[1], A[2]), b = cross(A[2], A[0]), c = cross(A[0], A[1]);
-        const Lanes inverse = 1/dot(A[0], a);
+        const Lanes determinant = dot(A[0], a), trace = A[0].x + A[1].y + A[2].z;
+        const Lanes inverse = 1/select(determinant > LEAST*trace*trace*trace, determinant, all(NAN));
         const Vector step = { dot(a, g)*inverse, dot(b, g)*inverse, dot(c, g)*inverse };
-        Lanes moved = all(0);
-        for (const Vector& D : J)
-            moved += square(dot(D, step));
         store(load(px, at) + step.x, px, at);
         store(load(py, at) + step.y, py, at);
         store(load(pz, at) + step.z, pz, at);
-        store(moved, pMoved, at);
+        store(step.x*dot(A[0], step) + step.y*dot(A[1], step) + step.z*dot(A[2], step), pMoved, at);
     });
 }
 
 constexpr PointKernels pointTable = {
-    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, gaussNewton
+    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, meetRays,
+    gaussNewton
 };
 
 }}} // namespace

@@ -4,212 +4,55 @@
 
 #include "points/triangulate.hpp"
 #include "points/point_kernels.hpp"
-#include "math/rotation.hpp"
-#include <Eigen/Dense>
 
-/* Two refracted rays -> a point. The midpoint of the shortest segment between them is the start; the maximum-likelihood
-point minimises the sum of squared pixel errors in both raw images, by Gauss-Newton with exact derivatives. */
+/* Refracted rays of two or more cameras -> a point. The point nearest to all rays is the start; the maximum-likelihood point
+minimises the sum of squared pixel errors in all raw images, by Gauss-Newton with exact derivatives. */
 
 namespace cv { namespace refract {
 
 namespace {
 
-typedef Eigen::Matrix<double, 4, 1> Residual;
-typedef Eigen::Matrix<double, 4, 3> Jacobian;
-
-//! Rays in the frame of camera 1.
+//! Rays of one camera for a block of pixels.
 struct Rays
 {
-    Vec3d o1, d1, o2, d2;
+    double tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
 };
 
-uchar midpoint(const Rays& r, Vec3d& X)
+CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n, Rays& r)
 {
-    // o1 + s1 d1 - o2 - s2 d2 is parallel to d1 x d2
-    const Vec3d axis = r.d1.cross(r.d2), between = r.o2 - r.o1;
-    const double sine2 = axis.dot(axis);
-    if (!(sine2 > 1e-24))
-        return REFRACT_PARALLEL_RAYS;
-    const double s1 = between.cross(r.d2).dot(axis)/sine2, s2 = between.cross(r.d1).dot(axis)/sine2;
-    X = 0.5*(r.o1 + s1*r.d1 + r.o2 + s2*r.d2);
-    return s1 > 0 && s2 > 0 ? REFRACT_OK : REFRACT_NO_INTERSECTION;
+    const Camera& camera = *cameras[c].camera;
+    forSeen(block, c, n, block.status, [&](uchar* status)
+    { camera.unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r.tau, r.dx, r.dy, r.dz, status); });
+    const RigidTransform& place = cameras[c].place;
+    const Matx33d back = place.R.t();
+    const Vec3d axis = back*camera.layers().normal(), centre = -(back*place.T), none;
+    if (c > 0)
+        pointKernels().transform(back.val, none.val, n, r.dx, r.dy, r.dz);
+    return { block.pixel(2*c), r.tau, r.dx, r.dy, r.dz, { axis[0], axis[1], axis[2] },
+             { centre[0], centre[1], centre[2] } };
 }
 
-//! Both pixels of X minus the observed ones, and their derivative by X; parameters may be null.
-uchar reproject(const StereoPair& pair, const Vec3d& X, const Vec2d& p1, const Vec2d& p2, Residual& e, Jacobian& J,
-                double* parameters1, double* parameters2)
+//! The points nearest to all rays.
+void meet(const PlacedCameras& cameras, PixelBlock& block, int n)
 {
-    Vec2d u1, u2;
-    double J1[6], J2[6];
-    uchar status = pair.camera1.projectJacobian(X, u1, J1, parameters1);
-    if (status == REFRACT_OK)
-        status = pair.camera2.projectJacobian(pair.R*X + pair.T, u2, J2, parameters2);
-    if (status != REFRACT_OK)
-        return status;
-    const Matx23d J2R = Matx23d(J2)*pair.R;
-    e << u1[0] - p1[0], u1[1] - p1[1], u2[0] - p2[0], u2[1] - p2[1];
-    for (int c = 0; c < 3; c++)
-        J.col(c) << J1[c], J1[3 + c], J2R(0, c), J2R(1, c);
-    return REFRACT_OK;
-}
-
-/* Far from the minimum a step must reduce the cost; near it full Gauss-Newton steps converge, and the cost, whose
-changes drown in rounding there, is not asked. */
-uchar refine(const StereoPair& pair, const Vec2d& p1, const Vec2d& p2, Vec3d& X)
-{
-    const double NEAR = 1e-3, DONE = 1e-11, ROUNDING = 1e-6;        // pixels that a step moves the two images
-    Residual e, eNew;
-    Jacobian J, JNew;
-    uchar status = reproject(pair, X, p1, p2, e, J, NULL, NULL);
-    if (status != REFRACT_OK)
-        return status;
-    double last = DBL_MAX;
-    for (int iteration = 0; iteration < 100; iteration++)
-    {
-        const Eigen::Vector3d step = -J.colPivHouseholderQr().solve(e);
-        Vec3d move(step[0], step[1], step[2]);
-        const double moved = (J*step).norm();
-        bool taken = false;
-        for (int cut = 0; cut < 40 && !taken; cut++, move *= 0.5)
-        {
-            taken = reproject(pair, X + move, p1, p2, eNew, JNew, NULL, NULL) == REFRACT_OK
-                    && (moved < NEAR || eNew.squaredNorm() < e.squaredNorm());
-            if (taken)
-            {
-                X += move; e = eNew; J = JNew;
-            }
-        }
-        if (!taken)
-            return REFRACT_NOT_CONVERGED;
-        if (moved <= DONE || (moved <= ROUNDING && moved >= 0.5*last))
-            return REFRACT_OK;
-        last = moved;
-    }
-    return REFRACT_NOT_CONVERGED;
-}
-
-/* Full Gauss-Newton steps of all lanes side by side. They converge at a rate that the sum of squares leaves small; a lane
-whose moves shrink so fast that less than DONE pixels are left has arrived, and one that moved by less than `enough` pixels, any
-other is left where it was, for refine(). Returns which lanes have arrived. */
-void refineTogether(const StereoPair& pair, PixelPairs& block, int n, double off, double enough, uchar* arrived)
-{
-    const double DONE = 1e-11, SHRINK = 0.01;
-    const int STEPS = 6;
-    double predicted[4*BLOCK], J1[6*BLOCK], J2[6*BLOCK], x[BLOCK], y[BLOCK], z[BLOCK], x2[BLOCK], y2[BLOCK], z2[BLOCK];
-    double moved[BLOCK], last[BLOCK];
-    uchar st[BLOCK];
-    CV_Assert(n > 0 && n <= BLOCK);
-    const Columns observed = { block.pixels, 1, BLOCK }, prediction = { predicted, 1, BLOCK };
-    const Columns byPoint1 = { J1, 3, BLOCK }, byPoint2 = { J2, 3, BLOCK }, none = { NULL, 0, 0 };
-    std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
-    std::copy(block.status, block.status + n, st);
-    std::fill(arrived, arrived + n, (uchar)false);
-    std::fill(last, last + n, off*off/SHRINK);
-    int missing = n;
-    for (int k = 0; k < STEPS && missing > 0; k++)
-    {
-        std::copy(x, x + n, x2); std::copy(y, y + n, y2); std::copy(z, z + n, z2);
-        pointKernels().transform(pair.R.val, pair.T.val, n, x2, y2, z2);
-        pair.camera1.projectJacobian(n, x, y, z, predicted, predicted + BLOCK, byPoint1, none, st);
-        pair.camera2.projectJacobian(n, x2, y2, z2, predicted + 2*BLOCK, predicted + 3*BLOCK, byPoint2, none, st);
-        pointKernels().gaussNewton(n, pair.R.val, observed, prediction, byPoint1, byPoint2, x, y, z, moved);
-        missing = 0;
-        for (int i = 0; i < n; i++)
-        {
-            // What is left after moves of a, then b: about b^2/a. Squares throughout.
-            const bool shrinks = moved[i] <= SHRINK*last[i] && st[i] == REFRACT_OK;
-            const bool done = shrinks && (moved[i]*moved[i] <= DONE*DONE*last[i] || moved[i] < enough*enough);
-            if (done && !arrived[i])
-            {
-                block.x[i] = x[i]; block.y[i] = y[i]; block.z[i] = z[i];
-                arrived[i] = true;
-            }
-            if (!shrinks && st[i] == REFRACT_OK)
-                st[i] = REFRACT_NOT_CONVERGED;
-            missing += !arrived[i] && st[i] == REFRACT_OK;
-            last[i] = moved[i];
-        }
-    }
-}
-
-//! The point of one pair of rays: its midpoint, by which the search begins.
-uchar meet(const StereoPair& pair, double tau1, const Vec3d& d1, double tau2, const Vec3d& d2, Vec3d& X)
-{
-    const Matx33d Rt = pair.R.t();
-    const Rays rays = { tau1*pair.camera1.layers().normal(), d1, Rt*(tau2*pair.camera2.layers().normal() - pair.T), Rt*d2 };
-    return midpoint(rays, X);
-}
-
-bool isBeyondBoth(const StereoPair& pair, const Vec3d& X)
-{
-    const Vec3d X2 = pair.R*X + pair.T;
-    return pair.camera1.layers().isBeyond(X[0], X[1], X[2]) && pair.camera2.layers().isBeyond(X2[0], X2[1], X2[2]);
+    const double PARALLEL = 0.5e-24;
+    AutoBuffer<Rays, 4> buffers(cameras.size());
+    AutoBuffer<CameraRays, 16> rays(cameras.size());
+    double apart[BLOCK], nearest[BLOCK];
+    int count = 0;
+    for (int c = 0; c < (int)cameras.size(); c++)
+        if (block.sees[c] != PixelBlock::NONE)
+            rays[count++] = raysOf(cameras, c, block, n, buffers[c]);
+    if (count == 0)
+        return;
+    pointKernels().meetRays(n, count, rays.data(), block.x, block.y, block.z, apart, nearest);
+    for (int i = 0; i < n; i++)
+        if (block.status[i] == REFRACT_OK)
+            block.status[i] = !(apart[i] > PARALLEL) ? REFRACT_PARALLEL_RAYS
+                              : !(nearest[i] > 0) ? REFRACT_NO_INTERSECTION : REFRACT_OK;
 }
 
 } // namespace
-
-/* Covariance of the maximum-likelihood point: J^+ S J^+^T from the pixels' covariance S, plus G C G^T, G = -J^+ J_parameters, from
-the calibration's covariance C. */
-struct PointCovariance::Calibration
-{
-    Eigen::MatrixXd covariance;     //!< empty: exact
-    Matx33d dR[3];
-};
-
-PointCovariance::PointCovariance(const StereoPair& pair, InputArray calibration)
-    : pair_(pair), calibration_(makePtr<Calibration>())
-{
-    const int count = pair.camera1.parameterCount() + pair.camera2.parameterCount() + 6;
-    const std::vector<double> c = readNumbers(calibration, "calibrationCovariance");
-    if (c.empty())
-        return;
-    if ((int)c.size() != count*count)
-        CV_Error_(Error::StsBadSize, ("calibrationCovariance has %d values; it must be %dx%d", (int)c.size(), count, count));
-    calibration_->covariance = Eigen::Map<const Eigen::MatrixXd>(c.data(), count, count);
-    rotationMatrix(rotationVector(pair.R), calibration_->dR);
-}
-
-//! byPoint: reproject's derivative by X; its lower rows are those by the point in camera 2, times R.
-static Eigen::MatrixXd parameterJacobian(const StereoPair& pair, const Matx33d* dR, const Vec3d& X, const Jacobian& byPoint,
-                                         const std::vector<double>& p1, const std::vector<double>& p2)
-{
-    const int count1 = pair.camera1.parameterCount(), count2 = pair.camera2.parameterCount();
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, count1 + count2 + 6);
-    for (int r = 0; r < 2; r++)
-    {
-        for (int c = 0; c < count1; c++)
-            J(r, c) = p1[r*count1 + c];
-        for (int c = 0; c < count2; c++)
-            J(2 + r, count1 + c) = p2[r*count2 + c];
-        const Vec3d D = pair.R*Vec3d(byPoint(2 + r, 0), byPoint(2 + r, 1), byPoint(2 + r, 2));
-        for (int c = 0; c < 3; c++)
-        {
-            J(2 + r, count1 + count2 + c) = D.dot(dR[c]*X);
-            J(2 + r, count1 + count2 + 3 + c) = D[c];
-        }
-    }
-    return J;
-}
-
-void PointCovariance::evaluate(const Vec3d& X, const Matx44d& pixels, double* covariance) const
-{
-    Residual e;
-    Jacobian J;
-    std::vector<double> p1(2*pair_.camera1.parameterCount()), p2(2*pair_.camera2.parameterCount());
-    if (reproject(pair_, X, Vec2d(), Vec2d(), e, J, p1.data(), p2.data()) != REFRACT_OK)
-    {
-        std::fill(covariance, covariance + 9, std::numeric_limits<double>::quiet_NaN());
-        return;
-    }
-    const Eigen::Matrix<double, 3, 4> pseudoInverse = (J.transpose()*J).inverse()*J.transpose();
-    Eigen::Matrix3d C = pseudoInverse*Eigen::Matrix4d(pixels.val)*pseudoInverse.transpose();
-    if (calibration_->covariance.size())
-    {
-        const Eigen::MatrixXd G = pseudoInverse*parameterJacobian(pair_, calibration_->dR, X, J, p1, p2);
-        C += G*calibration_->covariance*G.transpose();
-    }
-    std::copy(C.data(), C.data() + 9, covariance);
-}
 
 void checkSigma(double sigma, const char* name)
 {
@@ -217,75 +60,160 @@ void checkSigma(double sigma, const char* name)
         CV_Error_(Error::StsOutOfRange, ("%s is %g; it must not be negative", name, sigma));
 }
 
-void refineBlock(const StereoPair& pair, PixelPairs& block, int n, double off, double enough)
+void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, int flags)
 {
-    uchar arrived[BLOCK];
-    refineTogether(pair, block, n, off, enough, arrived);
-    for (int i = 0; i < n; i++)
+    const double MIDPOINT_OFF = 1;      // pixels, of pixels that see one point
+    meet(cameras, block, n);
+    if (flags == TRIANGULATE_MIDPOINT)
+        checkBeyond(cameras, block, n);
+    else
+        refineBlock(cameras, block, n, MIDPOINT_OFF, 0);
+}
+
+namespace {
+
+//! All images of the points, block by block.
+class ImageReader
+{
+public:
+    void add(InputArray points, const String& name)
     {
-        Vec3d X(block.x[i], block.y[i], block.z[i]);
-        if (block.status[i] == REFRACT_OK && !arrived[i])
+        images_.push_back(PointReader(points, 2, name.c_str()));
+        names_.push_back(name);
+        if (images_.back().size() != size())
+            CV_Error_(Error::StsUnmatchedSizes, ("%s has %d points, %s %d; they must agree", names_[0].c_str(), size(),
+                                                 name.c_str(), images_.back().size()));
+    }
+    int size() const { return images_[0].size(); }
+    int depth() const
+    {
+        int deepest = 0;
+        for (const PointReader& image : images_)
+            deepest = std::max(deepest, image.depth());
+        return deepest;
+    }
+    int cameras() const { return (int)images_.size(); }
+
+    //! A pixel that is not finite is the point's status.
+    void load(int begin, int n, PixelBlock& block) const
+    {
+        uchar own[BLOCK];
+        for (int c = 0; c < cameras(); c++)
         {
-            block.status[i] = refine(pair, Vec2d(block.pixel(0)[i], block.pixel(1)[i]),
-                                     Vec2d(block.pixel(2)[i], block.pixel(3)[i]), X);
-            block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
+            uchar* status = c ? own : block.status;
+            images_[c].load(begin, n, block.pixel(2*c), block.pixel(2*c + 1), NULL, status);
+            for (int i = 0; i < n && c > 0; i++)
+                if (block.status[i] == REFRACT_OK)
+                    block.status[i] = own[i];
         }
-        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, X))
-            block.status[i] = REFRACT_BEHIND_WINDOW;
     }
-}
 
-void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags)
-{
-    const double MIDPOINT_OFF = 0.1;    // pixels, of pixels that see one point
-    double tau1[BLOCK], dx1[BLOCK], dy1[BLOCK], dz1[BLOCK], tau2[BLOCK], dx2[BLOCK], dy2[BLOCK], dz2[BLOCK];
-    pair.camera1.unproject(n, block.pixel(0), block.pixel(1), tau1, dx1, dy1, dz1, block.status);
-    pair.camera2.unproject(n, block.pixel(2), block.pixel(3), tau2, dx2, dy2, dz2, block.status);
-    for (int i = 0; i < n; i++)
+    //! A NaN pixel was not seen.
+    void loadSeen(int begin, int n, PixelBlock& block) const
     {
-        Vec3d X;
-        if (block.status[i] == REFRACT_OK)
-            block.status[i] = meet(pair, tau1[i], Vec3d(dx1[i], dy1[i], dz1[i]), tau2[i], Vec3d(dx2[i], dy2[i], dz2[i]), X);
-        block.x[i] = X[0]; block.y[i] = X[1]; block.z[i] = X[2];
+        uchar own[BLOCK];
+        int views[BLOCK] = {};
+        std::fill(block.status, block.status + n, (uchar)REFRACT_OK);
+        for (int c = 0; c < cameras(); c++)
+        {
+            double *u = block.pixel(2*c), *v = block.pixel(2*c + 1);
+            images_[c].load(begin, n, u, v, NULL, own);
+            int seen = 0;
+            for (int i = 0; i < n; i++)
+            {
+                if (own[i] != REFRACT_OK && (std::isnan(u[i]) || std::isnan(v[i])))
+                    u[i] = v[i] = std::numeric_limits<double>::quiet_NaN();
+                else
+                {
+                    seen++;
+                    views[i]++;
+                    if (own[i] != REFRACT_OK)
+                        block.status[i] = own[i];
+                }
+            }
+            block.sees[c] = (uchar)(seen == n ? PixelBlock::ALL : seen ? PixelBlock::SOME : PixelBlock::NONE);
+        }
+        for (int i = 0; i < n; i++)
+            if (block.status[i] == REFRACT_OK && views[i] < 2)
+                block.status[i] = REFRACT_TOO_FEW_VIEWS;
     }
-    if (flags != TRIANGULATE_MIDPOINT)
-        return refineBlock(pair, block, n, MIDPOINT_OFF, 0);
-    for (int i = 0; i < n; i++)
-        if (block.status[i] == REFRACT_OK && !isBeyondBoth(pair, Vec3d(block.x[i], block.y[i], block.z[i])))
-            block.status[i] = REFRACT_BEHIND_WINDOW;
+
+private:
+    std::vector<PointReader> images_;
+    std::vector<String> names_;
+};
+
+//! Isotropic noise of all pixels, by rows.
+std::vector<double> isotropic(int cameras, double sigma)
+{
+    std::vector<double> covariance((size_t)4*cameras*cameras);
+    for (int k = 0; k < 2*cameras; k++)
+        covariance[(size_t)k*(2*cameras + 1)] = sigma*sigma;
+    return covariance;
 }
 
-//! pointCovariance may be null, else its results go into covariance, one row a point.
-static void triangulate(const StereoPair& pair, InputArray points1, InputArray points2, OutputArray points3D, OutputArray status,
-                        int flags, const PointCovariance* pointCovariance, double sigma, Mat& covariance)
+/** @param mayMiss NaN: not seen, rather than no number
+@param pointCovariance may be null, else its results go into covariance, one row a point */
+void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool mayMiss, OutputArray points3D,
+                 OutputArray status, int flags, const PointCovariance* pointCovariance, double sigma, Mat& covariance)
 {
-    const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
-    if (in1.size() != in2.size())
-        CV_Error_(Error::StsUnmatchedSizes, ("points1 has %d points, points2 %d; they must agree", in1.size(), in2.size()));
     if (flags != TRIANGULATE_OPTIMAL && flags != TRIANGULATE_MIDPOINT)
         CV_Error_(Error::StsBadFlag, ("flags is %d; it must be TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT", flags));
     if (pointCovariance)
-        covariance = Mat(in1.size(), 9, CV_64F, Scalar::all(std::numeric_limits<double>::quiet_NaN()));
-    PointWriter out(points3D, in1.size(), 3, std::max(in1.depth(), in2.depth()));
-    StatusWriter outStatus(status, in1.size());
-    forEachBlock(in1.size(), [&](int begin, int n)
+        covariance = Mat(images.size(), 9, CV_64F, Scalar::all(std::numeric_limits<double>::quiet_NaN()));
+    const std::vector<double> noise = isotropic(images.cameras(), sigma);
+    PointWriter out(points3D, images.size(), 3, images.depth());
+    StatusWriter outStatus(status, images.size());
+    forEachBlock(images.size(), [&](int begin, int n)
     {
-        PixelPairs block;
-        uchar status2[BLOCK];
-        in1.load(begin, n, block.pixel(0), block.pixel(1), NULL, block.status);
-        in2.load(begin, n, block.pixel(2), block.pixel(3), NULL, status2);
-        for (int i = 0; i < n; i++)
-            if (block.status[i] == REFRACT_OK)
-                block.status[i] = status2[i];
+        PixelBlock block(images.cameras());
+        if (mayMiss)
+            images.loadSeen(begin, n, block);
+        else
+            images.load(begin, n, block);
         out.prepare(begin, n);
-        triangulateBlock(pair, block, n, flags);
+        triangulateBlock(cameras, block, n, flags);
         for (int i = 0; i < n && pointCovariance; i++)
             if (block.status[i] == REFRACT_OK)
-                pointCovariance->evaluate(Vec3d(block.x[i], block.y[i], block.z[i]), sigma*sigma*Matx44d::eye(), covariance.ptr<double>(begin + i));
+                pointCovariance->evaluate(block, i, noise.data(), covariance.ptr<double>(begin + i));
         out.store(begin, n, block.x, block.y, block.z, block.status);
         outStatus.store(begin, n, block.status);
     });
 }
+
+ImageReader readPair(InputArray points1, InputArray points2)
+{
+    ImageReader images;
+    images.add(points1, "points1");
+    images.add(points2, "points2");
+    return images;
+}
+
+ImageReader readImages(InputArrayOfArrays imagePoints, size_t cameras)
+{
+    std::vector<Mat> lists;
+    ImageReader images;
+    if (!imagePoints.empty())
+        imagePoints.getMatVector(lists);
+    if (lists.size() != cameras)
+        CV_Error_(Error::StsUnmatchedSizes, ("imagePoints has %d elements; cameras has %d", (int)lists.size(), (int)cameras));
+    for (size_t c = 0; c < cameras; c++)
+        images.add(lists[c], numbered("imagePoints", (int)c));
+    return images;
+}
+
+PlacedCameras readCameras(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts)
+{
+    if (handles.empty())
+        CV_Error(Error::StsBadArg, "cameras is empty; two are needed to see a point");
+    const std::vector<RigidTransform> places = readExtrinsics(Rs, Ts, (int)handles.size());
+    PlacedCameras cameras;
+    for (int c = 0; c < (int)handles.size(); c++)
+        cameras.push_back(PlacedCamera(cameraOf(handles[c], numbered("cameras", c).c_str()), places[c]));
+    return cameras;
+}
+
+} // namespace
 
 void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
                            InputArray R, InputArray T, InputArray points1, InputArray points2,
@@ -293,9 +221,9 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
+    const PlacedCameras cameras = StereoPair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T).cameras();
     Mat none;
-    triangulate(pair, points1, points2, points3D, status, flags, NULL, 0, none);
+    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, NULL, 0, none);
 }
 
 void triangulateRefractive(InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -315,11 +243,37 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
 {
     CV_INSTRUMENT_REGION();
 
-    const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
+    const PlacedCameras cameras = StereoPair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T).cameras();
     checkSigma(pixelSigma, "pixelSigma");
-    const PointCovariance pointCovariance(pair, calibrationCovariance);
+    const PointCovariance pointCovariance(cameras, calibrationCovariance);
     Mat C;
-    triangulate(pair, points1, points2, points3D, status, flags, &pointCovariance, pixelSigma, C);
+    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, &pointCovariance, pixelSigma, C);
+    if (covariance.needed())
+        C.copyTo(covariance);
+}
+
+void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
+                           InputArrayOfArrays imagePoints, OutputArray points3D, OutputArray status, int flags)
+{
+    CV_INSTRUMENT_REGION();
+
+    const PlacedCameras cameras = readCameras(handles, Rs, Ts);
+    Mat none;
+    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, NULL, 0, none);
+}
+
+void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
+                           InputArrayOfArrays imagePoints, OutputArray points3D, OutputArray status, int flags,
+                           double pixelSigma, InputArray calibrationCovariance, OutputArray covariance)
+{
+    CV_INSTRUMENT_REGION();
+
+    const PlacedCameras cameras = readCameras(handles, Rs, Ts);
+    checkSigma(pixelSigma, "pixelSigma");
+    const PointCovariance pointCovariance(cameras, calibrationCovariance);
+    Mat C;
+    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, &pointCovariance,
+                pixelSigma, C);
     if (covariance.needed())
         C.copyTo(covariance);
 }

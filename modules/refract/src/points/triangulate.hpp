@@ -5,8 +5,7 @@
 #ifndef OPENCV_REFRACT_TRIANGULATE_HPP
 #define OPENCV_REFRACT_TRIANGULATE_HPP
 
-#include "arrays/arrays.hpp"
-#include "camera/camera.hpp"
+#include "points/pixel_block.hpp"
 
 namespace cv { namespace refract {
 
@@ -15,42 +14,35 @@ struct StereoPair
 {
     StereoPair(const Camera& c1, const Camera& c2, InputArray R_, InputArray T_)
         : camera1(c1), camera2(c2), R(readRotation(R_, "R")), T(readVec3(T_, "T")) {}
+    PlacedCameras cameras() const { return { PlacedCamera(camera1, RigidTransform()), PlacedCamera(camera2, { R, T }) }; }
     const Camera& camera1;
     const Camera& camera2;
     const Matx33d R;
     const Vec3d T;
 };
 
-//! A block of pixel pairs on its way to points in the frame of camera 1.
-struct PixelPairs
-{
-    double pixels[4*BLOCK];             //!< u1, v1, u2, v2
-    double x[BLOCK], y[BLOCK], z[BLOCK];
-    uchar status[BLOCK];
-    double* pixel(int k) { return pixels + k*BLOCK; }
-};
-
 //! pixels -> x, y, z, where status is REFRACT_OK; flags: TriangulateFlags.
-void triangulateBlock(const StereoPair& pair, PixelPairs& block, int n, int flags);
+void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, int flags);
 
 /** The most likely points, from near ones in x, y, z.
 @param off pixels by which the images of these points are off, at most, if vectors shall do it
 @param enough a step that moves the images by less, in pixels, is the last; 0: to the accuracy of double */
-void refineBlock(const StereoPair& pair, PixelPairs& block, int n, double off, double enough);
+void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, double off, double enough);
 
 //! Covariance of a maximum-likelihood point.
 class PointCovariance
 {
 public:
-    //! calibration: empty, or as stereoCalibrateGlass returns it.
-    PointCovariance(const StereoPair& pair, InputArray calibration);
-    /** @param pixels covariance of u1, v1, u2, v2
-    @param covariance 3x3 by rows; NaN where a camera does not see X */
-    void evaluate(const Vec3d& X, const Matx44d& pixels, double* covariance) const;
+    //! calibration: empty, or as calibrateGlassRig returns it.
+    PointCovariance(const PlacedCameras& cameras, InputArray calibration);
+    /** @param block which cameras see point i
+    @param pixels covariance of u1, v1, u2, v2, ..., by rows
+    @param covariance 3x3 by rows; NaN where a camera that sees the point should not */
+    void evaluate(const PixelBlock& block, int i, const double* pixels, double* covariance) const;
 
 private:
     struct Calibration;
-    const StereoPair& pair_;
+    const PlacedCameras& cameras_;
     Ptr<Calibration> calibration_;
 };
 

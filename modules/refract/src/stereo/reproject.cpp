@@ -18,6 +18,7 @@ namespace {
 struct RectifiedPair
 {
     StereoPair pair;
+    PlacedCameras cameras;
     RectifiedView first, second;
     int axis;               //!< of the disparity
     double enough;          //!< see refineBlock
@@ -31,9 +32,10 @@ struct RectifiedPair
 //! A run of pixels of one row that have a disparity.
 struct Run
 {
+    Run() : size(0), pixels(2) {}
     int size, column[BLOCK];
     double disparity[BLOCK], x1[BLOCK], y1[BLOCK], x2[BLOCK], y2[BLOCK];
-    PixelPairs pairs;
+    PixelBlock pixels;
     uchar status2[BLOCK];
 };
 
@@ -55,7 +57,6 @@ public:
     void row(int y, int columns, const float* disparity, Mat& points, Mat& status, Mat& covariance) const
     {
         Run run;
-        run.size = 0;
         for (int x = 0; x < columns; x++)
         {
             if (std::isfinite(disparity[x]))
@@ -85,7 +86,7 @@ private:
 
     void solve(Run& run) const
     {
-        PixelPairs& p = run.pairs;
+        PixelBlock& p = run.pixels;
         toRaw(rectified_.first, run.size, run.x1, run.y1, p.pixel(0), p.pixel(1), p.status);
         toRaw(rectified_.second, run.size, run.x2, run.y2, p.pixel(2), p.pixel(3), run.status2);
         for (int i = 0; i < run.size; i++)
@@ -93,9 +94,9 @@ private:
                 p.status[i] = run.status2[i];
         const double PINHOLES_OFF = 10;
         if (startAsPinholes(run))
-            refineBlock(rectified_.pair, p, run.size, PINHOLES_OFF, rectified_.enough);
+            refineBlock(rectified_.cameras, p, run.size, PINHOLES_OFF, rectified_.enough);
         else
-            triangulateBlock(rectified_.pair, p, run.size, TRIANGULATE_OPTIMAL);
+            triangulateBlock(rectified_.cameras, p, run.size, TRIANGULATE_OPTIMAL);
     }
 
     //! Points as the pinholes have them; false if one is too far away to be near the true one.
@@ -107,7 +108,7 @@ private:
         const Matx33d turn = first.R().t(), toDirection = turn*first.projection().inverseK;
         const Vec3d centre = turn*first.projection().centre;
         double distance[BLOCK];
-        double *x = run.pairs.x, *y = run.pairs.y, *z = run.pairs.z;
+        double *x = run.pixels.x, *y = run.pixels.y, *z = run.pixels.z;
         for (int i = 0; i < run.size; i++)
         {
             distance[i] = perInverse/(run.disparity[i] - shift);
@@ -123,7 +124,7 @@ private:
 
     void store(const Run& run, int y, Mat& points, Mat& status, Mat& covariance) const
     {
-        const PixelPairs& p = run.pairs;
+        const PixelBlock& p = run.pixels;
         const Matx33d& R1 = rectified_.first.R();
         for (int i = 0; i < run.size; i++)
         {
@@ -137,15 +138,15 @@ private:
             else
                 points.at<Vec3d>(y, x) = rectified;
             if (covariance_)
-                storeCovariance(X, run, i, y, covariance);
+                storeCovariance(run, i, y, covariance);
         }
     }
 
-    void storeCovariance(const Vec3d& X, const Run& run, int i, int y, Mat& covariance) const
+    void storeCovariance(const Run& run, int i, int y, Mat& covariance) const
     {
         typedef Vec<double, 9> Vec9d;
         Matx33d C;
-        covariance_->evaluate(X, pixelCovariance(run, i, sigmaAt(y, run.column[i])), C.val);
+        covariance_->evaluate(run.pixels, i, pixelCovariance(run, i, sigmaAt(y, run.column[i])).val, C.val);
         const Matx33d& R1 = rectified_.first.R();
         covariance.at<Vec9d>(y, run.column[i]) = Vec9d((R1*C*R1.t()).val);
     }
@@ -161,8 +162,7 @@ private:
         view.interpolate(1, &run.x2[i], &run.y2[i], &planeD);
         uchar status = REFRACT_OK;
         view.pinhole().toRaw(1, &x, &y, &planeD, &u, &v, &status);
-        const double* raw = run.pairs.pixels + i;
-        const Vec4d step(0, 0, u - raw[2*BLOCK], v - raw[3*BLOCK]);     // of a pixel of disparity
+        const Vec4d step(0, 0, u - run.pixels.pixel(2)[i], v - run.pixels.pixel(3)[i]);     // of a pixel of disparity
         return disparitySigma*disparitySigma*step*step.t();
     }
 
@@ -205,12 +205,13 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
         ddepth = _3dImage.fixedType() ? _3dImage.depth() : CV_32F;
     if (ddepth != CV_32F && ddepth != CV_64F)
         CV_Error_(Error::StsUnsupportedFormat, ("ddepth is %s; it must be CV_32F or CV_64F", depthToString(ddepth)));
-    RectifiedPair rectified = { StereoPair(cam1, cam2, R, T), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
+    const StereoPair pair(cam1, cam2, R, T);
+    RectifiedPair rectified = { pair, pair.cameras(), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
                                 RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0, 0 };
     checkRectification(rectified.first.R(), rectified.second.R(), rectified.pair.R);
     rectified.axis = axisOf(rectified.first.projection(), rectified.second.projection());
     rectified.enough = ddepth == CV_32F ? 1e-2 : 0;     // of which a thousandth is left, below the rounding of what is stored
-    const PointCovariance pointCovariance(rectified.pair, calibrationCovariance);
+    const PointCovariance pointCovariance(rectified.cameras, calibrationCovariance);
     const Reprojector reprojector(rectified, sigma ? &pointCovariance : NULL, sigma ? readSigma(*sigma, size) : Mat());
 
     const Scalar none = Scalar::all(std::numeric_limits<double>::quiet_NaN());

@@ -1,0 +1,64 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays/extrinsics.hpp"
+#include "math/rotation.hpp"
+
+/* Where the cameras of a rig are: lists of R and T, one per camera, the first that of camera 1 itself. */
+
+namespace cv { namespace refract {
+
+String numbered(const char* name, int i) { return format("%s[%d]", name, i); }
+
+static std::vector<Mat> readList(InputArrayOfArrays list, int cameras, const char* name)
+{
+    std::vector<Mat> items;
+    if (!list.empty())
+        list.getMatVector(items);
+    if ((int)items.size() != cameras)
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)items.size(), cameras));
+    return items;
+}
+
+std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
+{
+    const double ROUNDING = 1e-6;
+    std::vector<RigidTransform> extrinsics(cameras);
+    if (cameras == 1 && Rs.empty() && Ts.empty())
+        return extrinsics;
+    const std::vector<Mat> R = readList(Rs, cameras, "Rs"), T = readList(Ts, cameras, "Ts");
+    for (int c = 0; c < cameras; c++)
+    {
+        RigidTransform& camera = extrinsics[c];
+        camera.R = readRotation(R[c], numbered("Rs", c).c_str());
+        camera.T = readVec3(T[c], numbered("Ts", c).c_str());
+        const double turned = norm(rotationVector(camera.R)), moved = norm(camera.T);
+        if (c == 0 && turned + moved > ROUNDING)
+            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
+                                         "be the identity and 0", turned, moved));
+    }
+    extrinsics[0] = RigidTransform();
+    return extrinsics;
+}
+
+void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts)
+{
+    const int count = (int)extrinsics.size();
+    if (Rs.needed() && !Rs.isMatVector())
+        CV_Error(Error::StsBadArg, "Rs must be a std::vector<Mat>");
+    if (Rs.needed())
+        Rs.create(count, 1, CV_64F);
+    std::vector<Vec3d> T;
+    for (int c = 0; c < count; c++)
+    {
+        T.push_back(extrinsics[c].T);
+        if (!Rs.needed())
+            continue;
+        Rs.create(3, 3, CV_64F, c, true);
+        Mat(extrinsics[c].R).copyTo(Rs.getMat(c));
+    }
+    writeVectors(T, Ts);
+}
+
+}} // namespace

@@ -1,0 +1,77 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_PIXEL_BLOCK_HPP
+#define OPENCV_REFRACT_PIXEL_BLOCK_HPP
+
+#include "arrays/extrinsics.hpp"
+#include "camera/camera.hpp"
+#include <Eigen/Core>
+
+/* What cameras of a rig see of points: a block of them on its way from pixels to points, and one of them in all images. */
+
+namespace cv { namespace refract {
+
+//! A camera of a rig and where it is.
+struct PlacedCamera
+{
+    PlacedCamera(const Camera& c, const RigidTransform& p) : camera(&c), place(p) {}
+    const Camera* camera;
+    RigidTransform place;
+};
+typedef std::vector<PlacedCamera> PlacedCameras;    //!< the first is in its own frame
+
+//! A block of points on their way from their pixels in all images to the frame of camera 1.
+struct PixelBlock
+{
+    explicit PixelBlock(int cameras) : sees((size_t)cameras), pixels_((size_t)2*cameras*BLOCK)
+    { std::fill(sees.data(), sees.data() + cameras, (uchar)ALL); }
+    //! u1, v1, u2, v2, ...
+    double* pixel(int k) { return pixels_.data() + k*BLOCK; }
+    const double* pixel(int k) const { return pixels_.data() + k*BLOCK; }
+    bool isSeen(int camera, int i) const { return !std::isnan(pixel(2*camera)[i]); }
+
+    enum Sees { NONE, SOME, ALL };
+    AutoBuffer<uchar, 16> sees;         //!< of each camera: which of the points; SOME: u of the others is NaN
+    double x[BLOCK], y[BLOCK], z[BLOCK];
+    uchar status[BLOCK];
+private:
+    AutoBuffer<double, 4*BLOCK> pixels_;
+};
+
+//! One point's pixels in all images: two rows a camera, 0 where the camera does not see it.
+struct PointImages
+{
+    explicit PointImages(int cameras) : errors(2*cameras), byPoint(2*cameras, 3) {}
+    Eigen::VectorXd errors;                                 //!< predicted - observed
+    Eigen::Matrix<double, Eigen::Dynamic, 3> byPoint;       //!< of the predicted pixels, in the frame of camera 1
+};
+
+/** Where X would be seen by the cameras that see point i; the first reason why one cannot.
+@param parameters derivatives by each camera's parameters, 2 x its parameterCount(), row-major; may be null */
+uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images,
+                     std::vector<std::vector<double> >* parameters = NULL);
+
+//! A point that is not beyond the windows of all cameras that see it gets a status that says so.
+void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n);
+
+/** Lets a camera compute a block, but for the points that it does not see: they count as failed already, so that nobody looks
+for the reason, and keep their status. */
+template<typename Compute>
+void forSeen(const PixelBlock& block, int camera, int n, uchar* status, const Compute& compute)
+{
+    if (block.sees[camera] == PixelBlock::ALL)
+        return compute(status);
+    uchar own[BLOCK];
+    for (int i = 0; i < n; i++)
+        own[i] = block.isSeen(camera, i) ? status[i] : (uchar)REFRACT_TOO_FEW_VIEWS;
+    compute(own);
+    for (int i = 0; i < n; i++)
+        if (block.isSeen(camera, i))
+            status[i] = own[i];
+}
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_PIXEL_BLOCK_HPP

@@ -1,0 +1,267 @@
+// readRig, writeRig: all cameras of a calibration file.
+#include "scenes.hpp"
+#include "temporary_file.hpp"
+#include "temporary_folder.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+struct Rig
+{
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    std::vector<Mat> Rs;
+    std::vector<Vec3d> Ts;
+    std::vector<int> windows;
+    Mat covariance;
+};
+
+Rig makeRig(int count, Random& random)
+{
+    Rig rig;
+    int parameters = 6*(count - 1);
+    for (int c = 0; c < count; c++)
+    {
+        rig.cameras.push_back(makeCamera(allLenses()[c%allLenses().size()],
+                                         makeWindow(allWindows()[c%allWindows().size()], random)));
+        rig.cameras[c]->setImageSize(Size(1280 + c, 1024));
+        Mat R;
+        Rodrigues(c ? random.vector(0.5) : Vec3d(), R);
+        rig.Rs.push_back(R);
+        rig.Ts.push_back(c ? random.vector(300) : Vec3d());
+        rig.windows.push_back(c/2);
+        parameters += (int)rig.cameras[c]->parameterNames().size();
+    }
+    Mat root(parameters, parameters, CV_64F);
+    for (double& number : Mat_<double>(root))
+        number = random.normal(1e-3);
+    rig.covariance = root*root.t();
+    return rig;
+}
+
+Rig readAll(const std::string& path)
+{
+    Rig rig;
+    readRig(path, rig.cameras, rig.Rs, rig.Ts, rig.windows, rig.covariance);
+    return rig;
+}
+
+void checkSame(const Rig& a, const Rig& b)
+{
+    REQUIRE(a.cameras.size() == b.cameras.size());
+    REQUIRE(a.Rs.size() == a.cameras.size());
+    REQUIRE(a.Ts.size() == a.cameras.size());
+    for (size_t c = 0; c < a.cameras.size(); c++)
+    {
+        CAPTURE(c);
+        CHECK(a.cameras[c]->lensModel() == b.cameras[c]->lensModel());
+        CHECK(a.cameras[c]->imageSize() == b.cameras[c]->imageSize());
+        CHECK(largestDifference(a.cameras[c]->lensParameters(), b.cameras[c]->lensParameters()) == 0);
+        CHECK(norm(a.cameras[c]->window().normal - b.cameras[c]->window().normal) < 1e-15);     // it is normalised
+        CHECK(a.cameras[c]->window().thickness == b.cameras[c]->window().thickness);
+        CHECK(norm(a.Rs[c], b.Rs[c]) < 1e-15);     // the nearest rotation is taken
+        CHECK(norm(a.Ts[c] - b.Ts[c]) == 0);
+    }
+    CHECK(a.windows == b.windows);
+    REQUIRE(a.covariance.size() == b.covariance.size());
+    CHECK((a.covariance.empty() || norm(a.covariance, b.covariance, NORM_INF) == 0));
+}
+
+std::string contentsOf(const std::string& path)
+{
+    std::ifstream file(path);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+    const size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+//! Three cameras without distortion in YAML, R and T as lists.
+const std::string CAMERA = ":\n   camera_matrix: !!opencv-matrix\n      rows: 3\n      cols: 3\n      dt: d\n"
+                           "      data: [ 1000., 0., 640., 0., 1000., 480., 0., 0., 1. ]\n";
+const std::string THREE = "%YAML:1.0\n---\ncamera1" + CAMERA + "camera2" + CAMERA + "camera3" + CAMERA
+    + "R: [ 0., 0.1, 0. ]\nT: [ -100., 0., 1. ]\nR3: [ 1., 0., 0., 0., 0., -1., 0., 1., 0. ]\nT3: [ 5., 6., 7. ]\n";
+
+} // namespace
+
+TEST_CASE("A rig of any number of cameras is read back to the last bit, in every format", "[rig_file]")
+{
+    CAPTURE(seed());
+    const int count = GENERATE(1, 2, 3, 17);
+    const std::string suffix = GENERATE(".yml", ".xml", ".json");
+    CAPTURE(count, suffix);
+    Random random(count);
+    const TemporaryFile file(suffix, "what was there before");
+    Rig rig = makeRig(count, random);
+    writeRig(file.path, rig.cameras, rig.Rs, rig.Ts, rig.windows, rig.covariance);
+    checkSame(readAll(file.path), rig);
+
+    // Without what may be left out, and by the short form.
+    writeRig(file.path, rig.cameras, rig.Rs, rig.Ts);
+    rig.windows.clear();
+    rig.covariance = Mat();
+    checkSame(readAll(file.path), rig);
+    Rig brief;
+    readRig(file.path, brief.cameras, brief.Rs, brief.Ts);
+    checkSame(brief, rig);
+}
+
+TEST_CASE("A rig's file is what RefractiveCamera::read and FileStorage read", "[rig_file]")
+{
+    Random random;
+    const Rig rig = makeRig(4, random);
+    const TemporaryFile file(".yml");
+    writeRig(file.path, rig.cameras, rig.Rs, rig.Ts);
+    const FileStorage fs(file.path, FileStorage::READ);
+    for (int c = 0; c < 4; c++)
+    {
+        const std::string number = std::to_string(c + 1), own = c > 1 ? number : "";
+        CHECK(RefractiveCamera::read(file.path, "camera" + number)->lensModel() == rig.cameras[c]->lensModel());
+        Mat R, T;
+        fs["R" + own] >> R;
+        fs["T" + own] >> T;
+        CHECK((c == 0 || norm(R, rig.Rs[c]) < 1e-15));
+        CHECK((c == 0 || norm(T, Mat(rig.Ts[c])) == 0));
+    }
+    CHECK(fs["R1"].empty());
+    CHECK(fs["R2"].empty());
+    writeRig(file.path, { rig.cameras[1] }, noArray(), noArray());      // one camera: at the top level
+    CHECK(RefractiveCamera::read(file.path)->lensModel() == rig.cameras[1]->lensModel());
+    CHECK(FileStorage(file.path, FileStorage::READ)["camera1"].empty());
+}
+
+TEST_CASE("Rigs that the tools and mrcal write are read", "[rig_file]")
+{
+    const std::string path = std::string(REFRACT_BUNDLED_DIR) + "/stereo/truth.yml";
+    const FileStorage fs(path, FileStorage::READ);
+    REQUIRE(fs.isOpened());
+    const Rig rig = readAll(path);
+    REQUIRE(rig.cameras.size() == 2);
+    Mat R, T;
+    fs["R"] >> R;
+    fs["T"] >> T;
+    CHECK(norm(rig.Rs[1], R) < 1e-15);
+    CHECK(norm(Mat(rig.Ts[1]), T) == 0);
+    CHECK(norm(rig.Rs[0], Mat::eye(3, 3, CV_64F)) + norm(rig.Ts[0]) == 0);
+    CHECK(largestDifference(rig.cameras[1]->lensParameters(), RefractiveCamera::read(path, "camera2")->lensParameters()) == 0);
+
+    const TemporaryFile mrcal(".cameramodel", "{ 'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [ 1, 2, 3, 4 ] }");
+    CHECK(readAll(mrcal.path).cameras.at(0)->lensModel() == "LENSMODEL_PINHOLE");
+    CHECK(norm(readAll(mrcal.path).Rs.at(0), Mat::eye(3, 3, CV_64F)) == 0);
+}
+
+TEST_CASE("R and T may be lists and rotation vectors, as written by hand", "[rig_file]")
+{
+    const TemporaryFile file(".yml", THREE);
+    const Rig rig = readAll(file.path);
+    Mat R;
+    Rodrigues(Vec3d(0, 0.1, 0), R);
+    REQUIRE(rig.cameras.size() == 3);
+    CHECK(norm(rig.Rs[1], R) < 1e-15);
+    CHECK(rig.Rs[2].at<double>(2, 1) == 1);
+    CHECK(rig.Ts[2] == Vec3d(5, 6, 7));
+    CHECK(rig.windows.empty());
+    CHECK(rig.covariance.empty());
+}
+
+TEST_CASE("A file that is no rig is refused with its name and what is wrong", "[rig_file]")
+{
+    struct Bad { std::string text, what; };
+    const Bad bads[] = {
+        { "", "empty" },
+        { "%YAML:1.0\n---\nother: 1\n", "camera" },
+        { "%YAML:1.0\n---\n- 1\n", "camera" },
+        { replaced(THREE, "T3: [ 5., 6., 7. ]\n", ""), "T3" },
+        { replaced(THREE, "R:", "Q:"), "no R," },
+        { replaced(THREE, "camera2:", "camera4:"), "no camera2" },
+        { replaced(THREE, "camera1:", "camera0:"), "no camera1" },
+        { replaced(THREE, "[ 5., 6., 7. ]", "[ 5., 6. ]"), "T3" },
+        { replaced(THREE, "[ 5., 6., 7. ]", "[ 5., 6., .Nan ]"), "T3" },
+        { replaced(THREE, "[ 5., 6., 7. ]", "here"), "T3" },
+        { replaced(THREE, "-1., 0., 1., 0. ]", "1., 0., 1., 0. ]"), "R3" },
+        { replaced(THREE, "1000., 0., 640.", "-1000., 0., 640."), "camera1" },
+        { THREE + "window_of_camera: [ 0, 0 ]\n", "window_of_camera" },
+        { THREE + "window_of_camera: [ 0, 0, 0.5 ]\n", "window_of_camera" },
+        { THREE + "window_of_camera: none\n", "window_of_camera" },
+        { THREE + "covariance: [ 1. ]\n", "covariance is 1x1" },
+        { THREE + "covariance: one\n", "covariance" } };
+    for (const Bad& bad : bads)
+    {
+        CAPTURE(bad.text, bad.what);
+        const TemporaryFile file(".yml", bad.text);
+        CHECK_THAT(thrown([&] { readAll(file.path); }), Contains(file.path) && Contains(bad.what));
+    }
+    CHECK_THAT(thrown([] { readAll("no/such/rig.yml"); }), Contains("no/such/rig.yml"));
+}
+
+TEST_CASE("A rig's file cut anywhere is read or refused by name; what is read is right", "[rig_file]")
+{
+    Random random;
+    const Rig rig = makeRig(3, random);
+    const std::string suffix = GENERATE(".yml", ".xml", ".json");
+    const TemporaryFile file(suffix);
+    writeRig(file.path, rig.cameras, rig.Rs, rig.Ts);
+    const std::string text = contentsOf(file.path);
+    for (size_t length = 0; length < text.size(); length += 83)
+    {
+        CAPTURE(suffix, length);
+        const TemporaryFile cut(suffix, text.substr(0, length));
+        std::vector<Ptr<RefractiveCamera> > cameras;
+        std::vector<Mat> Rs, Ts;
+        try { readRig(cut.path, cameras, Rs, Ts); }
+        catch (const cv::Exception& e) { CHECK_THAT(e.what(), Contains(cut.path)); continue; }
+        for (size_t c = 0; c < cameras.size(); c++)
+            CHECK(norm(Rs[c], rig.Rs[c]) < 1e-15);
+    }
+}
+
+TEST_CASE("A rig that cannot be written is named and leaves what was there", "[rig_file]")
+{
+    Random random;
+    const Rig rig = makeRig(2, random);
+    const TemporaryFolder folder;
+    const std::string path = folder / "rig.yml";
+    writeRig(path, rig.cameras, rig.Rs, rig.Ts);
+    const std::string before = contentsOf(path);
+    const auto refused = [&](const Rig& r)
+    {
+        const std::string sentence = thrown([&] { writeRig(path, r.cameras, r.Rs, r.Ts, r.windows, r.covariance); });
+        CHECK(contentsOf(path) == before);
+        CHECK(folder.count() == 1);
+        return sentence;
+    };
+    Rig bad = rig;
+    bad.cameras[1] = nullptr;
+    CHECK_THAT(refused(bad), Contains("cameras[1] is empty"));
+    bad = rig;
+    bad.Rs.pop_back();
+    CHECK_THAT(refused(bad), Contains("Rs has 1"));
+    bad = rig;
+    bad.Ts[0][2] = 3;
+    CHECK_THAT(refused(bad), Contains("Ts[0]") && Contains("3"));
+    bad = rig;
+    bad.Rs[1] = Mat(rig.Rs[1]*2);
+    CHECK_THAT(refused(bad), Contains("Rs[1] is not a rotation"));
+    bad = rig;
+    bad.windows = { 0 };
+    CHECK_THAT(refused(bad), Contains("windowOfCamera has 1"));
+    bad = rig;
+    bad.covariance = Mat::eye(3, 3, CV_64F);
+    CHECK_THAT(refused(bad), Contains("covariance is 3x3"));
+    bad = rig;
+    bad.covariance = rig.covariance.clone();
+    bad.covariance.at<double>(1, 1) = NaN;
+    CHECK_THAT(refused(bad), Contains("covariance"));
+    CHECK_THAT(refused(Rig()), Contains("cameras is empty"));
+    CHECK_THAT(thrown([&] { writeRig("no/such/folder/rig.yml", rig.cameras, rig.Rs, rig.Ts); }),
+               Contains("no/such/folder/rig.yml"));
+}
