@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 using namespace cv;
 
@@ -38,49 +37,6 @@ double residualSigma(const std::vector<Point2d>& seenPixels, const std::vector<P
     for (size_t i = 0; i < seenPixels.size(); i++)
         squares += std::pow(norm(seenPixels[i] - predicted[i]), 2);
     return std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
-}
-
-//! Each point by the first two cameras that see it; the calibration taken as exact.
-void triangulateByPairs(const Calibration& rig, const RigPixels& pixels, double pixelSigma, Measurement& result, Mat& covariance)
-{
-    std::map<std::pair<size_t, size_t>, std::vector<size_t>> pointsOf;
-    const size_t count = pixels[0].size();
-    for (size_t i = 0; i < count; i++)
-    {
-        std::vector<size_t> views;
-        for (size_t c = 0; c < pixels.size(); c++)
-            if (seen(pixels[c][i]))
-                views.push_back(c);
-        if (views.size() > 1)
-            pointsOf[{views[0], views[1]}].push_back(i);
-    }
-    result.points.assign(count, Point3d(NOT_KNOWN, NOT_KNOWN, NOT_KNOWN));
-    result.status.assign(count, refract::REFRACT_NOT_FINITE);
-    covariance = Mat(Mat::ones((int)count, 9, CV_64F)*NOT_KNOWN);
-    for (const auto& entry : pointsOf)
-    {
-        const size_t a = entry.first.first, b = entry.first.second;
-        const Matx33d R = rig.Rs[b]*rig.Rs[a].t();
-        std::vector<Point2d> first, second;
-        for (size_t i : entry.second)
-        {
-            first.push_back(pixels[a][i]);
-            second.push_back(pixels[b][i]);
-        }
-        std::vector<Point3d> points;
-        std::vector<uchar> status;
-        Mat C;
-        refract::triangulateRefractive(rig.cameras[a].camera, rig.cameras[b].camera, Mat(R), rig.Ts[b] - R*rig.Ts[a], first, second,
-                                       points, status, refract::TRIANGULATE_OPTIMAL, pixelSigma, noArray(), C);
-        for (size_t k = 0; k < points.size(); k++)
-        {
-            const size_t i = entry.second[k];
-            result.points[i] = rig.Rs[a].t()*(Vec3d(points[k]) - rig.Ts[a]);
-            result.status[i] = status[k];
-            const Matx33d turned = rig.Rs[a].t()*Matx33d(C.ptr<double>((int)k))*rig.Rs[a];
-            Mat(1, 9, CV_64F, (void*)turned.val).copyTo(covariance.row((int)i));
-        }
-    }
 }
 
 } // namespace
@@ -118,13 +74,21 @@ Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, 
 {
     Measurement result;
     result.pixels = pixels;
+    std::vector<Ptr<refract::RefractiveCamera>> cameras;
+    std::vector<Mat> Rs, Ts;
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+    {
+        cameras.push_back(calibration.cameras[c].camera);
+        Rs.push_back(Mat(calibration.Rs[c]));
+        Ts.push_back(Mat(calibration.Ts[c]));
+    }
     Mat covariance;
-    if (pixels.size() == 2)
-        refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, Mat(calibration.Rs[1]),
-            calibration.Ts[1], pixels[0], pixels[1], result.points, result.status, refract::TRIANGULATE_OPTIMAL,
-            pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
-    else
-        triangulateByPairs(calibration, pixels, pixelSigma > 0 ? pixelSigma : 1., result, covariance);
+    refract::triangulateRefractive(cameras, Rs, Ts, pixels, result.points, result.status, refract::TRIANGULATE_OPTIMAL,
+                                   pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
+    // 9 is INCONSISTENT in the files of the tools, and a pixel that is not there was never finite.
+    for (uchar& status : result.status)
+        if (status == refract::REFRACT_TOO_FEW_VIEWS)
+            status = refract::REFRACT_NOT_FINITE;
     result.sigma.assign(result.points.size(), Vec3d::all(NOT_KNOWN));
     if (pixelSigma > 0)
         for (size_t i = 0; i < result.points.size(); i++)
