@@ -1,5 +1,6 @@
 // refract_bench: ours and its peers run alternately in one process, on one pinned thread; one table of ns per point, ratio
 // to the named call, error against the long double reference, number of answers. doc/performance.md explains the result.
+#include "bundles.hpp"
 #include "growth.hpp"
 #include "rows.hpp"
 
@@ -55,11 +56,12 @@ int main(int argc, char** argv)
 {
     CLI::App app("Speed and accuracy of refract beside OpenCV, mrcal and the straightforward scalar program.\n"
                  "Exit code 2: an answer was missing or wrong. Times never change the exit code.");
-    bool quick = false, growth = false;
+    bool quick = false, growth = false, bundles = false;
     std::string only, isa = "avx512";
     int count = 100000, rounds = 15;
     app.add_flag("--quick", quick, "few points, one round: a check of the answers only");
     app.add_flag("--growth", growth, "time against points, layers, incidence and views instead of the table");
+    app.add_flag("--bundles", bundles, "large bundle adjustments, processor time, instead of the table");
     app.add_option("--only", only, "rows whose key begins with this");
     app.add_option("--isa", isa, "the highest instruction set to use")->check(CLI::IsMember({ "baseline", "avx2", "avx512" }));
     app.add_option("--points", count, "points in an array")->check(CLI::PositiveNumber);
@@ -68,6 +70,11 @@ int main(int argc, char** argv)
     restartFor(isa, argv);
     if (quick)
         count = 2000, rounds = 1;
+    if (bundles)
+    {
+        printBundles();
+        return 0;
+    }
     cv::setNumThreads(2);       // its workers start here, where they may run anywhere
     cv::parallel_for_(cv::Range(0, 2), [](const cv::Range&) {});
     pin(1);
@@ -82,6 +89,7 @@ int main(int argc, char** argv)
     std::vector<Row> rows;
     addPointRows(rows, count);
     addPairRows(rows, count);
+    addRobustRows(rows);
     addCallRows(rows, count);
     addStereoRows(rows);
     addCalibrationRows(rows);

@@ -13,6 +13,8 @@ namespace bench {
 void addPointRows(std::vector<Row>& rows, int count);
 //! Two cameras: triangulation, epipolar curves.
 void addPairRows(std::vector<Row>& rows, int count);
+//! Poses from matches of which some are wrong.
+void addRobustRows(std::vector<Row>& rows);
 //! Whole images, one point a call, float32, two threads.
 void addCallRows(std::vector<Row>& rows, int count);
 //! Dense stereo of a pair of images.

@@ -48,45 +48,64 @@ struct Pair
     std::vector<Point3d> points;
     std::vector<uchar> status;
     std::vector<std::vector<Point2d> > lines;
+    std::vector<double> distances;
+    std::vector<Vec3d> straight;        //!< epipolar lines
 };
 
 using reference::dot;
 
 typedef std::shared_ptr<Pair> Data;
 
-Point toCamera2(const Point& X)
+Point toCamera(const Matx33d& rotation, const Vec3d& translation, const Point& X)
 {
     Point Y;
     for (int r = 0; r < 3; r++)
-        Y[r] = (long double)R(r, 0)*X[0] + (long double)R(r, 1)*X[1] + (long double)R(r, 2)*X[2] + T[r];
+        Y[r] = (long double)rotation(r, 0)*X[0] + (long double)rotation(r, 1)*X[1] + (long double)rotation(r, 2)*X[2]
+               + translation[r];
     return Y;
 }
+Point toCamera2(const Point& X) { return toCamera(R, T, X); }
+
+//! A camera for the reference, and what it sees.
+struct View
+{
+    reference::Camera<long double> camera;
+    Matx33d R;
+    Vec3d T;
+    const std::vector<Point2d>* pixels;
+};
 
 //! Gradient of the squared pixel errors by X over their curvature: how far X is from the optimum.
-long double distanceToOptimum(const reference::Camera<long double>& c1, const reference::Camera<long double>& c2,
-                              const Pixel& p1, const Pixel& p2, const Point& X)
+long double distanceToOptimum(const std::vector<View>& views, int i, const Point& X)
 {
     const auto residual = [&](const Point& Y)
     {
-        const Pixel a = c1.project(Y), b = c2.project(toCamera2(Y));
-        return std::array<long double, 4>{ a[0] - p1[0], a[1] - p1[1], b[0] - p2[0], b[1] - p2[1] };
+        std::vector<long double> e;
+        for (const View& v : views)
+        {
+            const Pixel a = v.camera.project(toCamera(v.R, v.T, Y)), p = exact((*v.pixels)[i]);
+            const bool isSeen = p[0] == p[0];
+            e.push_back(isSeen ? a[0] - p[0] : 0);
+            e.push_back(isSeen ? a[1] - p[1] : 0);
+        }
+        return e;
     };
     const long double h = 1e-5L;
     const auto e = residual(X);
     Matx33d A;
     Vec3d g;
-    std::array<long double, 4> J[3];
+    std::vector<long double> J[3];
     for (int c = 0; c < 3; c++)
     {
         Point up = X, down = X;
         up[c] += h;
         down[c] -= h;
         const auto a = residual(up), b = residual(down);
-        for (int k = 0; k < 4; k++)
-            J[c][k] = (a[k] - b[k])/(2*h);
+        for (size_t k = 0; k < e.size(); k++)
+            J[c].push_back((a[k] - b[k])/(2*h));
     }
     for (int r = 0; r < 3; r++)
-        for (int k = 0; k < 4; k++)
+        for (size_t k = 0; k < e.size(); k++)
         {
             g[r] += (double)(J[r][k]*e[k]);
             for (int c = 0; c < 3; c++)
@@ -95,13 +114,18 @@ long double distanceToOptimum(const reference::Camera<long double>& c1, const re
     return norm(A.inv()*g);
 }
 
+double optimumError(const std::vector<View>& views, const std::vector<Point3d>& points)
+{
+    long double worst = 0;
+    for (int i : sample((int)points.size(), 200))
+        worst = std::max(worst, distanceToOptimum(views, i, exact(points[i])));
+    return (double)worst;
+}
+
 double optimumError(const Data& d)
 {
-    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
-    long double worst = 0;
-    for (int i : sample((int)d->points.size(), 200))
-        worst = std::max(worst, distanceToOptimum(c1, c2, exact(d->pixels1[i]), exact(d->pixels2[i]), exact(d->points[i])));
-    return (double)worst;
+    return optimumError({ { d->scene1.parts<long double>(), Matx33d::eye(), Vec3d(), &d->pixels1 },
+                          { d->scene2.parts<long double>(), R, T, &d->pixels2 } }, d->points);
 }
 
 double midpointError(const Data& d)
@@ -143,6 +167,64 @@ Row triangulateRow(const Data& d, const std::string& key, const std::string& wor
     return r;
 }
 
+//! Four cameras round a volume, and noisy pixels of the same points in all of them.
+struct Rig
+{
+    //! Of a point in `hideOneIn` one pixel, of a camera in turn, was not seen; 0: all were.
+    Rig(int count, int hideOneIn)
+    {
+        const double c = R(0, 0), s = R(0, 2);
+        const Matx33d turns[] = { Matx33d::eye(), R, R.t(), Matx33d(1, 0, 0, 0, c, s, 0, -s, c) };
+        const Vec3d moves[] = { Vec3d(), T, Vec3d(-T[0], 0, T[2]), Vec3d(0, T[0], T[2]) };
+        std::mt19937_64 engine(8);
+        std::uniform_real_distribution<double> side(-80, 80), depth(500, 720);
+        std::normal_distribution<double> noise(0, 0.1);
+        std::vector<Point3d> truth(count);
+        for (Point3d& X : truth)
+            X = Point3d(side(engine), side(engine), depth(engine));
+        pixels.resize(4);
+        for (int k = 0; k < 4; k++)
+        {
+            scenes.push_back(Scene(FIVE, 1, k % 2 == 1));
+            cameras.push_back(scenes[k].camera);
+            Rs.push_back(Mat(turns[k], true));
+            Ts.push_back(moves[k]);
+            refractiveProjectPoints(truth, turns[k], moves[k], cameras[k], pixels[k]);
+            for (Point2d& p : pixels[k])
+                p += Point2d(noise(engine), noise(engine));
+        }
+        for (int i = 0; i < count && hideOneIn; i += hideOneIn)
+            pixels[i/hideOneIn % 4][i].x = NAN;
+    }
+    std::vector<View> views() const
+    {
+        std::vector<View> all;
+        for (int k = 0; k < 4; k++)
+            all.push_back({ scenes[k].parts<long double>(), Matx33d(Rs[k].ptr<double>()), Ts[k], &pixels[k] });
+        return all;
+    }
+    std::vector<Scene> scenes;
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    std::vector<Mat> Rs;
+    std::vector<Vec3d> Ts;
+    std::vector<std::vector<Point2d> > pixels;
+    std::vector<Point3d> points, others;
+    std::vector<uchar> status;
+};
+
+//! Four cameras beside the first two of them.
+Row rigRow(int count, const std::string& key, const std::string& work, int hideOneIn, double target)
+{
+    const auto d = std::make_shared<Rig>(count, hideOneIn), all = hideOneIn ? std::make_shared<Rig>(count, 0) : d;
+    Row r = { key, work, "triangulateRefractive, the pair", { target, target }, count, {}, {}, {}, {}, 89, "mm", 1e-8, {}, {}, {} };
+    r.ours = [=] { triangulateRefractive(d->cameras, d->Rs, d->Ts, d->pixels, d->points, d->status); };
+    r.peer = [=] { triangulateRefractive(all->cameras[0], all->cameras[1], all->Rs[1], all->Ts[1], all->pixels[0],
+                                         all->pixels[1], all->others); };
+    r.error = [=] { return optimumError(d->views(), d->points); };
+    r.successes = [=] { return countOk(d->status); };
+    return r;
+}
+
 //! Largest distance of exact points of the curves from their polylines.
 double curveError(const Data& d)
 {
@@ -168,6 +250,55 @@ double curveError(const Data& d)
     return worst;
 }
 
+//! What a user without this call has: F, one line a point, the other's distance from it.
+void distancesFromLines(const Data& d)
+{
+    const Matx33d cross(0, -T[2], T[1], T[2], 0, -T[0], -T[1], T[0], 0);
+    const Matx33d F = d->scene2.K.inv().t()*cross*R*d->scene1.K.inv();
+    computeCorrespondEpilines(d->pixels1, 1, F, d->straight);
+    d->distances.resize(d->pixels1.size());
+    for (size_t i = 0; i < d->pixels2.size(); i++)
+        d->distances[i] = d->straight[i].dot(Vec3d(d->pixels2[i].x, d->pixels2[i].y, 1));
+}
+
+//! Largest error of the distances, against a ternary search along the exact curve.
+double distanceError(const Data& d)
+{
+    const auto c1 = d->scene1.parts<long double>(), c2 = d->scene2.parts<long double>();
+    long double worst = 0;
+    for (int i : sample((int)d->distances.size(), 100))
+    {
+        const auto ray = c1.unproject(exact(d->pixels1[i]));
+        const auto distance = [&](long double s)
+        {
+            const Pixel p = c2.project(toCamera2(reference::add(ray.origin, s, ray.direction)));
+            return std::hypot(p[0] - d->pixels2[i].x, p[1] - d->pixels2[i].y);
+        };
+        long double low = 200, high = 1e5L;
+        for (int k = 0; k < 200; k++)
+        {
+            const long double a = low + (high - low)/3, b = high - (high - low)/3;
+            (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+        }
+        worst = std::max(worst, std::abs(distance(low) - std::abs(d->distances[i])));
+    }
+    return (double)worst;
+}
+
+Row distanceRow(const Data& d, const std::string& key, const std::string& work)
+{
+    Row r = triangulateRow(d, key, work, 0, 0);
+    r.bytes = 41;
+    r.peerName = "cv::computeCorrespondEpilines, distance";
+    r.ours = [=] { refractiveEpipolarDistance(d->pixels1, d->pixels2, d->scene1.camera, d->scene2.camera, R, T, d->distances,
+                                              d->status); };
+    r.peer = [=] { distancesFromLines(d); };
+    r.error = [=] { return distanceError(d); };
+    r.tolerance = 1e-6;
+    r.unit = "px";
+    return r;
+}
+
 } // namespace
 
 void addPairRows(std::vector<Row>& rows, int count)
@@ -175,6 +306,13 @@ void addPairRows(std::vector<Row>& rows, int count)
     const Data many = std::make_shared<Pair>(count), few = std::make_shared<Pair>(std::min(count, 2000));
     rows.push_back(triangulateRow(many, "triangulate", "triangulate, maximum likelihood", TRIANGULATE_OPTIMAL, 1/4.));
     rows.push_back(triangulateRow(many, "midpoint", "triangulate, midpoint", TRIANGULATE_MIDPOINT, 1/15.));
+    rows.push_back(rigRow(count, "triangulate_rig", "triangulate, 4 cameras", 0, 2.2));
+    rows.push_back(rigRow(count, "triangulate_missing", "triangulate, 4 cameras, some unseen", 2, 0));
+    Row cv = rigRow(count, "triangulate_cv", "triangulate, 4 cameras", 0, 2.2/12);
+    cv.peerName = "3 cv::triangulatePoints";
+    cv.peer = [=] { for (int k = 0; k < 3; k++) triangulatePoints(Matx34d::eye(), many->P2, many->normal1, many->normal2,
+                                                                  many->homogeneous); };
+    rows.push_back(cv);
     Row lines = triangulateRow(few, "epilines", "epipolar curve, 300-1500 mm", 0, 0);
     lines.bytes = 0;
     lines.peerName = "cv::computeCorrespondEpilines";
@@ -185,6 +323,11 @@ void addPairRows(std::vector<Row>& rows, int count)
     lines.tolerance = 0.01;
     lines.unit = "px";
     rows.push_back(lines);
+    rows.push_back(distanceRow(many, "epipolar_distance", "epipolar distance"));
+    const Data wrong = std::make_shared<Pair>(count);       // 40 % of the matches
+    for (size_t i = 0; i + 5 < wrong->pixels2.size(); i += 5)
+        std::swap(wrong->pixels2[i], wrong->pixels2[i + 3]);
+    rows.push_back(distanceRow(wrong, "epipolar_distance_wrong", "epipolar distance, 40 % wrong"));
 }
 
 } // namespace bench

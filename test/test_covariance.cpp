@@ -137,3 +137,18 @@ TEST_CASE("Thickness and index that only show together are refused together, als
                           && Catch::Contains("only thickness (1 - outerIndex/index) = 7.044"));
     }
 }
+
+TEST_CASE("What is not required is told, however uncertain it is", "[covariance]")
+{
+    Random random(795);
+    CAPTURE(seed());
+    const RigTruth truth = one(paperWindow());
+    const RigScene scene = makeRigScene(truth, 6, random, 0);
+    const auto problem = problemAt(truth, scene, true, 0);
+    const double tame = 0.04, wild = 1e8;       // squared pixels: the second know next to nothing
+    for (const int required : { REQUIRE_ALL, (int)GLASS_REQUIRE_WINDOW })
+        CHECK_THROWS_WITH(rigCovariance(*problem, wild, required), Catch::Contains("do not determine normal"));
+    const MatrixXd expected = wild/tame*rigCovariance(*problem, tame);
+    for (const int required : { 0, GLASS_REQUIRE_INTRINSICS | GLASS_REQUIRE_EXTRINSICS })
+        CHECK((rigCovariance(*problem, wild, required) - expected).norm() <= 1e-12*expected.norm());
+}

@@ -243,6 +243,23 @@ TEST_CASE("Bad pose arguments are named with their value", "[project]")
     CHECK_THAT(project(Matx33d(1, 0, 0, 0, 1, 0, 0, 0, -1), Vec3d()), Contains("rvec is not a rotation"));
 }
 
+TEST_CASE("The form with derivatives projects as the one without, also by the smallest rotations", "[project]")
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(900, 0, 322, 0, 905, 236, 0, 0, 1), noArray(),
+                                                                  GlassWindow(Vec3d(0.1, 0.1, 1), 20, 1.5, 40));
+    const std::vector<Point3d> points = { Point3d(0, 0, 1000), Point3d(100, 200, 900) };
+    for (double angle : { 0., 1e-12, 1e-8, 3e-6, 1e-5, 1e-4, 1e-3, 0.1 })
+    {
+        std::vector<Point2d> plain, withJacobian;
+        Mat status, jacobian;
+        refractiveProjectPoints(points, Vec3d(angle, -angle, 0), Vec3d(1, 2, 3), camera, plain);
+        refractiveProjectPoints(points, Vec3d(angle, -angle, 0), Vec3d(1, 2, 3), camera, withJacobian, status, jacobian);
+        INFO("angle " << angle);
+        for (size_t i = 0; i < points.size(); i++)
+            CHECK(norm(plain[i] - withJacobian[i]) < 1e-11);
+    }
+}
+
 TEST_CASE("The jacobian against central differences of several steps", "[project]")
 {
     const WindowKind kind = GENERATE(from_range(allWindows()));

@@ -1,8 +1,7 @@
 // Real images that nobody on this project made, against both baselines: glass ignored, and a pinhole fitted through it.
 // The data stay where they are (REFRACT_DATA_DIR); without them the cases are skipped.
 
-#include "scenes.hpp"
-#include <nlohmann/json.hpp>
+#include "real_data.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -11,49 +10,14 @@
 #include <opencv2/stereo.hpp>
 #endif
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <iostream>
 #include <map>
 
 using namespace cv;
 using namespace cv::refract;
-using nlohmann::json;
+using namespace real_data;
 
 namespace {
-
-typedef std::vector<Point2d> Pixels;
-typedef std::vector<Point3d> Object;
-
-//! False (and a word on why) where the data set is absent.
-bool load(const std::string& path, json& data)
-{
-    const char* fromEnvironment = std::getenv("REFRACT_DATA_DIR");
-    const std::string full = std::string(fromEnvironment ? fromEnvironment : REFRACT_DATA_DIR) + "/" + path;
-    std::ifstream file(full);
-    if (!file)
-    {
-        WARN("SKIPPED: " << full << " is not there");
-        return false;
-    }
-    file >> data;
-    return true;
-}
-
-Pixels pixelsOf(const json& list)
-{
-    Pixels pixels;
-    for (const json& p : list)
-        pixels.emplace_back(p[0], p[1]);
-    return pixels;
-}
-
-Object objectOf(const json& list)
-{
-    Object points;
-    for (const json& p : list)
-        points.emplace_back(p[0], p[1], p[2]);
-    return points;
-}
 
 // ---- ouc_laser3d: a chessboard in air and in water
 

@@ -252,6 +252,52 @@ def test_both_poses_of_a_board(rig, board):
     assert found is False and rvec is None
 
 
+def test_epipolar_distances(rig):
+    from conftest import rotation
+    off = rig.pixels2.copy()
+    off.reshape(-1, 2)[::2] += (0, 5)
+    for cameras in (rig.lens1 + rig.lens2, (rig.camera1, rig.camera2)):
+        distances, status = refract.refractiveEpipolarDistance(rig.pixels1, off, *cameras, rig.R, rig.T)
+        assert distances.shape == (40, 1) and not status.any()
+        assert np.abs(distances[1::2]).max() < 1e-8 and np.abs(distances[::2]).min() > 3
+    distances, status, depths, jacobian = refract.refractiveEpipolarDistanceExtended(
+        rig.pixels1, rig.pixels2, rig.camera1, rig.camera2, rig.R, rig.T, 2, (300., 1500.))
+    assert jacobian.shape == (40, 10) and np.abs(distances).max() < 1e-8
+    x2 = rotation(rig.R) @ rig.points.T + rig.T[:, None]
+    np.testing.assert_allclose(depths.ravel(), x2[2], atol=1e-3)
+
+
+def test_relative_pose_among_wrong_matches(rig):
+    from conftest import rotation
+    off = rig.pixels2.copy()
+    off.reshape(-1, 2)[::4] += (50, 70)
+    for cameras in (rig.lens1 + rig.lens2, (rig.camera1, rig.camera2)):
+        count, R, T, mask = refract.refractiveRecoverPose(rig.pixels1, off, *cameras)
+        assert 30 <= count == mask.sum() <= 31
+        np.testing.assert_allclose(R, rotation(rig.R), atol=1e-3)
+        np.testing.assert_allclose(T.ravel()/np.linalg.norm(T), rig.T/np.linalg.norm(rig.T), atol=1e-3)
+    count, R, T, mask, covariance, interval = refract.refractiveRecoverPoseExtended(
+        rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.)
+    assert covariance.shape == (6, 6) and interval[0] <= np.linalg.norm(T)
+    unseen = np.full_like(off, np.nan)
+    assert refract.refractiveRecoverPose(rig.pixels1, unseen, rig.camera1, rig.camera2)[0] == 0
+
+
+def test_pose_among_wrong_matches(rig, board):
+    pixels = board.glass1[0].copy()
+    wrong = np.arange(0, len(pixels), 4)
+    pixels.reshape(-1, 2)[wrong] += 40
+    for camera in (rig.lens1, (rig.camera1,)):
+        found, rvec, tvec, inliers = refract.refractiveSolvePnPRansac(board.target[0], pixels, *camera, None, None,
+                                                                      iterationsCount=300, reprojectionError=2.)
+        assert found is True and inliers.dtype == np.int32
+        np.testing.assert_array_equal(inliers.ravel(), np.setdiff1d(np.arange(len(pixels)), wrong))
+        np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-4)
+    unseen = np.full_like(pixels, np.nan)
+    found, rvec, _, _ = refract.refractiveSolvePnPRansac(board.target[0], unseen, rig.camera1, None, None)
+    assert found is False and rvec is None
+
+
 def test_pose(rig, board):
     for camera in (rig.lens1, (rig.camera1,)):
         found, rvec, tvec, error = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)

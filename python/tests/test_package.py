@@ -11,9 +11,10 @@ import opencv_refract as refract
 HAVE_CV2 = importlib.util.find_spec("cv2") is not None
 CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "computeRefractiveEpilines",
          "initRefractiveUndistortRectifyMap", "refractivePointsOnPlane", "refractiveProjectPoints",
-         "refractiveProjectPointsExtended", "refractiveSolvePnP", "refractiveUndistortPoints",
-         "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass", "triangulateRefractive", "triangulateRefractiveExtended",
-         "writeRig"]
+         "refractiveProjectPointsExtended", "refractiveEpipolarDistance", "refractiveEpipolarDistanceExtended",
+         "refractiveRecoverPose", "refractiveRecoverPoseExtended", "refractiveSolvePnP", "refractiveSolvePnPRansac",
+         "refractiveUndistortPoints", "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass",
+         "triangulateRefractive", "triangulateRefractiveExtended", "writeRig", "refractiveBundleAdjust", "refractiveBundleAdjustExtended"]
 
 
 def test_every_call_is_here_with_its_docstring():

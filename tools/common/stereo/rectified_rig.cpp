@@ -41,13 +41,18 @@ double RectifiedRig::shift() const
     return P1.at<double>(axis, 2) - P2.at<double>(axis, 2);
 }
 
+double RectifiedRig::perInverse() const
+{
+    return P1.at<double>(0, 0)*(centreOf(P2) - centre())[vertical_ ? 1 : 0];
+}
+
+double RectifiedRig::depthOf(double disparity) const { return centre()[2] + perInverse()/(disparity - shift()); }
+
 //! The range of disparities is that of the depths in the rectified frame, all over the image.
 void RectifiedRig::findDisparities()
 {
-    const int axis = vertical_ ? 1 : 0;
     const cv::Matx33d turn(R1.ptr<double>());
     const Vec3d c1 = centre();
-    const double perInverse = P1.at<double>(0, 0)*(centreOf(P2) - c1)[axis];
     double least = INFINITY, most = -INFINITY;
     const auto add = [&](double d) {
         least = std::min(least, std::isnan(d) ? least : d);
@@ -63,7 +68,7 @@ void RectifiedRig::findDisparities()
             else
             {
                 cv::refract::refractivePointsOnPlane(pixel, X, calibration_.cameras[0].camera, cv::Vec4d(0, 0, 1, depthRange_[k]));
-                add(perInverse/((turn*X[0])[2] - c1[2]) + shift());
+                add(perInverse()/((turn*X[0])[2] - c1[2]) + shift());
             }
         }
     minDisparity_ = cvFloor(least) - 1;

@@ -22,6 +22,8 @@ public:
     int disparities() const { return disparities_; }    //!< a multiple of 16
     //! Disparity of what is infinitely far.
     double shift() const;
+    //! z in the rectified frame; not of shift() or beyond.
+    double depthOf(double disparity) const;
     //! Virtual centre of camera 1, rectified frame.
     cv::Vec3d centre() const;
 
@@ -32,6 +34,8 @@ public:
 
 private:
     void findDisparities();
+    //! disparity - shift(), times the distance from the pinholes.
+    double perInverse() const;
 
     Calibration calibration_;
     cv::Vec2d depthRange_;

@@ -68,12 +68,19 @@ enum RectifyFlags {
     RECTIFY_ZERO_DISPARITY = 1024   //!< both new images have one principal point; cv::CALIB_ZERO_DISPARITY's value
 };
 
-/** @brief Flags of calibrateGlass, stereoCalibrateGlass and calibrateGlassRig; the normal is always free.
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust; the normal is free
+but for GLASS_FIX_NORMAL.
 
 With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is estimated, also where they start at 0: a lens
 without coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. The GLASS_FIX_... flags keep what
 they name at its start, as CALIB_FIX_... do in cv::calibrateCamera and cv::fisheye::calibrate; one that names what the lens
 does not have changes nothing.
+
+A rig is sealed if GLASS_FREE_INTRINSICS is set and nothing but images through the windows tells of it: no direct image, no
+known pose, no known camera. Lens, window and place are exchanged for each other there, along directions that hardly change
+what is measured; such a parameter comes with its large standard deviation and its correlations, which carry what is known of
+lengths, and is refused only where a GLASS_REQUIRE_... flag asks for it. Otherwise each free parameter must be determined by
+itself.
 */
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
@@ -81,11 +88,11 @@ enum GlassCalibrationFlags {
     GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal inner and outer media, where it has no effect
     GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
     GLASS_FREE_INTRINSICS = 16,     //!< all lens parameters (overloads with RefractiveCamera only)
-    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig)
+    GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
     GLASS_ROBUST = 256,             //!< leave out wrong points and images; without: pure maximum likelihood of all points
-    GLASS_USE_POSES = 512,          //!< the targets' poses are known (calibrateGlassRigExtended's form only)
+    GLASS_USE_POSES = 512,          //!< the views' poses are known (the Extended forms only)
     GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
     GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
     GLASS_FIX_K2 = 4096,
@@ -95,7 +102,11 @@ enum GlassCalibrationFlags {
     GLASS_FIX_K6 = 65536,
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
-    GLASS_FIX_TAUX_TAUY = 524288        //!< the sensor's tilt stays
+    GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
+    GLASS_FIX_NORMAL = 1048576,         //!< the normal stays (refractiveBundleAdjust only)
+    GLASS_REQUIRE_WINDOW = 2097152,     //!< a sealed rig is refused if a free parameter of a window is undetermined by itself
+    GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
+    GLASS_REQUIRE_EXTRINSICS = 8388608  //!< the same of R and T
 };
 
 //! What became of one image in calibrateGlassRig
@@ -427,6 +438,64 @@ CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray R, InputArray T, const Vec2d& depthRange,
         OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
 
+/** @brief How far the two pixels of each match are from agreeing: the distance of one from the curve of the other's possible
+partners (computeRefractiveEpilines), to filter matches by.
+
+The curve is that of a pixel's ray from depthRange's near end, or where it leaves the window, to its far end. A pixel beyond an
+end of the curve has its distance from the end, so that a small distance always tells of a match whose point is there. Exact to
+1e-6 px near the curve.
+
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2, the supposed partners.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels: positive to the right of the curve as it runs to larger depths (u to the right, v down). NaN where
+status is not 0.
+@param status Nx1 CV_8U, see RefractiveStatus.
+@param whichImage 1: the curves are those of points1, distances are in image 2; 2: the other way.
+@param depthRange z of the scene, near and far, in the frame of camera whichImage; near may be 0, far infinity: all that the ray
+meets.
+*/
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+//! @overload
+CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status = noArray(), int whichImage = 1,
+        const Vec2d& depthRange = Vec2d(0, DBL_MAX));
+
+/** @brief refractiveEpipolarDistance with its derivative and the depth of the nearest point of the curve.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
+@param R 3x3 or rotation vector, camera 1 -> camera 2.
+@param T translation, camera 1 -> camera 2.
+@param distances Nx1, pixels.
+@param status Nx1 CV_8U.
+@param whichImage as above.
+@param depthRange as above.
+@param depths Nx1 CV_64F: z of the point of the curve that is nearest, in the frame of camera whichImage; an end of depthRange
+(infinity too) where the pixel lies beyond it.
+@param jacobian Nx10 CV_64F: derivative of the distance by u1, v1, u2, v2, by the rotation vector of R (3) and by T (3). The
+distance over the root of the sum of the squares of the first four is, to first order, how far the two pixels are from agreeing
+(Sampson's error), and a standard normal number times the pixels' noise.
+*/
+CV_EXPORTS_AS(refractiveEpipolarDistanceExtended) void refractiveEpipolarDistance(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, OutputArray distances, OutputArray status, int whichImage, const Vec2d& depthRange,
+        OutputArray depths, OutputArray jacobian);
+
 /** @brief Triangulates points seen by two cameras, each behind its own window (@cite Plate2024, section 3.3).
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
@@ -693,8 +762,10 @@ start of the normal comes from the data. Out: the estimate.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels, by cv::calibrateCamera's definition, over all observed points.
 
-Throws where the data cannot determine what is free; the text names the direction that is undetermined. Throws too if
-criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
+Throws where the data cannot determine what is free; the text names the direction that is undetermined (sealed cameras: see
+GlassCalibrationFlags). What is returned is a minimum: its step to the least squares is below 1e-3 standard deviations. A
+sealed camera's is looked for from many starts, so that its focal length need be known to some 10 %, its window's distance to
+a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
 Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
 same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
 */
@@ -785,6 +856,10 @@ start from random samples (the same ones every time), a graduated redescending l
 chance of 1e-4 for a good point, so that clean data give what they give without. For a view of an unmoved target whose
 direct and refracted images contradict each other, beyond what all views do, the direct images go.
 
+A sealed rig (GlassCalibrationFlags) with GLASS_FREE_EXTRINSICS need not start well: each camera is calibrated alone, from
+many starts, then in pairs through the window that they share, then all. R and T then follow from the views. GLASS_ROBUST does
+without that.
+
 With GLASS_USE_POSES the poses rvecs, tvecs are known from outside (a robot, a jig). A view with a covariance moves within
 it: one prior residual, weighed against the pixels' own noise, which is estimated. If also lens, thickness and index are
 known, one view determines the normal.
@@ -798,7 +873,7 @@ view was not taken, an empty list holds no view.
 @param windowOfCamera per camera: which window it looks through; equal numbers share one, empty: each has its own. The first
 camera of a shared window brings its start, what the others see of it follows from R and T.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
-Result with GLASS_FREE_EXTRINSICS. Not used for one camera.
+Result with GLASS_FREE_EXTRINSICS. Not used for one camera. May be empty, with Ts, for a sealed rig with GLASS_FREE_EXTRINSICS.
 @param Ts 3x1, as Rs.
 @param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view of which
 nothing is left.
@@ -810,10 +885,10 @@ none or it was left out.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
 @param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
 where there is no image.
-@param otherMinima Cx4 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
-minimum and how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel.
-Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found. The row,
-and the frame of the normal, is the first camera's of the window.
+@param otherMinima Cx5 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
+minimum, how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel, and its
+distance. Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found.
+The row, and the frame of the normal, is the first camera's of the window.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
@@ -847,6 +922,69 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+/** @brief Bundle adjustment without a target: cameras, their windows, poses and scene points from matches alone, in the unit of
+a known length.
+
+One view: the rig stands still, as in motion capture and particle tracking; each point is one place where something was seen, so
+that a wand of known length at M/2 moments gives M points, and M/2 lengths between them. Several views: the rig (or one camera)
+moves through a static scene. All of it is one maximum-likelihood fit under equal isotropic pixel noise, which is estimated; the
+points are eliminated (Schur complement), as in Triggs et al., Bundle adjustment - a modern synthesis, 2000.
+
+The scene's frame is that of the first view, whose pose stays; with one view and without rvecs, tvecs that is camera 1's. Its
+scale comes from lengths, from R and T of several cameras if they are not free, or from the poses with GLASS_USE_POSES; without
+any of them this throws, as through windows the scale hardly shows (doc/uncertainty.md tells how little, and what the normal,
+the distance and the thickness can be told from without a target). What is determined, but hardly, is not refused: stdDeviations
+say so.
+
+@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64; NaN: not seen in that image. An
+empty view was not taken.
+@param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
+@param windowOfCamera per camera: which window it looks through, as calibrateGlassRig; empty: each has its own.
+@param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
+Start and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
+@param Ts 3x1, as Rs.
+@param rvecs scene -> camera 1 rotation vector of each view, start and result; with one view it may be empty.
+@param tvecs scene -> camera 1 translation of each view; as rvecs.
+@param points3D M scene points, start and result, Nx1 3-channel; empty, or NaN for a point: it starts where its rays come
+closest. Result NaN for a point that is seen (or, with GLASS_ROBUST, right) in fewer than two images, or whose rays do not meet.
+@param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
+deviation > 0; noArray(): none.
+@param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
+@param covariance PxP in the same order; poses and points unknown; the pixels' variance is that of the residuals.
+@param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, with what cameras and poses add; NaN
+where the point is.
+@param perViewErrors VxC CV_64F: RMS of each image; NaN where there is none.
+@param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or is left out; empty where there is no image.
+@param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. GLASS_FIX_NORMAL and nothing else: poses
+and points only, with cameras as they are, also without windows. With GLASS_ROBUST wrong matches are found and left out: a
+start under Cauchy's loss, then a hard decision with a chance of 1e-4 for a good one.
+@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is exact;
+noArray(): all are exact.
+@param criteria iterations and relative change of the cost at which to stop, as calibrateGlass.
+@return RMS reprojection error in pixels over all points that were used.
+
+Throws where the data cannot determine what is free, naming it.
+*/
+CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
+        const std::vector<std::vector<Mat> >& imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        InputOutputArray points3D, InputArray lengths,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
+        OutputArrayOfArrays inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+/** @overload
+The short form, for a rig that stands still: imagePoints is one array of Mx2 pixels per camera, points are in the frame of
+camera 1.
+*/
+CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArray points3D, InputArray lengths, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
@@ -900,6 +1038,96 @@ CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray i
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         bool useExtrinsicGuess = false, InputArray rvec = noArray(), InputArray tvec = noArray(),
         OutputArray reprojectionError = noArray());
+
+/** @brief Pose of a known target among wrong matches: cv::solvePnPRansac through a window.
+
+Samples of three points (the same ones every time) give poses exactly, each pixel's ray with its own origin; all points
+judge them, by their distance from where the pose has them in the raw image. The best is refined (maximum likelihood) on the
+points that agree with it, but for those that stand out among these, if there are a dozen: a right one by a chance of 1e-4.
+
+@param objectPoints N 3-D points, some perhaps of the wrong pixel.
+@param imagePoints N raw pixels; a NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvec object -> camera rotation vector.
+@param tvec object -> camera translation.
+@param useExtrinsicGuess rvec, tvec are one more candidate, and the first.
+@param iterationsCount samples at most. With a part w of right points and a confidence p it takes log(1 - p)/log(1 - w^3): 169
+for w = 0.3 and p = 0.99.
+@param reprojectionError pixels from its image within which a point agrees.
+@param confidence chance of a sample without wrong points, after which the search ends; less than 1.
+@param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
+@return false if there is no pose with which at least 4 points agree, not on a line, and more than poses of random samples would
+find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is empty.
+*/
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false, int iterationsCount = 100,
+        float reprojectionError = 8.0f, double confidence = 0.99, OutputArray inliers = noArray());
+
+//! @overload
+CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
+        double confidence = 0.99, OutputArray inliers = noArray());
+
+/** @brief Relative pose of two calibrated cameras from matches of which some are wrong: cv::recoverPose through windows, which
+also gives the distance between the cameras, as well as refraction tells it.
+
+A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
+in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
+refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
+of T are always determined, if less well than a pinhole pair's, as the length is estimated with them.
+
+@param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
+@param points2 N raw pixels of camera 2.
+@param cameraMatrix1 3x3.
+@param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
+@param window1 of camera 1.
+@param cameraMatrix2 3x3.
+@param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
+@param window2 of camera 2.
+@param R 3x3 CV_64F, camera 1 -> camera 2.
+@param T 3x1 CV_64F, camera 1 -> camera 2; of length 1 where no scale shows at all (no window refracts), of the least length that
+is likely (scaleInterval's low end) where the most likely one is infinite.
+@param prob chance of a sample without wrong matches, after which the search ends; less than 1.
+@param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
+images.
+@param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
+@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6, and with more
+than poses of random samples would find among strewn pixels (or all).
+*/
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
+        InputArray cameraMatrix2, InputArray distCoeffs2, const GlassWindow& window2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+//! @overload
+CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
+
+/** @brief refractiveRecoverPose with what the estimate is worth.
+@param points1 N raw pixels of camera 1.
+@param points2 N raw pixels of camera 2.
+@param camera1 lens and window of camera 1, taken as exact.
+@param camera2 lens and window of camera 2, taken as exact.
+@param R 3x3 CV_64F.
+@param T 3x1 CV_64F.
+@param prob as above.
+@param threshold as above.
+@param mask as above.
+@param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. Where scaleInterval has no upper end it
+is that of R and the direction alone, for the length that T has (its rank is 5).
+@param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile: where
+refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
+@return as above.
+*/
+CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,
+        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        OutputArray R, OutputArray T, double prob, double threshold, OutputArray mask,
+        OutputArray covariance, CV_OUT Vec2d& scaleInterval);
 
 //! @}
 

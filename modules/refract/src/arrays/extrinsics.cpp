@@ -23,18 +23,21 @@ static std::vector<Mat> readList(InputArrayOfArrays list, int cameras, const cha
 
 std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
-    const double ROUNDING = 1e-6;
+    const double ROUNDING = 1e-6;       // of single precision
     std::vector<RigidTransform> extrinsics(cameras);
     if (cameras == 1 && Rs.empty() && Ts.empty())
         return extrinsics;
     const std::vector<Mat> R = readList(Rs, cameras, "Rs"), T = readList(Ts, cameras, "Ts");
+    double size = 1;
+    for (const Mat& t : T)
+        size = std::max(size, norm(t, NORM_INF));
     for (int c = 0; c < cameras; c++)
     {
         RigidTransform& camera = extrinsics[c];
         camera.R = readRotation(R[c], numbered("Rs", c).c_str());
         camera.T = readVec3(T[c], numbered("Ts", c).c_str());
         const double turned = norm(rotationVector(camera.R)), moved = norm(camera.T);
-        if (c == 0 && turned + moved > ROUNDING)
+        if (c == 0 && turned + moved/size > ROUNDING)
             CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
                                          "be the identity and 0", turned, moved));
     }

@@ -5,7 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
-#include "arrays/extrinsics.hpp"
+#include "calibrate/staged_start.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
 
@@ -17,7 +17,7 @@ namespace {
 void checkWindow(const GlassWindow& window, int flags)
 {
     const bool equalMedia = window.innerIndex == window.outerIndex;
-    if (window.thickness.empty() && equalMedia)
+    if (window.thickness.empty() && equalMedia && !(flags & GLASS_FIX_NORMAL))
         CV_Error_(Error::StsBadArg, ("window has no layer and equal media (index %g): it does not refract, so that its "
                                      "normal is undetermined", window.innerIndex));
     if (window.thickness.empty() && (flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX)))
@@ -50,8 +50,6 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
     }
 }
 
-namespace {
-
 std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names)
 {
     std::vector<Camera> cameras;
@@ -66,7 +64,6 @@ std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles
     return cameras;
 }
 
-//! The first camera that looks through the same window; as many layers as it are given to the others. Empty: each its own.
 void setOwners(Rig& rig, const std::vector<int>& windowOfCamera)
 {
     for (int c = 0; c < rig.count(); c++)
@@ -88,14 +85,13 @@ void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handl
         cameraOf(handles[c]) = rig.cameras[c];
 }
 
-//! One entry per camera; fewer only if it may be left out altogether.
 void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
 {
     if ((int)count != expected && !(mayBeEmpty && count == 0))
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
 }
 
-Pose poseOf(const RigidTransform& extrinsics)
+static Pose poseOf(const RigidTransform& extrinsics)
 {
     Pose pose;
     pose.rvec = rotationVector(extrinsics.R);
@@ -124,7 +120,7 @@ void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutpu
 }
 
 //! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors.
-std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name)
+static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name)
 {
     std::vector<Vec3d> vectors;
     if (a.isMatVector() || a.kind() == _InputArray::STD_VECTOR_VECTOR)
@@ -134,12 +130,12 @@ std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name
         for (const Point3d& p : readPoints3(a, name))
             vectors.push_back(readVec3(Mat(Vec3d(p)), name));
     if ((int)vectors.size() != count)
-        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, objectPoints %d views; with GLASS_USE_POSES they must "
-                                             "agree", name, (int)vectors.size(), count));
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, but there are %d views, whose poses must be given", name,
+                                             (int)vectors.size(), count));
     return vectors;
 }
 
-PoseKnowledge readKnowledge(InputArray covariance, const String& name)
+static PoseKnowledge readKnowledge(InputArray covariance, const String& name)
 {
     PoseKnowledge knowledge;
     knowledge.kind = PoseKnowledge::EXACT;
@@ -156,28 +152,32 @@ PoseKnowledge readKnowledge(InputArray covariance, const String& name)
     return knowledge;
 }
 
-void readKnownPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArrayOfArrays covariances, RigTask& task)
+std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count)
 {
-    const int count = task.views.count();
     const std::vector<Vec3d> r = readVectors(rvecs, count, "rvecs"), t = readVectors(tvecs, count, "tvecs");
-    const int given = covariances.empty() ? 0 : (int)covariances.total();
-    if (given != 0 && given != count)
-        CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, objectPoints %d views; they must agree",
-                                             given, count));
+    std::vector<Pose> poses(count);
     for (int view = 0; view < count; view++)
     {
-        Pose pose;
-        pose.rvec = r[view];
-        pose.tvec = t[view];
-        pose.found = true;
-        task.knownPoses.push_back(pose);
-        task.knowledge.push_back(readKnowledge(given ? covariances.getMat(view) : Mat(),
-                                               numbered("poseCovariances", view)));
+        poses[view].rvec = r[view];
+        poses[view].tvec = t[view];
+        poses[view].found = true;
     }
+    return poses;
+}
+
+std::vector<PoseKnowledge> readKnowledge(InputArrayOfArrays covariances, int count)
+{
+    const int given = covariances.empty() ? 0 : (int)covariances.total();
+    if (given != 0 && given != count)
+        CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, but there are %d views", given, count));
+    std::vector<PoseKnowledge> knowledge;
+    for (int view = 0; view < count; view++)
+        knowledge.push_back(readKnowledge(given ? covariances.getMat(view) : Mat(), numbered("poseCovariances", view)));
+    return knowledge;
 }
 
 //! LxL or PxP of each camera, or nothing.
-void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
+static void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
 {
     if (covariances.empty())
         return;
@@ -205,7 +205,7 @@ void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camer
 }
 
 //! As the arrays have them: an empty list is no view.
-std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
+static std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
 {
     return imagePoints.empty() ? std::vector<Mat>() : imagePoints[camera];
 }
@@ -226,8 +226,6 @@ void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
         masks[i].copyTo(out.getMat(i));
     }
 }
-
-} // namespace
 
 //! What both forms do, but for the results beside cameras, Rs and Ts.
 static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -258,14 +256,18 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
-        readKnownPoses(rvecs, tvecs, poseCovariances, task);
+    {
+        task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
+        task.knowledge = readKnowledge(poseCovariances, task.views.count());
+    }
     readCameraKnowledge(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
+    const bool placesFollow = isStaged(task) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
+    rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);

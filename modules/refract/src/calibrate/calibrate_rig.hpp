@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_CALIBRATE_RIG_HPP
 #define OPENCV_REFRACT_CALIBRATE_RIG_HPP
 
+#include "arrays/extrinsics.hpp"
 #include "calibrate/pair_check.hpp"
 
 namespace cv { namespace refract {
@@ -15,13 +16,30 @@ const int FIX_FLAGS = GLASS_FIX_FOCAL_LENGTH | GLASS_FIX_PRINCIPAL_POINT | GLASS
                       GLASS_FIX_K4 | GLASS_FIX_K5 | GLASS_FIX_K6 | GLASS_FIX_TANGENT_DIST | GLASS_FIX_S1_S2_S3_S4 |
                       GLASS_FIX_TAUX_TAUY;
 const int MONO_FLAGS = GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX |
-                       GLASS_FREE_INTRINSICS | FIX_FLAGS | GLASS_ROBUST;
+                       GLASS_FREE_INTRINSICS | FIX_FLAGS | GLASS_ROBUST | GLASS_REQUIRE_WINDOW | GLASS_REQUIRE_INTRINSICS |
+                       GLASS_REQUIRE_EXTRINSICS;
 
 void checkFlags(int flags, int allowed);
 
 /** Refuses windows and flags of which no data can tell, and windows that nobody looked through.
 @param names of each camera's refracted views */
 void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names);
+
+//! One entry per camera; fewer only if it may be left out altogether.
+void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty);
+
+//! The cameras behind the handles, each of which must be an object of its own; names in messages.
+std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names);
+void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handles);
+//! The first camera that looks through the same window; as many layers as it are given to the others. Empty: each its own.
+void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
+
+std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
+void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
+std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
+//! Poses that are known: exactly, or with a covariance.
+std::vector<PoseKnowledge> readKnowledge(InputArrayOfArrays covariances, int count);
+void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);
 
 }} // namespace
 

@@ -4,8 +4,8 @@
 
 /* Covariance = s^2 A^-1 of the free parameters; s^2: variance of a pixel coordinate, A = R^T R: information.hpp.
 
-Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters whose
-standard deviation is so large that the value is no answer. */
+Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters that are
+required and whose standard deviation is so large that the value is no answer. */
 
 #include "calibrate/covariance.hpp"
 #include "calibrate/information.hpp"
@@ -49,7 +49,14 @@ double meanRange(const RigProblem& rig)
     return sum/count;
 }
 
-std::vector<FreeParameter> freeParameters(const RigProblem& rig)
+//! The GLASS_REQUIRE_... flag of a block.
+int requirementOf(RigBlock::Kind kind)
+{
+    return kind == RigBlock::LENS ? GLASS_REQUIRE_INTRINSICS : kind == RigBlock::EXTRINSICS ? GLASS_REQUIRE_EXTRINSICS :
+           GLASS_REQUIRE_WINDOW;
+}
+
+std::vector<FreeParameter> freeParameters(const RigProblem& rig, int required)
 {
     const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(rig);
     std::vector<FreeParameter> parameters;
@@ -67,7 +74,7 @@ std::vector<FreeParameter> freeParameters(const RigProblem& rig)
             const bool isAngle = block.kind == RigBlock::NORMAL || (block.kind == RigBlock::EXTRINSICS && i < 3);
             const bool isLength = block.kind == RigBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
                                   block.kind == RigBlock::EXTRINSICS && i >= 3;
-            p.hopeless = isAngle ? CV_PI/4 : isLength ? range :
+            p.hopeless = !(required & requirementOf(block.kind)) ? infinity : isAngle ? CV_PI/4 : isLength ? range :
                 block.kind == RigBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);
         }
@@ -123,10 +130,9 @@ VectorXd hopelessPart(const MatrixXd& half, const VectorXd& excess, int worst)
     return part;
 }
 
-//! Covariance of the free parameters; refuses if a direction is lost or a standard deviation is no answer.
-MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>& parameters, double variance)
+//! H, H H^T = covariance of the free parameters for unit pixel noise; refuses if a direction is lost.
+MatrixXd halfCovariance(const std::vector<FreeParameter>& parameters, const Information& information)
 {
-    const Information information = rigInformation(rig);
     for (int i = 0; i < (int)parameters.size(); i++)
         if (!(information.effect[i] > 0))
             refuse(parameters, VectorXd::Unit(parameters.size(), i), 1, VectorXd());
@@ -136,8 +142,12 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
     const int undetermined = (int)(svd.singularValues().array() < SINGULAR).count();
     if (undetermined > 0)
         refuse(parameters, svd.matrixV().rightCols(undetermined).rowwise().norm(), undetermined, VectorXd());
-    const MatrixXd half = scale.asDiagonal()*svd.matrixV()*svd.singularValues().cwiseInverse().asDiagonal();
+    return scale.asDiagonal()*svd.matrixV()*svd.singularValues().cwiseInverse().asDiagonal();
+}
 
+//! Refuses if a standard deviation is no answer.
+void refuseHopeless(const std::vector<FreeParameter>& parameters, const MatrixXd& half, double variance)
+{
     const double floor = std::max(variance, LEAST_SIGMA*LEAST_SIGMA);
     const VectorXd sigma = half.rowwise().norm()*std::sqrt(floor);
     VectorXd excess(parameters.size());
@@ -146,16 +156,30 @@ MatrixXd freeCovariance(const RigProblem& rig, const std::vector<FreeParameter>&
     int worst;
     if (excess.maxCoeff(&worst) > 1)
         refuse(parameters, hopelessPart(half, excess, worst), 1, sigma);
-    return variance*half*half.transpose();
+}
+
+//! Covariance of the public parameters.
+MatrixXd publicCovariance(const RigProblem& rig, const MatrixXd& half, double variance)
+{
+    const MatrixXd all = rig.publicBasis()*half;
+    return variance*all*all.transpose();
 }
 
 } // namespace
 
-MatrixXd rigCovariance(const RigProblem& rig, double variance)
+MatrixXd rigCovariance(const RigProblem& rig, double variance, int required)
 {
-    const MatrixXd free = freeCovariance(rig, freeParameters(rig), variance);
-    const MatrixXd basis = rig.publicBasis();
-    return basis*free*basis.transpose();
+    const std::vector<FreeParameter> parameters = freeParameters(rig, required);
+    const MatrixXd half = halfCovariance(parameters, rigInformation(rig));
+    refuseHopeless(parameters, half, variance);
+    return publicCovariance(rig, half, variance);
+}
+
+MatrixXd rigCovariance(const RigProblem& rig, const Information& information, double variance)
+{
+    if (information.effect.size() == 0)     // only poses and points are free
+        return MatrixXd::Zero(rig.publicCount(), rig.publicCount());
+    return publicCovariance(rig, halfCovariance(freeParameters(rig, 0), information), variance);
 }
 
 }} // namespace

@@ -5,14 +5,20 @@
 #ifndef OPENCV_REFRACT_COVARIANCE_HPP
 #define OPENCV_REFRACT_COVARIANCE_HPP
 
-#include "calibrate/rig_problem.hpp"
+#include "calibrate/information.hpp"
 
 namespace cv { namespace refract {
 
+const int REQUIRE_ALL = GLASS_REQUIRE_WINDOW | GLASS_REQUIRE_INTRINSICS | GLASS_REQUIRE_EXTRINSICS;
+
 /** What the data can and cannot tell: covariance of the public parameters of a solved problem, P x P; 0 where fixed. Throws,
 naming the direction, if the data do not determine what is free.
-@param variance of a pixel coordinate */
-Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance);
+@param variance of a pixel coordinate
+@param required what must be determined by itself, GLASS_REQUIRE_...; of the rest it is enough that combinations are */
+Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance, int required = REQUIRE_ALL);
+
+//! The same from information that also scene points left; only what is lost altogether is refused.
+Eigen::MatrixXd rigCovariance(const RigProblem& rig, const Information& information, double variance);
 
 }} // namespace
 

@@ -22,23 +22,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-//! The free coordinates of each block, and where they stand among all.
-struct FreeSpace
-{
-    explicit FreeSpace(const RigProblem& rig, bool withHeld = true) : count(0)
-    {
-        for (const RigBlock& block : rig.blocks())
-        {
-            bases.push_back(block.tangentBasis(withHeld));
-            first.push_back(count);
-            count += (int)bases.back().cols();
-        }
-    }
-    std::vector<MatrixXd> bases;
-    std::vector<int> first;
-    int count;
-};
-
 //! One image's derivatives by its pose (6 columns) and by the free parameters that it depends on, and its residuals.
 struct ImageRows
 {

@@ -9,6 +9,23 @@
 
 namespace cv { namespace refract {
 
+//! The free coordinates of each block, and where they stand among all.
+struct FreeSpace
+{
+    explicit FreeSpace(const RigProblem& rig, bool withHeld = true) : count(0)
+    {
+        for (const RigBlock& block : rig.blocks())
+        {
+            bases.push_back(block.tangentBasis(withHeld));
+            first.push_back(count);
+            count += (int)bases.back().cols();
+        }
+    }
+    std::vector<Eigen::MatrixXd> bases;
+    std::vector<int> first;
+    int count;
+};
+
 //! What a problem's residuals tell about the free parameters while the poses are unknown.
 struct Information
 {

@@ -10,7 +10,7 @@ namespace cv { namespace refract {
 Eigen::MatrixXd RigBlock::tangentBasis(bool withHeld) const
 {
     const int size = (int)values.size();
-    if (kind == NORMAL)
+    if (kind == NORMAL && isFree[0])
     {
         Eigen::Matrix<double, 3, 2, Eigen::RowMajor> basis;
         ceres::SphereManifold<3>().PlusJacobian(values.data(), basis.data());
@@ -26,11 +26,9 @@ Eigen::MatrixXd RigBlock::tangentBasis(bool withHeld) const
 
 Eigen::VectorXd RigProblem::residuals(const RigImage& image) const
 {
-    const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
-    Eigen::VectorXd residuals(cost->num_residuals());
-    std::vector<const double*> values(1, poses_[image.view].data());    // the cameras hold the rest
-    CV_Assert(cost->Evaluate(values.data(), residuals.data(), nullptr));
-    return residuals;
+    Derivatives result;
+    CV_Assert(evaluate(image, false, result));
+    return result.residuals;
 }
 
 std::vector<double> RigProblem::pixelErrors(const RigImage& image, const Pose& pose) const
@@ -77,23 +75,31 @@ Eigen::VectorXd RigProblem::priorOfBlock(int block) const
     return priorByBlock(block)*(blocks_[block].values - blocks_[block].known);
 }
 
-RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
+bool RigProblem::evaluate(const RigImage& image, bool wantsDerivatives, Derivatives& result) const
 {
     const std::unique_ptr<ceres::CostFunction> cost(makeCost(image));
-    Derivatives result;
-    result.blocks = blocksOf(image);
-    result.byPose.setZero(cost->num_residuals(), 6);
-    std::vector<double*> jacobians(1, isAdjusted(image.view) ? result.byPose.data() : nullptr);
-    std::vector<const double*> values(1, poses_[image.view].data());
-    for (int i : result.blocks)
-    {
-        result.byBlock.push_back(RowMajorMatrix(cost->num_residuals(), blocks_[i].values.size()));
-        values.push_back(blocks_[i].values.data());
-    }
-    for (RowMajorMatrix& byBlock : result.byBlock)
-        jacobians.push_back(byBlock.data());
+    const std::vector<const double*> pose(1, poses_[image.view].data());    // the cameras hold the rest
     result.residuals.resize(cost->num_residuals());
-    CV_Assert(cost->Evaluate(values.data(), result.residuals.data(), jacobians.data()));
+    if (!wantsDerivatives)
+        return cost->Evaluate(pose.data(), result.residuals.data(), nullptr);
+    result.blocks = blocksOf(image);
+    result.byBlock.resize(result.blocks.size());
+    result.byPose.resize(cost->num_residuals(), 6);
+    std::vector<double*> jacobians(1, result.byPose.data());
+    for (size_t i = 0; i < result.blocks.size(); i++)
+    {
+        result.byBlock[i].resize(cost->num_residuals(), blocks_[result.blocks[i]].values.size());
+        jacobians.push_back(result.byBlock[i].data());
+    }
+    return cost->Evaluate(pose.data(), result.residuals.data(), jacobians.data());
+}
+
+RigProblem::Derivatives RigProblem::derivatives(const RigImage& image) const
+{
+    Derivatives result;
+    CV_Assert(evaluate(image, true, result));
+    if (!isAdjusted(image.view))
+        result.byPose.setZero();
     return result;
 }
 

@@ -9,15 +9,13 @@
 #include "calibrate/rig_robust.hpp"
 #include "calibrate/sealed_start.hpp"
 #include "calibrate/rig_start.hpp"
+#include "calibrate/staged_start.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
 
-namespace {
+static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-const double NaN = std::numeric_limits<double>::quiet_NaN();
-
-//! Both limits in force: what the caller left open is generous.
 TermCriteria checkedCriteria(TermCriteria criteria)
 {
     if (!(criteria.type & (TermCriteria::COUNT | TermCriteria::EPS)))
@@ -30,6 +28,8 @@ TermCriteria checkedCriteria(TermCriteria criteria)
         CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must not be negative", criteria.epsilon));
     return criteria;
 }
+
+namespace {
 
 void checkFreedom(const RigProblem& rig)
 {
@@ -118,24 +118,41 @@ void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigT
 
 Mat toMat(const std::vector<OtherMinimum>& minima)
 {
-    Mat_<double> rows((int)minima.size(), 4);
+    Mat_<double> rows((int)minima.size(), 5);
     for (int c = 0; c < rows.rows; c++)
     {
         Mat(minima[c].normal.t()).copyTo(rows(Rect(0, c, 3, 1)));
         rows(c, 3) = minima[c].excess;
+        rows(c, 4) = minima[c].distance;
     }
     return rows;
+}
+
+//! A sealed rig exchanges its parameters for each other: asked of it is only what the caller names.
+int requiredOf(const RigTask& task)
+{
+    return isSealed(task) ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
 RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
 {
+    if (isStaged(task))
+    {
+        std::vector<OtherMinimum> minima(rig.count());
+        const RigStart start = stagedStart(rig, task.views, task.flags, minima);
+        checkPoses(task.views, start.poses);
+        fit.otherMinima = toMat(minima);
+        return start;
+    }
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
     RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
     std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
     addPosesThroughWindow(start.rig, views, start.poses);
     keepGivenNormals(rig, views, start.poses, start.rig);
+    if (isSealed(task) && !isRobust)
+        addPosesIgnoringWindow(start.rig, views, start.poses);
     if (isRobust)
         dropUnusable(views, start.poses, task);
     else
@@ -171,7 +188,7 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
 
     // First, as what is undetermined is also what does not converge.
     const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
-    eigen2cv(rigCovariance(problem, variance), fit.covariance);
+    eigen2cv(rigCovariance(problem, variance, requiredOf(task)), fit.covariance);
     if (!outcome.converged)
         CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
                                      "what the views hardly determine", criteria.maxCount));

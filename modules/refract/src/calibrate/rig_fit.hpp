@@ -31,8 +31,11 @@ struct RigFit
     Mat jacobian;                   //!< if wanted
     Mat imageStatus;                //!< GlassImageStatus, as perViewErrors
     std::vector<Mat> inliers;       //!< of each element of perViewErrors, row by row
-    Mat otherMinima;                //!< one row a camera: normal, excess
+    Mat otherMinima;                //!< one row a camera: normal, excess, distance
 };
+
+//! Both limits in force: what the caller left open is generous.
+TermCriteria checkedCriteria(TermCriteria criteria);
 
 //! Starts, fit, and what it tells. rig is start and result.
 RigFit fitRig(Rig& rig, const RigTask& task);

@@ -73,7 +73,7 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
         setKnown(ofCamera, 0, blocks_.back());
         if (!rig_.owns(c))
             continue;
-        addBlock(RigBlock::NORMAL, c, lens + at.normal, std::vector<bool>(3, true));
+        addBlock(RigBlock::NORMAL, c, lens + at.normal, std::vector<bool>(3, !(flags & GLASS_FIX_NORMAL)));
         addBlock(RigBlock::MEDIA, c, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()));
         setKnown(ofCamera, lens + at.media, blocks_.back());
     }
@@ -257,6 +257,14 @@ void RigProblem::setPose(int view, const Pose& pose)
 {
     if (knowledgeOf(view) != PoseKnowledge::EXACT)
         poses_[view] = sixOf(pose);
+}
+
+void RigProblem::setObjectPoints(const std::vector<Point3d>& points)
+{
+    for (RigImage& image : images_)
+        for (size_t i = 0; i < image.points.index.size(); i++)
+            if (std::isfinite(points[image.points.index[i]].x))     // derivatives are finite whatever the weight
+                image.points.object[i] = points[image.points.index[i]];
 }
 
 bool RigProblem::hasPriors() const

@@ -10,6 +10,8 @@
 #include <ceres/evaluation_callback.h>
 #include <ceres/types.h>
 
+namespace ceres { class Problem; }
+
 namespace cv { namespace refract {
 
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
@@ -74,6 +76,9 @@ struct RigBlock
     WindowParameter windowParameter(int coordinate) const { return kindOf(at, at.media + coordinate); }
 };
 
+//! With its manifold and bounds; constant if nothing of it is free or all is held.
+void addToProblem(ceres::Problem& problem, RigBlock& block);
+
 //! GlassCalibrationFlags -> which lens parameters are free.
 std::vector<bool> freeLens(const Camera& camera, int flags);
 
@@ -104,6 +109,9 @@ public:
     //! Indices into images().
     const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
     const std::vector<RigBlock>& blocks() const { return blocks_; }
+    std::vector<RigBlock>& blocks() { return blocks_; }     //!< updateCameras() after a change
+    //! The cameras at the current values of the blocks.
+    void updateCameras();
     void setRootWeights(int image, const std::vector<double>& rootWeights);
     //! Standard deviation of a pixel coordinate, against which what is known with a covariance is weighed.
     void setPixelSigma(double sigma) { pixelSigma_ = sigma; }
@@ -113,6 +121,12 @@ public:
     Camera camera(int c) const;
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
+    double* poseValues(int view) { return poses_[view].data(); }
+    const double* knownPoseValues(int view) const { return knownPoses_[view].data(); }
+    bool isAdjusted(int view) const { return isSeen_[view] && knowledgeOf(view) != PoseKnowledge::EXACT; }
+    bool isUncertain(int view) const { return isSeen_[view] && knowledgeOf(view) == PoseKnowledge::UNCERTAIN; }
+    //! The scene that each view's target is, where it is not known: one for all views. NaN: that point has no weight.
+    void setObjectPoints(const std::vector<Point3d>& points);
     PoseKnowledge::Kind knowledgeOf(int view) const { return known_.empty() ? PoseKnowledge::UNKNOWN : known_[view].kind; }
     bool hasPriors() const;             //!< poses or parameters known with a covariance
 
@@ -124,6 +138,8 @@ public:
     //! Weighted residuals of one image: u, v of each point.
     Eigen::VectorXd residuals(const RigImage& image) const;
     double squaredError() const;        //!< of all images, and of what is known with a covariance
+    bool isOnBound() const;
+    bool holdAtBounds();                //!< true if that changes what is held
 
     //! Distance of each predicted from the observed pixel, whatever its weight, with this pose; infinite without image.
     std::vector<double> pixelErrors(const RigImage& image, const Pose& pose) const;
@@ -137,6 +153,9 @@ public:
         Eigen::VectorXd residuals;
     };
     Derivatives derivatives(const RigImage& image) const;
+    //! The same whatever is known of the pose, or residuals only; false where a point has no image.
+    bool evaluate(const RigImage& image, bool wantsDerivatives, Derivatives& result) const;
+    std::vector<int> blocksOf(const RigImage& image) const;     //!< indices into blocks(), as in Derivatives
     //! What is known of a pose counts as six more residuals; their derivatives by the pose.
     Matrix6 priorByPose(int view) const { return pixelSigma_*known_[view].inverseRoot; }
     Vector6 priorOfPose(int view) const;                //!< these residuals
@@ -155,23 +174,16 @@ private:
     void addImages(const RigViews& views);
     int blockOf(RigBlock::Kind kind, int camera) const;
     const double* valuesOf(RigBlock::Kind kind, int camera) const;      //!< null for the extrinsics of camera 1
-    std::vector<int> blocksOf(const RigImage& image) const;
     ceres::CostFunction* makeCost(const RigImage& image) const;
     int publicRow(RigBlock::Kind kind, int camera) const;
     void addSharedWindow(int camera, Eigen::MatrixXd& basis) const;
-    bool isAdjusted(int view) const { return isSeen_[view] && knowledgeOf(view) != PoseKnowledge::EXACT; }
-    bool isUncertain(int view) const { return isSeen_[view] && knowledgeOf(view) == PoseKnowledge::UNCERTAIN; }
 
-    //! The cameras at the current values of the blocks.
-    void updateCameras();
     void PrepareForEvaluation(bool, bool isNewPoint) override { if (isNewPoint) updateCameras(); }
 
     //! A ceres::TerminationType. iterations: in the limit, out how many were made.
     int solveInside(ceres::TrustRegionStrategyType strategy, double change, int& iterations, double& radius);
     bool isAtMinimum() const;
     String startFault() const;      //!< empty, or which point has no image at the start
-    bool isOnBound() const;
-    bool holdAtBounds();            //!< true if that changes what is held
 
     Rig rig_;                           //!< lens models and numbers of layers
     std::vector<RigCamera> cameras_;

@@ -22,7 +22,7 @@ to that of the linearised problem must be far below what the noise does. */
 
 namespace cv { namespace refract {
 
-static void addToProblem(ceres::Problem& problem, RigBlock& block)
+void addToProblem(ceres::Problem& problem, RigBlock& block)
 {
     double* values = block.values.data();
     const int size = (int)block.values.size();

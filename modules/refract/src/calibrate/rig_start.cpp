@@ -47,11 +47,17 @@ Pose poseOfView(const std::vector<Camera>& cameras, const Rig& rig, const RigVie
 
 } // namespace
 
-std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known)
+static std::vector<Camera> withoutWindows(const Rig& rig)
 {
     std::vector<Camera> bare;
     for (const Camera& camera : rig.cameras)
         bare.push_back(withWindow(camera));
+    return bare;
+}
+
+std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known)
+{
+    const std::vector<Camera> bare = withoutWindows(rig);
     std::vector<Pose> poses = known;
     poses.resize(views.count());
     for (int view = 0; view < views.count(); view++)
@@ -65,6 +71,14 @@ void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Po
     for (int view = 0; view < views.count(); view++)
         if (!poses[view].found)
             poses[view] = poseOfView(rig.cameras, rig, views, view, false);
+}
+
+void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses)
+{
+    const std::vector<Camera> bare = withoutWindows(rig);
+    for (int view = 0; view < views.count(); view++)
+        if (!poses[view].found)
+            poses[view] = poseOfView(bare, rig, views, view, false);
 }
 
 void checkPoses(const RigViews& views, const std::vector<Pose>& poses)

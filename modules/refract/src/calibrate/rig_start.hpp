@@ -23,6 +23,9 @@ std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, cons
 //! The other poses, from images through the windows; not found where no image gives one.
 void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses);
 
+//! The poses that are left, as if there were no window: to know roughly how far a target is where a window's start hides it.
+void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses);
+
 //! Throws, naming the view, if a view that has points has no pose.
 void checkPoses(const RigViews& views, const std::vector<Pose>& poses);
 

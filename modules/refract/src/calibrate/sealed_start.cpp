@@ -10,13 +10,12 @@ namespace {
 
 const int FEW_VIEWS = 6, MORE_VIEWS = 10;
 const int BOTH = TermCriteria::COUNT + TermCriteria::EPS;
-const TermCriteria FIRST_LOOK(BOTH, 20, 1e-8), SECOND_LOOK(BOTH, 100, 1e-8), TO_THE_END(BOTH, 1000, 1e-12);
+const TermCriteria FIRST_LOOK(BOTH, 20, 1e-8), SECOND_LOOK(BOTH, 100, 1e-8);
 const size_t FINALISTS = 6;
 const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
 const double ROUGHLY_SAME_ANGLE = 0.05, SAME_DISTANCE = 0.05;   // as SAME_ANGLE: before the end of a fit; part of the distance
-const double PLAUSIBLE = 10;    // standard deviations that some views leave a minimum behind the best
 
 //! So many of the views, evenly.
 std::vector<int> someOf(const RigStart& start, int atMost)
@@ -114,33 +113,11 @@ std::vector<Rig> tilted(const std::vector<Rig>& rigs, int owner)
     return all;
 }
 
-//! A fit to some views, and what it leaves.
-struct Trial
-{
-    Rig start, rig;
-    double cost;            //!< infinite where a point has no image
-    int freedom;
-    bool converged;
-    bool operator<(const Trial& other) const { return cost < other.cost; }
-};
-
 Trial fitSome(const Rig& rig, const RigViews& views, const TermCriteria& criteria, int flags)
 {
-    const Trial failure = { rig, rig, std::numeric_limits<double>::infinity(), 0, false };
-    try
-    {
-        std::vector<Pose> poses(views.count());
-        addPosesThroughWindow(rig, views, poses);
-        checkPoses(views, poses);
-        RigProblem problem(rig, views, poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
-        const bool converged = problem.solve(criteria);
-        const Trial trial = { rig, problem.rig(), problem.squaredError(), problem.freedom(), converged };
-        return std::isfinite(trial.cost) ? trial : failure;     // it is sorted by
-    }
-    catch (const cv::Exception&)
-    {
-        return failure;
-    }
+    RigStart start = { rig, std::vector<Pose>(views.count()) };
+    addPosesThroughWindow(rig, views, start.poses);
+    return fitFrom(start, views, criteria, flags);      // fails where a view has no pose
 }
 
 //! The best first; of two that end alike the first.
@@ -153,23 +130,27 @@ std::vector<Trial> fitEach(const std::vector<Rig>& starts, const RigViews& views
     return trials;
 }
 
-//! By which the second is worse.
-double excessOver(const Trial& best, const Trial& other) { return excessOf(other.cost, best.cost, best.freedom); }
-
 double angleOfNormals(const Rig& a, const Rig& b, int c)
 {
     return angleBetween(a.cameras[c].layers().normal(), b.cameras[c].layers().normal());
 }
 
+bool isSameWindow(const Rig& a, const Rig& b, int c, double angle)
+{
+    const double distance = a.cameras[c].window().distance;
+    return angleOfNormals(a, b, c) <= angle && std::abs(distance - b.cameras[c].window().distance) <= SAME_DISTANCE*distance;
+}
+
+bool isFirstBehind(const Rig& rig, int c)
+{
+    return std::find(rig.owner.begin(), rig.owner.end(), rig.owner[c]) == rig.owner.begin() + c;
+}
+
 bool areSame(const Rig& a, const Rig& b, double angle)
 {
     for (int c = 0; c < a.count(); c++)
-    {
-        const double distance = a.cameras[c].window().distance;
-        if (angleOfNormals(a, b, c) > angle ||
-            std::abs(distance - b.cameras[c].window().distance) > SAME_DISTANCE*distance)
+        if (!isSameWindow(a, b, c, angle))
             return false;
-    }
     return true;
 }
 
@@ -193,16 +174,6 @@ std::vector<Rig> bestStarts(const std::vector<Rig>& starts, size_t atMost, const
         if (best.size() < atMost)
             best.push_back(trial.start);
     return best;
-}
-
-//! One of each minimum that could still be the best where all views count.
-std::vector<Rig> plausibleMinima(const std::vector<Trial>& sorted)
-{
-    std::vector<Rig> minima;
-    for (const Trial& trial : distinct(sorted, SAME_ANGLE))
-        if (std::isfinite(trial.cost) && excessOver(sorted[0], trial) < PLAUSIBLE)
-            minima.push_back(trial.rig);
-    return minima;
 }
 
 /** The same rig on the other side of what a tilt is exchanged for: a window tilted the other way, or, with the window as it is,
@@ -233,9 +204,76 @@ std::vector<Rig> otherSides(const Rig& rig, const Rig& middle, int flags)
     return others;
 }
 
-/** From the best to the other sides of it, as long as that finds a better one: the search above meets neither all combinations
-of several windows, nor minima that some views do not have.
-@param sorted gets them too */
+} // namespace
+
+//! Whether every view of which something was seen has a pose.
+static bool isPlaced(const RigViews& views, const std::vector<Pose>& poses)
+{
+    for (int view = 0; view < views.count(); view++)
+        for (const CameraViews& camera : views.cameras)
+            if (!poses[view].found && countSeen(camera.direct[view]) + countSeen(camera.refracted[view]) > 0)
+                return false;
+    return true;
+}
+
+Trial fitFrom(const RigStart& start, const RigViews& views, const TermCriteria& criteria, int flags)
+{
+    const Trial failure = { start.rig, start.rig, start.poses, std::numeric_limits<double>::infinity(), 0, false };
+    if (!isPlaced(views, start.poses))
+        return failure;
+    try
+    {
+        RigProblem problem(start.rig, views, start.poses, std::vector<PoseKnowledge>(), std::vector<CameraKnowledge>(), flags);
+        const bool converged = problem.solve(criteria);
+        Trial trial = { start.rig, problem.rig(), start.poses, problem.squaredError(), problem.freedom(), converged };
+        for (int view = 0; view < views.count(); view++)
+            trial.poses[view] = problem.pose(view);
+        return std::isfinite(trial.cost) ? trial : failure;     // it is sorted by
+    }
+    catch (const cv::Exception&)
+    {
+        return failure;
+    }
+}
+
+double excessOver(const Trial& best, const Trial& other) { return excessOf(other.cost, best.cost, best.freedom); }
+
+std::vector<Trial> plausibleTrials(const std::vector<Trial>& sorted)
+{
+    std::vector<Trial> plausible;
+    for (const Trial& trial : distinct(sorted, SAME_ANGLE))
+        if (std::isfinite(trial.cost) && excessOver(sorted[0], trial) < PLAUSIBLE)
+            plausible.push_back(trial);
+    return plausible;
+}
+
+void describeOther(const std::vector<Trial>& sorted, std::vector<OtherMinimum>& others)
+{
+    for (const Trial& trial : sorted)
+    {
+        if (!trial.converged || areSame(sorted[0].rig, trial.rig, SAME_ANGLE))
+            continue;
+        for (int c = 0; c < trial.rig.count(); c++)
+            if (isFirstBehind(trial.rig, c) && !isSameWindow(sorted[0].rig, trial.rig, c, SAME_ANGLE))
+            {
+                others[c].normal = trial.rig.cameras[c].layers().normal();
+                others[c].distance = trial.rig.cameras[c].window().distance;
+                others[c].excess = excessOver(sorted[0], trial);
+            }
+        return;
+    }
+}
+
+bool isSealed(const RigTask& task)
+{
+    bool tellsMore = !task.knownPoses.empty();
+    for (const CameraKnowledge& known : task.cameras)
+        tellsMore = tellsMore || known.covariance.size() > 0;
+    for (const CameraViews& camera : task.views.cameras)
+        tellsMore = tellsMore || seesAnything(camera.direct);
+    return !tellsMore && (task.flags & GLASS_FREE_INTRINSICS);
+}
+
 void turnOver(const Rig& middle, std::vector<Trial>& sorted, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     const double BETTER = 1e-6;
@@ -250,50 +288,31 @@ void turnOver(const Rig& middle, std::vector<Trial>& sorted, const RigViews& vie
     }
 }
 
-//! The second best minimum, for the windows that it has elsewhere.
-void describeOther(const std::vector<Trial>& sorted, std::vector<OtherMinimum>& others)
+std::vector<Trial> sealedMinima(const RigStart& given, const RigViews& views, int flags)
 {
-    for (const Trial& trial : sorted)
-    {
-        if (!trial.converged || areSame(sorted[0].rig, trial.rig, SAME_ANGLE))
-            continue;
-        for (int c = 0; c < trial.rig.count(); c++)
-            if (trial.rig.owns(c) && angleOfNormals(sorted[0].rig, trial.rig, c) > SAME_ANGLE)
-            {
-                others[c].normal = trial.rig.cameras[c].layers().normal();
-                others[c].excess = excessOver(sorted[0], trial);
-            }
-        return;
-    }
-}
-
-} // namespace
-
-bool isSealed(const RigTask& task)
-{
-    bool tellsMore = !task.knownPoses.empty();
-    for (const CameraKnowledge& known : task.cameras)
-        tellsMore = tellsMore || known.covariance.size() > 0;
-    for (const CameraViews& camera : task.views.cameras)
-        tellsMore = tellsMore || seesAnything(camera.direct);
-    return !tellsMore && (task.flags & GLASS_FREE_INTRINSICS);
+    const RigViews few = pick(views, someOf(given, FEW_VIEWS)), more = pick(views, someOf(given, MORE_VIEWS));
+    const RigViews all = pick(views, someOf(given, views.count()));
+    std::vector<Rig> starts = untilted(given, flags);
+    for (int owner = 0; owner < given.rig.count(); owner++)
+        if (given.rig.owns(owner))
+            starts = bestStarts(tilted(starts, owner), FINALISTS, few, FIRST_LOOK, flags);
+    std::vector<Rig> plausible;
+    for (const Trial& trial : plausibleTrials(fitEach(starts, more, SECOND_LOOK, flags)))
+        plausible.push_back(trial.rig);
+    // Some views may have their least cost in another minimum than all have.
+    std::vector<Trial> minima = fitEach(plausible, all, TO_THE_END, flags);
+    if (minima.empty() || !std::isfinite(minima[0].cost))
+        return std::vector<Trial>();
+    turnOver(given.rig, minima, all, TO_THE_END, flags);
+    return minima;
 }
 
 RigStart bestSealedStart(const RigStart& given, const RigViews& views, const RigTask& task,
                          std::vector<OtherMinimum>& others)
 {
-    const RigViews few = pick(views, someOf(given, FEW_VIEWS)), more = pick(views, someOf(given, MORE_VIEWS));
-    const RigViews all = pick(views, someOf(given, views.count()));
-    std::vector<Rig> starts = untilted(given, task.flags);
-    for (int owner = 0; owner < given.rig.count(); owner++)
-        if (given.rig.owns(owner))
-            starts = bestStarts(tilted(starts, owner), FINALISTS, few, FIRST_LOOK, task.flags);
-    starts = plausibleMinima(fitEach(starts, more, SECOND_LOOK, task.flags));
-    // Some views may have their least cost in another minimum than all have.
-    std::vector<Trial> minima = fitEach(starts, all, TO_THE_END, task.flags);
-    if (minima.empty() || !std::isfinite(minima[0].cost))
+    const std::vector<Trial> minima = sealedMinima(given, views, task.flags);
+    if (minima.empty())
         return given;
-    turnOver(given.rig, minima, all, TO_THE_END, task.flags);
     describeOther(minima, others);
     RigStart start = { minima[0].rig, std::vector<Pose>(views.count()) };
     addPosesThroughWindow(start.rig, views, start.poses);

@@ -145,6 +145,7 @@ OtherMinimum secondOf(const std::vector<Candidate>& minima, const RigViews& view
         if (angleBetween(minima[i].window.normal, minima[0].window.normal) > SAME_ANGLE)
         {
             other.normal = minima[i].window.normal;
+            other.distance = minima[i].window.distance;
             other.excess = excessOf(minima[i].cost, minima[0].cost, freedom);
         }
     return other;
@@ -177,15 +178,6 @@ GlassWindow searchWindow(const Camera& camera, const PixelViews& refracted,
     }
     other = secondOf(minima, all);
     return minima[0].window;
-}
-
-//! The window as another camera sees it.
-GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
-{
-    const WindowTransfer transfer(window.normal, window.distance, Extrinsics(from), Extrinsics(to));
-    window.normal = transfer.normal;
-    window.distance = std::max(transfer.distance, 0.);      // the fit refuses a window that is behind the camera
-    return window;
 }
 
 //! What a camera would see without the window, where it has no direct image but the pose is known without.
@@ -277,7 +269,12 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
                                       views.object, flags, other), rig.extrinsics[best], rig.extrinsics[owner]);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
-    other.normal = rotationBetween(rig, best, owner)*other.normal;
+    GlassWindow second = window;
+    second.normal = other.normal;
+    second.distance = other.distance;
+    second = transferred(second, rig.extrinsics[best], rig.extrinsics[owner]);
+    other.normal = second.normal;
+    other.distance = second.distance;
     return window;
 }
 
@@ -289,16 +286,37 @@ double distanceFrom(const Rig& rig, int c)
                           Extrinsics(rig.extrinsics[c])).distance;
 }
 
-//! The cameras that do not own their window get what they see of it.
+} // namespace
+
+double excessOf(double cost, double best, int freedom)
+{
+    return std::sqrt((cost - best)*freedom/std::max(best, DBL_MIN));
+}
+
+double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
+
+GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
+{
+    const WindowTransfer transfer(window.normal, window.distance, Extrinsics(from), Extrinsics(to));
+    window.normal = transfer.normal;
+    window.distance = std::max(transfer.distance, 0.);      // the fit refuses a window that is behind the camera
+    return window;
+}
+
 void transferToOthers(Rig& rig)
 {
     for (int c = 0; c < rig.count(); c++)
-        if (!rig.owns(c))
-            rig.cameras[c].setWindow(transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]],
-                                                 rig.extrinsics[c]));
+    {
+        if (rig.owns(c))
+            continue;
+        const GlassWindow window = transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]], rig.extrinsics[c]);
+        if (!(window.normal[2] > 0))
+            CV_Error_(Error::StsBadArg, ("shared window: camera %d looks away from it, as camera %d sees it, with its start and "
+                                         "with R and T; do both look through one wall?", c + 1, rig.owner[c] + 1));
+        rig.cameras[c].setWindow(window);
+    }
 }
 
-//! Gives every shared window to the camera that is nearest to it.
 void giveToNearest(Rig& rig)
 {
     const std::vector<int> given = rig.owner;
@@ -322,15 +340,6 @@ void giveToNearest(Rig& rig)
                 rig.owner[c] = nearest;
     }
 }
-
-} // namespace
-
-double excessOf(double cost, double best, int freedom)
-{
-    return std::sqrt((cost - best)*freedom/std::max(best, DBL_MIN));
-}
-
-double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
 
 std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags)
 {

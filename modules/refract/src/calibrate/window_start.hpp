@@ -15,6 +15,7 @@ struct OtherMinimum
     Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the owner's frame
     //! Root of the difference of the squared errors, in standard deviations of a pixel.
     double excess = std::numeric_limits<double>::quiet_NaN();
+    double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 //! OtherMinimum::excess of a fit whose squared error is `cost`.
@@ -37,6 +38,13 @@ std::vector<OtherMinimum> startWindows(Rig& rig, const RigViews& views, const st
 /** The given normal for a window whose start hides what was seen through it: noisy pairs through a thin window have their least
 error anywhere. */
 void keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig);
+
+//! The window as another camera sees it.
+GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to);
+//! The cameras that do not own their window get what they see of it. Throws, naming the camera, if it looks away from it.
+void transferToOthers(Rig& rig);
+//! Gives every shared window to the camera that is nearest to it.
+void giveToNearest(Rig& rig);
 
 //! The distance of every window from its owner.
 void setDistances(Rig& rig, double distance);

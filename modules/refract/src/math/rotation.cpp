@@ -17,11 +17,29 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian)
     return R;
 }
 
+//! Unit quaternion (w, x, y, z), w >= 0, found from the largest of its elements: no digits are lost.
+static Vec4d quaternionOf(const Matx33d& R)
+{
+    const double trace = R(0, 0) + R(1, 1) + R(2, 2);
+    Vec4d squares(trace, 2*R(0, 0) - trace, 2*R(1, 1) - trace, 2*R(2, 2) - trace);      // 4 q[i]^2 - 1
+    const int k = (int)(std::max_element(squares.val, squares.val + 4) - squares.val);
+    // 4 q[0] q[i] and 4 q[i] q[j]
+    const Matx44d products(1 + squares[0], R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1),
+                           R(2, 1) - R(1, 2), 1 + squares[1], R(0, 1) + R(1, 0), R(0, 2) + R(2, 0),
+                           R(0, 2) - R(2, 0), R(0, 1) + R(1, 0), 1 + squares[2], R(1, 2) + R(2, 1),
+                           R(1, 0) - R(0, 1), R(0, 2) + R(2, 0), R(1, 2) + R(2, 1), 1 + squares[3]);
+    const Vec4d q(products.row(k).val);
+    return q*((q[0] < 0 ? -1 : 1)/norm(q));
+}
+
+/* Not cv::Rodrigues: that takes rotations below 1e-5 for none, a hundredth of a pixel, and has half of the digits of those a little
+larger. */
 Vec3d rotationVector(const Matx33d& R)
 {
-    Vec3d rvec;
-    cv::Rodrigues(R, rvec);
-    return rvec;
+    const Vec4d q = quaternionOf(R);
+    const Vec3d v(q[1], q[2], q[3]);
+    const double sine = norm(v);
+    return v*(sine > 0 ? 2*std::atan2(sine, q[0])/sine : 2);
 }
 
 Rotation::Rotation(const double* rvec)

@@ -54,15 +54,6 @@ void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
 
 const int SAMPLES = 24;     // of a curve: a few registers
 
-//! Adds even steps of t to a projection; returns where they begin.
-int addSamples(const EpipolarCurve& curve, double tNear, double tFar, int samples, Projection& p)
-{
-    double t[Projection::CAPACITY];
-    for (int i = 0; i < samples; i++)
-        t[i] = tNear + (tFar - tNear)*i/(samples - 1);
-    return p.add(curve, samples, t);
-}
-
 //! Appends nodes over a curve's samples at equal shares of the chord error.
 void placeNodes(const Projection& p, int samples, double tolerance, std::vector<double>& nodes)
 {
@@ -89,40 +80,6 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
         nodes.push_back(first + i*step + (j*part - share[i])*slope[i]);
     }
     nodes.push_back(p.t()[samples + SAMPLES - 1]);
-}
-
-//! The end of visibility between a visible and an invisible t, from the visible side.
-double edgeOfVisibility(const EpipolarCurve& curve, const Camera& other, double visible, double invisible)
-{
-    const double enough = 1e-9*std::abs(visible - invisible);
-    Projection p(other);
-    while (std::abs(visible - invisible) > enough)
-    {
-        const double middle = 0.5*(visible + invisible);
-        if (middle == visible || middle == invisible)       // no number lies between
-            break;
-        p.clear();
-        p.add(curve, 1, &middle);
-        p.run();
-        (p.status(0) == REFRACT_OK ? visible : invisible) = middle;
-    }
-    return visible;
-}
-
-/* The visible part of the curve by its samples: one interval, because what lies beyond a window and inside a lens' field is
-convex. False if no sample is visible. */
-bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int samples, double& tNear, double& tFar)
-{
-    int first = begin, last = begin + samples - 1;
-    while (first <= last && p.status(first) != REFRACT_OK)
-        first++;
-    if (first > last)
-        return false;
-    while (p.status(last) != REFRACT_OK)
-        last--;
-    tNear = first == begin ? p.t()[first] : edgeOfVisibility(curve, p.camera(), p.t()[first], p.t()[first - 1]);
-    tFar = last == begin + samples - 1 ? p.t()[last] : edgeOfVisibility(curve, p.camera(), p.t()[last], p.t()[last + 1]);
-    return true;
 }
 
 //! Appends nodes of the visible part of a curve. Returns the status of the far end if nothing is visible.

@@ -88,6 +88,13 @@ private:
     uchar status_[CAPACITY];
 };
 
+//! Adds even steps of t to a projection; returns where they begin.
+int addSamples(const EpipolarCurve& curve, double tNear, double tFar, int samples, Projection& p);
+
+/** The visible part of the curve by its samples: one interval, because what lies beyond a window and inside a lens' field is
+convex. False if no sample is visible. */
+bool visiblePart(const EpipolarCurve& curve, const Projection& p, int begin, int samples, double& tNear, double& tFar);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_EPIPOLAR_CURVE_HPP

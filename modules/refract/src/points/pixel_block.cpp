@@ -31,23 +31,22 @@ uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int 
     return REFRACT_OK;
 }
 
-static bool isBeyondAll(const PlacedCameras& cameras, const PixelBlock& block, int i)
-{
-    const Vec3d X(block.x[i], block.y[i], block.z[i]);
-    for (int c = 0; c < (int)cameras.size(); c++)
-    {
-        const Vec3d Y = c > 0 ? cameras[c].place.apply(X) : X;
-        if (!cameras[c].camera->layers().isBeyond(Y[0], Y[1], Y[2]) && block.isSeen(c, i))
-            return false;
-    }
-    return true;
-}
-
 void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n)
 {
-    for (int i = 0; i < n; i++)
-        if (block.status[i] == REFRACT_OK && !isBeyondAll(cameras, block, i))
-            block.status[i] = REFRACT_BEHIND_WINDOW;
+    for (int c = 0; c < (int)cameras.size(); c++)
+    {
+        const Layers& layers = cameras[c].camera->layers();
+        const RigidTransform& place = cameras[c].place;
+        // The last surface in the frame of camera 1.
+        const Vec3d normal = place.R.t()*layers.normal();
+        const double distance = layers.stack().total - layers.normal().dot(place.T);
+        for (int i = 0; i < n && layers.stack().refracts; i++)
+        {
+            const bool isBeyond = normal[0]*block.x[i] + normal[1]*block.y[i] + normal[2]*block.z[i] > distance;
+            if (!isBeyond && block.status[i] == REFRACT_OK && block.isSeen(c, i))
+                block.status[i] = REFRACT_BEHIND_WINDOW;
+        }
+    }
 }
 
 }} // namespace

@@ -39,6 +39,29 @@ struct CameraErrors
     Columns byPoint;            //!< derivatives of the predicted pixels, in the frame of the camera
 };
 
+//! How rays of one camera become curves in the image of another, X' = R X + T.
+struct CurveFrame
+{
+    double R[9], T[3];
+    double normal[3];           //!< of the first camera's window, in its frame: a ray is tau normal + s d
+    double lastSurface;         //!< along the normal from that camera; 0 without window
+    bool isLimited;             //!< to depths, z from near to far
+    double near, far;
+};
+
+//! The columns of curves: EpipolarCurve's members in the frame of the other camera, and the range of t.
+enum { CURVE_DIRECTION = 0, CURVE_ORIGIN = 3, CURVE_UNIT = 6, CURVE_FAR = 7, CURVE_NEAR = 8, CURVE_COLUMNS = 9 };
+
+//! Where a pixel and a curve are nearest, columns: the distance, its derivative by the pixel (2), how many pixels the last step
+//! moved along the curve, whether an end of the curve stopped it (0 or 1).
+enum { NEAREST_DISTANCE = 0, NEAREST_NORMAL = 1, NEAREST_MOVED = 3, NEAREST_AT_END = 4, NEAREST_COLUMNS = 5 };
+
+//! How the points of a ray move in the frame of the other camera: by dRotation[k] (X - shift) and by dTranslation.
+struct CurveMotion
+{
+    double R[9], dRotation[3][9], shift[3], dTranslation[9];
+};
+
 //! What the calls on points ask for, of blocks of them.
 struct PointKernels
 {
@@ -77,6 +100,29 @@ struct PointKernels
     /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in all images.
     @param moved square of the pixels that the step moves the predictions */
     void (*gaussNewton)(int n, int cameras, const CameraErrors* errors, double* x, double* y, double* z, double* moved);
+
+    //! Rays -> curves; no answer (in CURVE_FAR) where a ray has no point in the range.
+    bool (*curvesOf)(const CurveFrame& frame, int n, const double* tau, const double* dx, const double* dy, const double* dz,
+                     const Columns& curves);
+    //! The t at which a ray of the other camera, tau axis + s d, comes nearest by angle; the middle where it is NaN.
+    void (*nearestToRay)(const Columns& curves, const double* axis, int n, const double* tau, const double* dx, const double* dy,
+                         const double* dz, double* t);
+    //! The curves' points at t, in the frame of the other camera.
+    void (*curvePoints)(const Columns& curves, int n, const double* t, double* x, double* y, double* z);
+    /** One Gauss-Newton step of t towards the point of the curve that is nearest to the pixel. A step of less than `enough`
+    pixels is not taken: the distance is that at t. All is NaN where there is no image.
+    @param u, v, byPoint images of the curves' points, and their derivatives */
+    void (*approachPixel)(const Columns& curves, double enough, int n, const double* pixelU, const double* pixelV,
+                          const double* u, const double* v, const Columns& byPoint, double* t, const Columns& nearest);
+    /** Derivatives of the distance.
+    @param x, y, z, dx, dy, dz the nearest point and its ray, in the frame of the first camera
+    @param mx, my, mz normal of the plane in which the point moves where an end stopped it, else the ray
+    @param byPoint1, byPoint2 derivatives of its images, each in the frame of its camera
+    @param out by the first camera's pixel (2), the other's (2), dRotation (3), dTranslation (3) */
+    void (*distanceDerivatives)(const CurveMotion& motion, int n, const double* x, const double* y, const double* z,
+                                const double* dx, const double* dy, const double* dz, const double* mx, const double* my,
+                                const double* mz, const Columns& byPoint1, const Columns& byPoint2, const Columns& nearest,
+                                const Columns& out);
 };
 
 const PointKernels& pointKernels();

@@ -16,11 +16,6 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 
 namespace cv { namespace refract {
 
-namespace {
-
-const double NaN = std::numeric_limits<double>::quiet_NaN();
-
-//! Rank of the points' scatter: 0 one place, 1 a line, 2 a plane, 3 space.
 int scatterRank(const std::vector<Point3d>& points)
 {
     Vec3d mean;
@@ -36,6 +31,10 @@ int scatterRank(const std::vector<Point3d>& points)
         rank += values[i] > 1e-12*values[0];    // squares: flat to one in a million
     return rank;
 }
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 //! Rotation that turns the unit vector a to the z axis.
 Matx33d turnToZ(const Vec3d& a)
@@ -176,8 +175,9 @@ struct PoseErrors
     }
 };
 
-//! Maximum likelihood from a start; the RMS, NaN if it failed.
-double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
+} // namespace
+
+double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations)
 {
     const PoseErrors errors = { camera, points };
     Eigen::Matrix<double, 6, 1> six;
@@ -186,7 +186,7 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
     if (!errors(six.data(), atStart.data(), nullptr))       // a start that gives some point no image is none
         return NaN;
     ceres::TinySolver<PoseErrors> solver;
-    solver.options.max_num_iterations = 100;
+    solver.options.max_num_iterations = iterations;
     solver.options.function_tolerance = 1e-15*errors.NumResiduals();        // square pixels
     solver.options.parameter_tolerance = 1e-14;
     solver.options.gradient_tolerance = solver.options.cost_threshold = 0;
@@ -197,8 +197,6 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose)
     pose.tvec = Vec3d(six.data() + 3);
     return std::sqrt(2*cost/(double)points.pixel.size());
 }
-
-} // namespace
 
 std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
                                      const std::vector<Point2d>& imagePoints)
@@ -238,73 +236,67 @@ Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
     return pose;
 }
 
-namespace {
-
-//! A minimum of the reprojection error.
-struct Minimum
-{
-    Pose pose;
-    double rms;
-};
-
-bool isSame(const Pose& a, const Pose& b)
+static bool isSame(const Pose& a, const Pose& b)
 {
     const double ROUNDING = 1e-6;
     return norm(rotationMatrix(a.rvec) - rotationMatrix(b.rvec)) < ROUNDING && norm(a.tvec - b.tvec) < ROUNDING*norm(b.tvec);
 }
 
-//! All minima that the starts lead to, the smallest first.
-std::vector<Minimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
+std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
 {
-    std::vector<Minimum> minima;
+    std::vector<PoseMinimum> minima;
     if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
         return minima;
     for (const Pose& candidate : start.found ? std::vector<Pose>(1, start) : closedFormPoses(camera, points))
     {
-        Minimum minimum = { candidate, 0 };
+        PoseMinimum minimum = { candidate, 0 };
         minimum.rms = refinePose(camera, points, minimum.pose);
-        if (!std::isnan(minimum.rms) && std::none_of(minima.begin(), minima.end(), [&](const Minimum& other)
+        if (!std::isnan(minimum.rms) && std::none_of(minima.begin(), minima.end(), [&](const PoseMinimum& other)
                                                      { return isSame(other.pose, minimum.pose); }))
             minima.push_back(minimum);
     }
-    std::stable_sort(minima.begin(), minima.end(), [](const Minimum& a, const Minimum& b) { return a.rms < b.rms; });
+    std::stable_sort(minima.begin(), minima.end(), [](const PoseMinimum& a, const PoseMinimum& b) { return a.rms < b.rms; });
     return minima;
 }
-
-} // namespace
 
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms)
 {
-    const std::vector<Minimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
+    const std::vector<PoseMinimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
     rms = minima.empty() ? NaN : minima[0].rms;
     return minima.empty() ? Pose() : minima[0].pose;
 }
 
-static std::vector<Minimum> solvePnP(InputArray objectPoints_, InputArray imagePoints_, const Camera& camera,
-                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
+ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, int least)
 {
     const std::vector<Point3d> objectPoints = readPoints3(objectPoints_, "objectPoints");
     const std::vector<Point2d> imagePoints = readPoints2(imagePoints_, "imagePoints");
-    const size_t least = useExtrinsicGuess ? 3 : 4;
     if (objectPoints.size() != imagePoints.size())
         CV_Error_(Error::StsUnmatchedSizes, ("objectPoints has %d points, imagePoints %d; they must agree",
                                              (int)objectPoints.size(), (int)imagePoints.size()));
-    if (objectPoints.size() < least)
+    if ((int)objectPoints.size() < least)
         CV_Error_(Error::StsBadArg, ("objectPoints has %d points; a pose needs at least %d",
-                                     (int)objectPoints.size(), (int)least));
+                                     (int)objectPoints.size(), least));
     for (const Point3d& p : objectPoints)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             CV_Error_(Error::StsBadArg, ("objectPoints holds the point (%g, %g, %g); it must be finite", p.x, p.y, p.z));
+    return observed(objectPoints, imagePoints);
+}
 
-    Pose start;
-    if (useExtrinsicGuess)
-        start = makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
-    return findMinima(camera, observed(objectPoints, imagePoints), start);
+Pose readPose(InputArray rvec, InputArray tvec)
+{
+    return makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
+}
+
+static std::vector<PoseMinimum> solvePnP(InputArray objectPoints, InputArray imagePoints, const Camera& camera,
+                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
+{
+    const ImagePoints points = readPosePoints(objectPoints, imagePoints, useExtrinsicGuess ? 3 : 4);
+    return findMinima(camera, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
 }
 
 //! As cv::solvePnPGeneric's: of coordinates, not of distances.
-static void writeErrors(const std::vector<Minimum>& minima, OutputArray reprojectionError)
+static void writeErrors(const std::vector<PoseMinimum>& minima, OutputArray reprojectionError)
 {
     if (!reprojectionError.needed())
         return;
@@ -314,10 +306,10 @@ static void writeErrors(const std::vector<Minimum>& minima, OutputArray reprojec
     errors.copyTo(reprojectionError);
 }
 
-static void writePoses(const std::vector<Minimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
+static void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
 {
     std::vector<Vec3d> r, t;
-    for (const Minimum& minimum : minima)
+    for (const PoseMinimum& minimum : minima)
     {
         r.push_back(minimum.pose.rvec);
         t.push_back(minimum.pose.tvec);
@@ -342,7 +334,7 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
 {
     CV_INSTRUMENT_REGION();
 
-    std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    std::vector<PoseMinimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
     minima.resize(std::min<size_t>(minima.size(), 1));
     writeErrors(minima, reprojectionError);
     if (minima.empty())
@@ -358,7 +350,8 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
 {
     CV_INSTRUMENT_REGION();
 
-    const std::vector<Minimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    const std::vector<PoseMinimum> minima =
+        solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
     writePoses(minima, rvecs, tvecs);
     writeErrors(minima, reprojectionError);
     return (int)minima.size();

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_POSES_HPP
 #define OPENCV_REFRACT_POSES_HPP
 
+#include "arrays/views.hpp"
 #include "camera/camera.hpp"
 
 namespace cv { namespace refract {
@@ -25,6 +26,27 @@ then maximum likelihood. NaN image points are left out.
 @param rms reprojection error in pixels by cv::calibrateCamera's definition */
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms);
+
+//! A minimum of the reprojection error.
+struct PoseMinimum
+{
+    Pose pose;
+    double rms;         //!< of distances
+};
+
+//! All minima that the start, or else the closed forms, lead to, the smallest first.
+std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start);
+
+//! Maximum likelihood from a start; the RMS, NaN if it failed, as where the start gives some point no image.
+double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations = 100);
+
+//! Rank of the points' scatter: 0 one place, 1 a line, 2 a plane, 3 space.
+int scatterRank(const std::vector<Point3d>& points);
+
+/** The arguments of a pose's calls, without the points that were not seen; throws with the arguments' names.
+@param least points that there must be */
+ImagePoints readPosePoints(InputArray objectPoints, InputArray imagePoints, int least);
+Pose readPose(InputArray rvec, InputArray tvec);
 
 //! The part of an image's points that must agree with one pose, else the image is of no use.
 const double LEAST_AGREEING = 1./3;

@@ -1,0 +1,202 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Public functions of the bundle adjustment: arguments and results. */
+
+#include "calibrate/bundle_fit.hpp"
+#include "calibrate/calibrate_rig.hpp"
+#include "arrays/arrays.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+//! All images must have as many points, those of the scene.
+int checkedPointCount(const std::vector<PixelViews>& pixels, size_t given)
+{
+    int count = (int)given;
+    for (size_t c = 0; c < pixels.size(); c++)
+    {
+        if (pixels[c].size() != pixels[0].size() || pixels[c].empty())
+            CV_Error_(Error::StsUnmatchedSizes, ("imagePoints[%d] has %d views, imagePoints[0] has %d; they must agree, with "
+                                                 "at least one", (int)c, (int)pixels[c].size(), (int)pixels[0].size()));
+        for (size_t view = 0; view < pixels[c].size(); view++)
+        {
+            const int own = (int)pixels[c][view].size();
+            if (count == 0)
+                count = own;
+            if (own != 0 && own != count)
+                CV_Error_(Error::StsUnmatchedSizes, ("imagePoints[%d][%d] has %d points, but the scene has %d; NaN stands for "
+                                                     "those that are not seen", (int)c, (int)view, own, count));
+        }
+    }
+    if (count == 0)
+        CV_Error(Error::StsBadArg, "imagePoints has no point");
+    return count;
+}
+
+KnownLength checkedLength(const double* row, int i, int pointCount)
+{
+    const KnownLength length = { (int)row[0], (int)row[1], row[2], row[3] };
+    const auto isIndex = [&](double value) { return value >= 0 && value < pointCount && value == std::floor(value); };
+    if (!isIndex(row[0]) || !isIndex(row[1]) || length.a == length.b)
+        CV_Error_(Error::StsOutOfRange, ("lengths[%d] is between points %g and %g; they must be two different ones of the %d "
+                                         "of the scene, counted from 0", i, row[0], row[1], pointCount));
+    if (!(length.length > 0 && std::isfinite(length.length)) || !(length.sigma > 0 && std::isfinite(length.sigma)))
+        CV_Error_(Error::StsBadArg, ("lengths[%d] is %g with a standard deviation of %g; both must be positive", i,
+                                     length.length, length.sigma));
+    return length;
+}
+
+std::vector<KnownLength> readLengths(InputArray lengths, int pointCount)
+{
+    std::vector<KnownLength> known;
+    if (lengths.empty())
+        return known;
+    const Mat given = lengths.getMat();
+    const bool isList = given.channels() == 4 && (given.rows == 1 || given.cols == 1);
+    if (given.dims > 2 || !(isList || (given.channels() == 1 && given.cols == 4)))
+        CV_Error_(Error::StsBadSize, ("lengths is %dx%d with %d channels; it must be Lx4: point, point, length, its standard "
+                                      "deviation", given.rows, given.cols, given.channels()));
+    Mat_<double> rows;
+    given.clone().reshape(1, isList ? (int)given.total() : given.rows).convertTo(rows, CV_64F);
+    for (int i = 0; i < rows.rows; i++)
+        known.push_back(checkedLength(rows[i], i, pointCount));
+    return known;
+}
+
+//! One view stands where it is; more need a start.
+void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArrayOfArrays covariances, int count,
+                   BundleTask& task)
+{
+    const bool isGiven = count > 1 || !rvecs.empty() || !tvecs.empty();
+    task.poses = isGiven ? readPoses(rvecs, tvecs, count) : std::vector<Pose>(1);
+    if (task.flags & GLASS_USE_POSES)
+    {
+        task.knowledge = readKnowledge(covariances, count);
+        return;
+    }
+    task.knowledge.resize(count);
+    task.knowledge[0].kind = PoseKnowledge::EXACT;
+}
+
+bool needsLengths(const BundleTask& task)
+{
+    const bool isRigKnown = task.pixels.size() > 1 && !(task.flags & GLASS_FREE_EXTRINSICS);
+    const bool arePosesKnown = task.poses.size() > 1 && (task.flags & GLASS_USE_POSES);
+    if (task.lengths.empty() && !isRigKnown && !arePosesKnown)
+        CV_Error(Error::StsBadArg, "nothing tells the scale: give a length between two points (lengths), or R and T of several "
+                                   "cameras without GLASS_FREE_EXTRINSICS, or the poses of several views (GLASS_USE_POSES)");
+    return !isRigKnown && !arePosesKnown;
+}
+
+void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
+{
+    PointWriter writer(out, (int)points.size(), 3, depth);
+    const int count = (int)points.size();
+    for (int begin = 0; begin < count; begin += BLOCK)
+    {
+        const int n = std::min(BLOCK, count - begin);
+        double x[BLOCK], y[BLOCK], z[BLOCK];
+        uchar status[BLOCK];
+        for (int k = 0; k < n; k++)
+        {
+            const Point3d& point = points[begin + k];
+            x[k] = point.x; y[k] = point.y; z[k] = point.z;
+            status[k] = std::isfinite(point.x) ? REFRACT_OK : REFRACT_NOT_CONVERGED;
+        }
+        writer.store(begin, n, x, y, z, status);
+    }
+}
+
+//! What both forms do; poses and deviations only where they are wanted.
+BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                 const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                 InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths, int flags,
+                 InputArrayOfArrays poseCovariances, TermCriteria criteria, bool wantsPointDeviations)
+{
+    const int count = (int)cameras.size();
+    if (count == 0)
+        CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
+    checkCount(pixels.size(), count, "imagePoints", false);
+    std::vector<String> names, ofImages;
+    for (int c = 0; c < count; c++)
+    {
+        names.push_back(numbered("cameras", c));
+        ofImages.push_back(numbered("imagePoints", c));
+    }
+    BundleTask task;
+    task.pixels = pixels;
+    task.flags = flags;
+    task.criteria = criteria;
+    task.wantsPointDeviations = wantsPointDeviations;
+    task.points = readPoints3(points3D, "points3D");
+    const int depth = task.points.empty() ? CV_64F : points3D.depth();
+    task.points.resize(checkedPointCount(pixels, task.points.size()), Point3d(NaN, NaN, NaN));
+    task.lengths = readLengths(lengths, (int)task.points.size());
+    readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
+    task.needsLengths = needsLengths(task);
+
+    Rig rig;
+    rig.cameras = camerasOf(cameras, names);
+    rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
+    setOwners(rig, windowOfCamera);
+    RigViews views;
+    views.object.resize(pixels[0].size());
+    for (const PixelViews& ofCamera : pixels)
+        views.cameras.push_back({ PixelViews(), ofCamera });
+    checkWindows(rig, views, flags, ofImages);
+
+    const BundleFit fit = fitBundle(rig, task);
+    setCameras(rig, cameras);
+    if (flags & GLASS_FREE_EXTRINSICS)
+        writeExtrinsicPoses(rig, Rs, Ts);
+    writePoints(fit.points, depth, points3D);
+    return fit;
+}
+
+const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
+
+} // namespace
+
+double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
+                              const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                              InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                              InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                              OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
+                              OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
+                              InputArrayOfArrays poseCovariances, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    std::vector<PixelViews> pixels;
+    for (size_t c = 0; c < imagePoints.size(); c++)
+        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str()));
+    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
+                                 poseCovariances, criteria, pointDeviations.needed());
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeMat(fit.pointDeviations, pointDeviations);
+    writeMasks(fit.inliers, inliers);
+    return fit.rms;
+}
+
+double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                              const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                              InputOutputArray points3D, InputArray lengths, int flags, TermCriteria criteria)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, BUNDLE_FLAGS);
+    std::vector<PixelViews> pixels;
+    for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints"))
+        pixels.push_back(PixelViews(1, ofCamera));
+    return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
+                  false).rms;
+}
+
+}} // namespace

@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_BUNDLE_FIT_HPP
+#define OPENCV_REFRACT_BUNDLE_FIT_HPP
+
+#include "calibrate/bundle_problem.hpp"
+#include "calibrate/rig_fit.hpp"
+
+namespace cv { namespace refract {
+
+//! What a bundle adjustment is given beside the cameras.
+struct BundleTask
+{
+    std::vector<PixelViews> pixels;             //!< per camera, per view
+    std::vector<Point3d> points;                //!< NaN: not known
+    std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
+    std::vector<PoseKnowledge> knowledge;       //!< of the same
+    std::vector<KnownLength> lengths;
+    int flags;
+    TermCriteria criteria;
+    bool needsLengths;                          //!< nothing else tells the scale
+    bool wantsPointDeviations;
+};
+
+//! What it finds beside the cameras; a column of perViewErrors is a camera.
+struct BundleFit : RigFit
+{
+    std::vector<Point3d> points;                //!< NaN: left out
+    Mat pointDeviations;                        //!< if wanted
+};
+
+//! Starts of points, fit, and what it tells. rig is start and result.
+BundleFit fitBundle(Rig& rig, const BundleTask& task);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_BUNDLE_FIT_HPP

@@ -1,0 +1,283 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Pose of a target among wrong matches. Random samples of three points give poses (three_rays.hpp); all points judge a pose by
+their squared distances from its images, cut off at the limit (MSAC: Torr & Zisserman, CVIU 2000). A pose that is better than
+all before is refined on the points that agree with it (LO-RANSAC: Chum, Matas & Kittler, DAGM 2003). */
+
+#include "pose/chance.hpp"
+#include "pose/poses.hpp"
+#include "pose/three_rays.hpp"
+#include "arrays/arrays.hpp"
+#include "math/robust_scale.hpp"
+#include "math/rotation.hpp"
+#include "points/point_kernels.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! A pose, and what the points say of it.
+struct Candidate
+{
+    RigidMotion motion;
+    double cost = DBL_MAX;              //!< sum of squared distances, cut off at the limit
+    std::vector<int> agreeing;
+    std::vector<double> distances;      //!< of these
+};
+
+//! Lets all points judge poses.
+class Jury
+{
+public:
+    Jury(const Camera& camera, const ImagePoints& points, double limit) : camera_(camera), points_(points), limit2_(limit*limit)
+    {
+        for (const Point3d& X : points.object)
+        {
+            x_.push_back(X.x); y_.push_back(X.y); z_.push_back(X.z);
+        }
+    }
+
+    /** The cost of a pose, or some number above `enough` where it is.
+    @param agreeing points, and their distances; may be null */
+    double judge(const RigidMotion& motion, double enough, Candidate* agreeing = nullptr) const
+    {
+        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], cost = 0;
+        uchar status[BLOCK];
+        const int count = (int)points_.pixel.size();
+        for (int begin = 0; begin < count && cost <= enough; begin += BLOCK)
+        {
+            const int n = std::min(BLOCK, count - begin);
+            std::copy_n(&x_[begin], n, x); std::copy_n(&y_[begin], n, y); std::copy_n(&z_[begin], n, z);
+            pointKernels().transform(motion.R.val, motion.t.val, n, x, y, z);
+            for (int i = 0; i < n; i++)     // most poses are wrong: no time for the reason why a point has no image
+                status[i] = camera_.layers().isBeyond(x[i], y[i], z[i]) ? REFRACT_OK : REFRACT_BEHIND_WINDOW;
+            camera_.project(n, x, y, z, nullptr, u, v, status);
+            for (int i = 0; i < n; i++)
+            {
+                const Point2d& p = points_.pixel[begin + i];
+                const double e2 = status[i] == REFRACT_OK ? (u[i] - p.x)*(u[i] - p.x) + (v[i] - p.y)*(v[i] - p.y) : DBL_MAX;
+                cost += std::min(e2, limit2_);
+                if (!agreeing || e2 > limit2_)
+                    continue;
+                agreeing->agreeing.push_back(begin + i);
+                agreeing->distances.push_back(std::sqrt(e2));
+            }
+        }
+        return cost;
+    }
+
+    Candidate candidate(const RigidMotion& motion) const
+    {
+        Candidate c;
+        c.motion = motion;
+        c.cost = judge(motion, DBL_MAX, &c);
+        return c;
+    }
+
+private:
+    const Camera& camera_;
+    const ImagePoints& points_;
+    const double limit2_;
+    std::vector<double> x_, y_, z_;
+};
+
+ImagePoints select(const ImagePoints& points, const std::vector<int>& which)
+{
+    ImagePoints some;
+    for (int i : which)
+    {
+        some.object.push_back(points.object[i]);
+        some.pixel.push_back(points.pixel[i]);
+        some.index.push_back(points.index[i]);
+    }
+    return some;
+}
+
+Pose poseOf(const RigidMotion& motion)
+{
+    Pose pose;
+    pose.rvec = rotationVector(motion.R);
+    pose.tvec = motion.t;
+    pose.found = true;
+    return pose;
+}
+
+RigidMotion motionOf(const Pose& pose) { return { rotationMatrix(pose.rvec), pose.tvec }; }
+
+//! A better candidate from the points that agree with this one, if there is one.
+bool improve(const Camera& camera, const ImagePoints& points, const Jury& jury, int iterations, Candidate& best)
+{
+    const ImagePoints agreeing = select(points, best.agreeing);
+    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2)
+        return false;
+    Pose pose = poseOf(best.motion);
+    if (std::isnan(refinePose(camera, agreeing, pose, iterations)))
+        return false;
+    const Candidate refined = jury.candidate(motionOf(pose));
+    if (!(refined.cost < best.cost))
+        return false;
+    best = refined;
+    return true;
+}
+
+//! Samples after which, with this confidence, one had no wrong point.
+double samplesNeeded(int agreeing, int count, double confidence)
+{
+    const double right = (double)agreeing*(agreeing - 1)*(agreeing - 2)/((double)count*(count - 1)*(count - 2));
+    return right > 0 ? std::log(1 - confidence)/std::log1p(-std::min(right, 1 - DBL_EPSILON)) : DBL_MAX;
+}
+
+//! The rays of the points that have one, and which points these are.
+struct Rays
+{
+    Rays(const Camera& camera, const ImagePoints& points)
+    {
+        for (size_t i = 0; i < points.pixel.size(); i++)
+        {
+            double tau;
+            Vec3d d;
+            uchar status = REFRACT_OK;
+            camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status);
+            if (status != REFRACT_OK)
+                continue;
+            ray.push_back({ tau*camera.layers().normal(), d });
+            point.push_back((int)i);
+        }
+    }
+    std::vector<SceneRay> ray;
+    std::vector<int> point;
+};
+
+//! What a search may take.
+struct Effort
+{
+    int samples;
+    double confidence;
+};
+
+Candidate searchPose(const Camera& camera, const ImagePoints& points, const Jury& jury, const Effort& effort, const Pose& guess)
+{
+    const int QUICK = 4;                // iterations: a start for the next judgement
+    const Rays rays(camera, points);
+    const int count = (int)rays.ray.size();
+    Candidate best;
+    const auto consider = [&](const RigidMotion& motion)
+    {
+        if (!(jury.judge(motion, best.cost) < best.cost))
+            return;
+        best = jury.candidate(motion);
+        for (int k = 0; k < 3 && improve(camera, points, jury, QUICK, best); k++) {}
+    };
+    if (guess.found)
+        consider(motionOf(guess));
+    RNG random(0x52414E53);
+    for (int k = 0; k < effort.samples && count >= 3; k++)
+    {
+        if (k >= samplesNeeded((int)best.agreeing.size(), count, effort.confidence))
+            break;
+        int sample[3];
+        sample[0] = random.uniform(0, count);
+        do sample[1] = random.uniform(0, count); while (sample[1] == sample[0]);
+        do sample[2] = random.uniform(0, count); while (sample[2] == sample[0] || sample[2] == sample[1]);
+        SceneRay three[3];
+        Vec3d object[3];
+        for (int i = 0; i < 3; i++)
+        {
+            three[i] = rays.ray[sample[i]];
+            object[i] = Vec3d(points.object[rays.point[sample[i]]]);
+        }
+        RigidMotion motions[4];
+        const int found = posesOfThreeRays(three, object, motions);
+        for (int i = 0; i < found; i++)
+            consider(motions[i]);
+    }
+    return best;
+}
+
+//! How likely strewn pixels agree with a pose of three of them.
+Sampling samplingOf(const ImagePoints& points, double limit)
+{
+    const double POSES = 2;             // of a sample, on average
+    return { 3, POSES, CV_PI*limit*limit/std::max(extentOf(points.pixel).area(), DBL_MIN) };
+}
+
+} // namespace
+
+/* The limit is often generous, and a wrong point within it pulls the pose. So the last fits are of the points that do not stand
+out among those that agree. */
+static void settle(const Camera& camera, const ImagePoints& points, const Jury& jury, Candidate& best)
+{
+    const size_t ENOUGH = 12;           // to tell what is usual
+    std::vector<int> last;
+    for (int k = 0; k < 10 && best.agreeing.size() >= ENOUGH; k++)
+    {
+        const double usual = std::max(LEAST_SCALE, truncatedScale(best.distances, scaleOf(best.distances), CUT));
+        std::vector<int> fitted;
+        for (size_t i = 0; i < best.agreeing.size(); i++)
+            if (best.distances[i] <= CUT*usual)
+                fitted.push_back(best.agreeing[i]);
+        const ImagePoints some = select(points, fitted);
+        Pose pose = poseOf(best.motion);
+        if (fitted == last || scatterRank(some.object) < 2 || std::isnan(refinePose(camera, some, pose)))
+            return;
+        best = jury.candidate(motionOf(pose));
+        last = fitted;
+    }
+}
+
+//! The pose, and which of the target's points agree with it; not found if there is none.
+static Pose solveRobustly(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort,
+                          const Pose& guess, std::vector<int>& inliers)
+{
+    const Jury jury(camera, points, limit);
+    Candidate best = searchPose(camera, points, jury, effort, guess);
+    for (int k = 0; k < 10 && improve(camera, points, jury, 100, best); k++) {}
+    settle(camera, points, jury, best);
+    const ImagePoints agreeing = select(points, best.agreeing);
+    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2
+        || isChance((int)points.pixel.size(), (int)agreeing.pixel.size(), samplingOf(points, limit)))
+        return Pose();
+    inliers = agreeing.index;
+    return poseOf(best.motion);
+}
+
+bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                              InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess, int iterationsCount,
+                              float reprojectionError, double confidence, OutputArray inliers_)
+{
+    CV_INSTRUMENT_REGION();
+
+    if (iterationsCount < 1)
+        CV_Error_(Error::StsOutOfRange, ("iterationsCount is %d; it must be at least 1", iterationsCount));
+    if (!(reprojectionError > 0) || !std::isfinite(reprojectionError))
+        CV_Error_(Error::StsOutOfRange, ("reprojectionError is %g; it must be positive", (double)reprojectionError));
+    if (!(confidence > 0 && confidence < 1))
+        CV_Error_(Error::StsOutOfRange, ("confidence is %g; it must lie between 0 and 1", confidence));
+    const Camera& seenBy = cameraOf(camera);
+    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    std::vector<int> inliers;
+    const Effort effort = { iterationsCount, confidence };
+    const Pose guess = useExtrinsicGuess ? readPose(rvec, tvec) : Pose();
+    const Pose pose = solveRobustly(seenBy, points, reprojectionError, effort, guess, inliers);
+    if (inliers_.needed())
+        Mat(inliers, true).copyTo(inliers_);
+    if (!pose.found)
+        return false;
+    Mat(pose.rvec).copyTo(rvec);
+    Mat(pose.tvec).copyTo(tvec);
+    return true;
+}
+
+bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix, InputArray distCoeffs,
+                              const GlassWindow& window, InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess,
+                              int iterationsCount, float reprojectionError, double confidence, OutputArray inliers)
+{
+    CV_INSTRUMENT_REGION();
+
+    return refractiveSolvePnPRansac(objectPoints, imagePoints, RefractiveCamera::create(cameraMatrix, distCoeffs, window), rvec,
+                                    tvec, useExtrinsicGuess, iterationsCount, reprojectionError, confidence, inliers);
+}
+
+}} // namespace

@@ -1,0 +1,54 @@
+// Where the real data sets are, and how their files are read.
+#ifndef REFRACT_TEST_REAL_DATA_HPP
+#define REFRACT_TEST_REAL_DATA_HPP
+
+#include "scenes.hpp"
+#include <nlohmann/json.hpp>
+#include <fstream>
+
+namespace real_data {
+
+using nlohmann::json;
+
+typedef std::vector<cv::Point2d> Pixels;
+typedef std::vector<cv::Point3d> Object;
+
+//! Not open (and a word on why) where the data set is absent.
+inline std::ifstream open(const std::string& path)
+{
+    const char* fromEnvironment = std::getenv("REFRACT_DATA_DIR");
+    const std::string full = std::string(fromEnvironment ? fromEnvironment : REFRACT_DATA_DIR) + "/" + path;
+    std::ifstream file(full);
+    if (!file)
+        WARN("SKIPPED: " << full << " is not there");
+    return file;
+}
+
+inline bool load(const std::string& path, json& data)
+{
+    std::ifstream file = open(path);
+    if (!file)
+        return false;
+    file >> data;
+    return true;
+}
+
+inline Pixels pixelsOf(const json& list)
+{
+    Pixels pixels;
+    for (const json& p : list)
+        pixels.emplace_back(p[0], p[1]);
+    return pixels;
+}
+
+inline Object objectOf(const json& list)
+{
+    Object points;
+    for (const json& p : list)
+        points.emplace_back(p[0], p[1], p[2]);
+    return points;
+}
+
+} // namespace real_data
+
+#endif // REFRACT_TEST_REAL_DATA_HPP

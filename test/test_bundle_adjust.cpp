@@ -1,0 +1,341 @@
+#include "bundle_scenes.hpp"
+#include "calibrate/bundle_information.hpp"
+#include "calibrate/covariance.hpp"
+#include <opencv2/core/eigen.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+const double WATER = 1.333;
+
+//! A pair, 34 degrees apart, behind windows of their own.
+RigTruth wandRig(int cameras = 3, double outerIndex = WATER)
+{
+    std::vector<int> windows;
+    for (int c = 0; c < cameras; c++)
+        windows.push_back(c);
+    return makeRig(cameras, windows, outerIndex, 0.25);
+}
+
+RigTruth oneCamera(double outerIndex = WATER) { return makeRig(1, { 0 }, outerIndex); }
+
+double normalError(const BundleCall& call, const RigTruth& truth, int c)
+{
+    return angleBetween(call.cameras[c]->window().normal, truth.cameras[c]->window().normal);
+}
+
+double largestPointError(const BundleCall& call, const BundleScene& scene)
+{
+    double largest = 0;
+    for (size_t i = 0; i < scene.points.size(); i++)
+        largest = std::max(largest, norm(call.points[i] - scene.points[i]));
+    return largest;
+}
+
+} // namespace
+
+TEST_CASE("A wand of known length is all that a standing rig needs", "[bundle]")
+{
+    CAPTURE(seed());
+    Random random(1);
+    const RigTruth truth = wandRig();
+    const BundleScene scene = makeWandScene(truth, 60, random, 0);
+    BundleCall call(truth, scene, random, 1, 0.9);
+    CHECK(call.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE) < 1e-6);
+    for (int c = 0; c < 3; c++)
+    {
+        CHECK(normalError(call, truth, c) < 1e-5);
+        CHECK(call.cameras[c]->window().distance == Approx(truth.cameras[c]->window().distance).epsilon(1e-6));
+        CHECK(largestDifference(call.Rs[c], Mat(truth.Rs[c])) < 1e-7);
+        CHECK(largestDifference(call.Ts[c], Mat(truth.Ts[c])) < 1e-4);
+    }
+    CHECK(largestPointError(call, scene) < 1e-4);
+    const int P = 3*(8 + 8) + 12;
+    CHECK(call.deviations.size() == Size(1, P));
+    CHECK(call.covariance.size() == Size(P, P));
+    CHECK(call.pointDeviations.size() == Size(3, 120));
+    CHECK(call.perViewErrors.size() == Size(3, 1));
+    CHECK(call.inliers.size() == 3);
+    CHECK(countNonZero(call.inliers[1]) == countSeen(scene.pixels[1][0]));
+}
+
+TEST_CASE("The short form of a standing rig gives what the long one does", "[bundle]")
+{
+    Random random(2);
+    const RigTruth truth = wandRig();
+    const BundleScene scene = makeWandScene(truth, 40, random, 0.1);
+    BundleCall call(truth, scene, random);
+    BundleCall same = call;
+    for (Ptr<RefractiveCamera>& camera : same.cameras)
+        camera = camera->clone();
+    for (std::vector<Mat>* mats : { &same.Rs, &same.Ts })
+        for (Mat& mat : *mats)
+            mat = mat.clone();
+    const double rms = call.run(GLASS_FREE_EXTRINSICS);
+    std::vector<Mat> pixels;
+    for (const std::vector<Mat>& views : same.images)
+    {
+        Mat floats;     // other types and layouts are the same numbers
+        views[0].reshape(1).convertTo(floats, CV_64F);
+        pixels.push_back(floats);
+    }
+    std::vector<Point3f> points;
+    CHECK(refractiveBundleAdjust(pixels, same.cameras, same.windows, same.Rs, same.Ts, points, same.lengths,
+                                 GLASS_FREE_EXTRINSICS) == rms);
+    CHECK(largestDifference(same.Ts[2], call.Ts[2]) == 0);
+    CHECK(points.size() == 80);
+    CHECK(norm(Point3d(points[7]) - call.points[7]) < 1e-3);
+}
+
+TEST_CASE("One camera moves through a scene in which one distance is known", "[bundle]")
+{
+    CAPTURE(seed());
+    Random random(3);
+    const RigTruth truth = oneCamera();
+    const BundleScene scene = makeMovingScene(truth, 8, 60, random, 0, 0.2);
+    BundleCall call(truth, scene, random, 1, 0.9);
+    CHECK(call.run(GLASS_FREE_DISTANCE) < 1e-6);
+    CHECK(normalError(call, truth, 0) < 1e-5);
+    CHECK(largestPointError(call, scene) < 1e-3);
+    for (size_t view = 0; view < scene.tvecs.size(); view++)
+        CHECK(largestDifference(call.tvecs[view], Mat(scene.tvecs[view])) < 1e-3);
+    CHECK(call.perViewErrors.size() == Size(1, 8));
+}
+
+TEST_CASE("A moving pair behind one wall", "[bundle]")
+{
+    CAPTURE(seed());
+    Random random(4);
+    const RigTruth truth = makeRig(2, { 0, 0 }, WATER, 0.2);
+    const BundleScene scene = makeMovingScene(truth, 5, 40, random, 0);
+    BundleCall call(truth, scene, random, 0.5);
+    CHECK(call.run(GLASS_FREE_EXTRINSICS) < 1e-6);
+    for (int c = 0; c < 2; c++)
+        CHECK(normalError(call, truth, c) < 1e-5);
+    CHECK(largestPointError(call, scene) < 1e-3);
+}
+
+TEST_CASE("Known R and T are a scale, as are known poses", "[bundle]")
+{
+    Random random(5);
+    const RigTruth pair = wandRig(2);
+    BundleScene scene = makeWandScene(pair, 40, random, 0);
+    scene.lengths.clear();
+    BundleCall standing(pair, scene, random);
+    standing.Rs[1] = Mat(pair.Rs[1], true);
+    standing.Ts[1] = Mat(pair.Ts[1], true);
+    CHECK(standing.run(0) < 1e-6);
+    CHECK(normalError(standing, pair, 1) < 1e-5);
+
+    const RigTruth one = oneCamera();
+    scene = makeMovingScene(one, 6, 50, random, 0);
+    scene.lengths.clear();
+    BundleCall exact(one, scene, random), uncertain(one, scene, random, 0);
+    for (size_t view = 0; view < scene.rvecs.size(); view++)
+    {
+        exact.rvecs[view] = Mat(scene.rvecs[view], true);
+        exact.tvecs[view] = Mat(scene.tvecs[view], true);
+        Mat covariance = Mat::eye(6, 6, CV_64F);
+        covariance(Rect(0, 0, 3, 3)) *= 1e-6;
+        uncertain.poseCovariances.push_back(covariance*0.01);
+    }
+    CHECK(exact.run(GLASS_USE_POSES) < 1e-6);
+    CHECK(normalError(exact, one, 0) < 1e-5);
+    CHECK(uncertain.run(GLASS_USE_POSES) < 1e-6);
+    CHECK(normalError(uncertain, one, 0) < 1e-5);
+    CHECK(largestPointError(uncertain, scene) < 1e-4);
+}
+
+TEST_CASE("With GLASS_FIX_NORMAL cameras stay as they are, also without windows", "[bundle]")
+{
+    Random random(6);
+    RigTruth truth = oneCamera(1);
+    for (bool hasWindow : { true, false })
+    {
+        if (!hasWindow)
+            truth.cameras[0]->setWindow(GlassWindow());
+        const BundleScene scene = makeMovingScene(truth, 4, 30, random, 0);
+        BundleCall call(truth, scene, random);
+        call.cameras[0]->setWindow(truth.cameras[0]->window());
+        CHECK(call.run(GLASS_FIX_NORMAL) < 1e-6);
+        CHECK(largestPointError(call, scene) < 1e-4);
+        CHECK(countNonZero(call.covariance) == 0);
+        CHECK(call.pointDeviations.at<double>(5, 2) > 0);
+        if (!hasWindow)
+            CHECK_THAT(thrown([&] { call.run(0); }), Catch::Contains("normal is undetermined"));
+    }
+}
+
+TEST_CASE("What was seen once is NaN, and its image's mask is 0 where it was not seen", "[bundle]")
+{
+    Random random(7);
+    const RigTruth truth = wandRig();
+    BundleScene scene = makeWandScene(truth, 30, random, 0.1);
+    const Point2d nowhere(NaN, NaN);
+    scene.pixels[0][0][10] = scene.pixels[1][0][10] = nowhere;
+    scene.pixels[2][0][20] = nowhere;
+    BundleCall call(truth, scene, random);
+    call.run(GLASS_FREE_EXTRINSICS);
+    CHECK(std::isnan(call.points[10].x));
+    CHECK(std::isnan(call.pointDeviations.at<double>(10, 0)));
+    CHECK(std::isfinite(call.points[11].z));
+    CHECK(std::isfinite(call.points[20].z));
+    CHECK(call.inliers[2].at<uchar>(10) == 0);
+    CHECK(call.inliers[2].at<uchar>(20) == 0);
+    CHECK(call.inliers[2].at<uchar>(11) == 1);
+}
+
+TEST_CASE("Wrong matches are found and left out", "[bundle]")
+{
+    CAPTURE(seed());
+    Random random(8);
+    const RigTruth truth = wandRig(4);
+    BundleScene scene = makeWandScene(truth, 100, random, 0.1);
+    BundleCall clean(truth, scene, random);
+    Random again(8);
+    std::vector<std::pair<int, int> > wrong;
+    for (int i = 0; i < 200; i += 10)
+    {
+        const int c = random.below(4);
+        scene.pixels[c][0][i] += Point2d(random.uniform(5, 40), -random.uniform(5, 40));
+        wrong.push_back({ c, i });
+    }
+    BundleCall robust(truth, scene, random), naive(truth, scene, random);
+    clean.run(GLASS_FREE_EXTRINSICS);
+    naive.run(GLASS_FREE_EXTRINSICS);
+    robust.run(GLASS_FREE_EXTRINSICS | GLASS_ROBUST);
+    for (const auto& w : wrong)
+        CHECK(robust.inliers[w.first].at<uchar>(w.second) == 0);
+    int lost = 0;               // of the points that all images have right
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < 200; i++)
+            lost += i % 10 != 0 && isSeen(scene.pixels[c][0][i]) && !robust.inliers[c].at<uchar>(i);
+    CHECK(lost <= 1);
+    for (int c = 0; c < 4; c++)
+    {
+        CHECK(normalError(robust, truth, c) < 2*normalError(clean, truth, c) + 0.02);
+        CHECK(normalError(robust, truth, c) < 0.5*normalError(naive, truth, c) + 0.02);
+    }
+}
+
+TEST_CASE("The reduced normal equations are the inverse of the whole bound", "[bundle]")
+{
+    CAPTURE(seed());
+    const double sigma = 0.1;
+    for (bool moves : { false, true })
+    {
+        CAPTURE(moves);
+        Random random(9);
+        const RigTruth truth = wandRig(2);
+        BundleScene scene = moves ? makeMovingScene(truth, 4, 20, random, 0) : makeWandScene(truth, 15, random, 0, 0.05);
+        keepWhatAllSee(scene);
+        REQUIRE(!scene.lengths.empty());
+        const BundleBound bound(truth, scene, BundleBound::NORMAL | BundleBound::DISTANCE | BundleBound::EXTRINSICS, sigma);
+
+        Rig rig;
+        std::vector<Pose> poses;
+        for (size_t c = 0; c < 2; c++)
+        {
+            rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
+            rig.owner.push_back((int)c);
+            Pose pose;
+            Rodrigues(truth.Rs[c], pose.rvec);
+            pose.tvec = truth.Ts[c];
+            rig.extrinsics.push_back(pose);
+        }
+        for (size_t view = 0; view < scene.rvecs.size(); view++)
+        {
+            Pose pose;
+            pose.rvec = scene.rvecs[view];
+            pose.tvec = scene.tvecs[view];
+            poses.push_back(pose);
+        }
+        std::vector<PoseKnowledge> known(poses.size());
+        known[0].kind = PoseKnowledge::EXACT;
+        std::vector<KnownLength> knownLengths;
+        for (const Vec4d& l : scene.lengths)
+            knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
+        BundleProblem bundle(rig, scene.pixels, (int)scene.points.size(), poses, known, knownLengths,
+                             GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+        bundle.rig().setPixelSigma(sigma);
+        bundle.setPoints(scene.points, {});
+        REQUIRE(bundle.evaluate(true));
+        const ReducedBundle reduced(bundle, true);
+        CHECK(reduced.stepLeft() < 1e-6);
+        Mat stated;
+        eigen2cv(rigCovariance(bundle.rig(), reduced.information(), sigma*sigma), stated);
+        for (int c = 0; c < 2; c++)
+        {
+            const int first = 16*c + 8;         // 8 of the lens
+            const Mat T(tangentsOf(truth.cameras[c]->window().normal));
+            const Mat normal = T.t()*stated(Rect(first, first, 3, 3))*T;
+            const Mat expected = bound.ofCamera(c);
+            CHECK(largestDifference(normal, expected(Rect(0, 0, 2, 2))) < 1e-6*expected.at<double>(0, 0));
+            CHECK(stated.at<double>(first + 3, first + 3) == Approx(expected.at<double>(2, 2)).epsilon(1e-6));
+        }
+    }
+}
+
+TEST_CASE("Results do not depend on the number of threads", "[bundle]")
+{
+    Random random(10);
+    const RigTruth truth = wandRig();
+    const BundleScene scene = makeWandScene(truth, 30, random, 0.1);
+    const int threads = getNumThreads();
+    Mat covariances[2];
+    for (int k = 0; k < 2; k++)
+    {
+        Random start(11);
+        setNumThreads(k == 0 ? 1 : 4);
+        BundleCall call(truth, scene, start);
+        call.run(GLASS_FREE_EXTRINSICS);
+        covariances[k] = call.covariance;
+    }
+    setNumThreads(threads);
+    CHECK(largestDifference(covariances[0], covariances[1]) == 0);
+}
+
+TEST_CASE("What is wrong with the arguments, and what nothing determines, is said", "[bundle]")
+{
+    Random random(12);
+    const RigTruth truth = wandRig(2);
+    const BundleScene scene = makeWandScene(truth, 20, random, 0.1);
+    const auto fault = [&](const std::function<void(BundleCall&)>& spoil, int flags)
+    {
+        Random start(13);
+        BundleCall call(truth, scene, start);
+        spoil(call);
+        return thrown([&] { call.run(flags); });
+    };
+    using Catch::Contains;
+    const int R_T = GLASS_FREE_EXTRINSICS;
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths.clear(); }, R_T), Contains("nothing tells the scale"));
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths[3][1] = 40; }, R_T), Contains("lengths[3] is between points 6 and 40"));
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths[3][1] = 6; }, R_T), Contains("two different ones"));
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths[3][0] = NaN; }, R_T), Contains("lengths[3]"));
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths[3][3] = 0; }, R_T), Contains("standard deviation of 0"));
+    CHECK_THAT(fault([](BundleCall& c) { c.lengths[3][2] = -1; }, R_T), Contains("must be positive"));
+    CHECK_THAT(fault([](BundleCall& c) { c.images.pop_back(); }, R_T), Contains("imagePoints has 1 elements"));
+    CHECK_THAT(fault([](BundleCall& c) { c.images[1][0] = c.images[1][0].rowRange(0, 9); }, R_T),
+               Contains("imagePoints[1][0] has 9 points"));
+    CHECK_THAT(fault([](BundleCall& c) { c.images[1].push_back(c.images[1][0]); }, R_T), Contains("has 2 views"));
+    CHECK_THAT(fault([](BundleCall& c) { c.points.resize(7); }, R_T), Contains("the scene has 7"));
+    CHECK_THAT(fault([](BundleCall& c) { c.cameras[1] = c.cameras[0]; }, R_T), Contains("one object"));
+    CHECK_THAT(fault([](BundleCall&) {}, R_T | GLASS_SHARED_WINDOW), Contains("no meaning here"));
+    CHECK_THAT(fault([](BundleCall& c) { c.rvecs.clear(); }, R_T), Contains("rvecs has 0 vectors"));
+    CHECK_THAT(fault([](BundleCall& c) { c.images[1][0] = c.images[1][0]*NaN; }, R_T), Contains("imagePoints[1] has no point"));
+
+    // One camera that stands still sees every point once.
+    BundleCall alone(oneCamera(), makeWandScene(oneCamera(), 20, random, 0.1), random);
+    CHECK_THAT(thrown([&] { alone.run(0); }), Contains("lengths has none between two points that are seen in two images"));
+    // A pane in air has no distance.
+    const RigTruth inAir = wandRig(2, 1);
+    BundleCall distance(inAir, makeWandScene(inAir, 20, random, 0.1), random);
+    CHECK_THAT(thrown([&] { distance.run(R_T | GLASS_FREE_DISTANCE); }), Contains("GLASS_FREE_DISTANCE"));
+    Random few(14);
+    BundleCall little(truth, makeWandScene(truth, 2, few, 0.1), few);
+    CHECK_THAT(thrown([&] { little.run(R_T | GLASS_FREE_DISTANCE); }), Contains("fewer than are needed"));
+}

@@ -1,0 +1,96 @@
+// Sealed rigs of which hardly anything is known: whatever the start, the minimum is the one that the truth leads to. The long
+// form is hidden: run with [.crude], TRIALS rigs of each kind.
+#include "crude_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+const double SIGMA = 0.3, SAME = 1e-3;      // px; standard deviations
+const int STARTS = 2;
+
+//! What became of the runs.
+struct Tally
+{
+    int runs = 0, same = 0, better = 0, ambiguous = 0, refused = 0, wrong = 0;
+
+    void add(const TankRig& tank, Random& random)
+    {
+        CrudeCall truth(tank, nullptr);
+        const double least = truth.run();
+        int points = 0;
+        for (const std::vector<Point2d>& pixels : tank.pixels)
+            for (const Point2d& p : pixels)
+                points += !std::isnan(p.x);
+        for (int start = 0; start < STARTS; start++)
+        {
+            CrudeCall call(tank, &random);
+            runs++;
+            try
+            {
+                const double rms = call.run(), difference = (rms*rms - least*least)*points/(SIGMA*SIGMA);
+                if (std::abs(difference) < SAME*SAME)
+                    same++;
+                else if (difference < 0)
+                    better++;
+                else
+                    (call.nearestRival() < 3 ? ambiguous : wrong)++;
+            }
+            catch (const cv::Exception& e)
+            {
+                refused++;
+                UNSCOPED_INFO(e.err);
+            }
+        }
+    }
+
+    void print(const std::vector<int>& windows, int rigs) const
+    {
+        std::cout << "[numbers] crude starts, windows of the cameras";
+        for (int w : windows)
+            std::cout << " " << w;
+        std::cout << ": " << rigs << " rigs, " << runs << " runs; the truth's minimum " << same << ", a better one " << better
+                  << ", another that is reported as ambiguous " << ambiguous << ", refused " << refused
+                  << ", another without a word " << wrong << " (seed " << seed() << ")" << std::endl;
+    }
+};
+
+Tally tallyOf(const std::vector<int>& windows, int rigs)
+{
+    Tally tally;
+    for (int i = 0; i < rigs; i++)
+    {
+        Random random(77000 + i);
+        const TankRig tank(windows, random, SIGMA);
+        tally.add(tank, random);
+    }
+    tally.print(windows, rigs);
+    return tally;
+}
+
+} // namespace
+
+TEST_CASE("Rigs of one to four cameras from crude starts", "[rig_glass][slow]")
+{
+    CAPTURE(seed());
+    for (const std::vector<int>& windows : { std::vector<int>{ 0 }, { 0, 1 }, { 0, 0 }, { 0, 0, 1, 1 } })
+    {
+        const Tally tally = tallyOf(windows, 1);
+        CHECK(tally.same == tally.runs);
+    }
+}
+
+TEST_CASE("Rigs of one to eight cameras from crude starts", "[.crude]")
+{
+    const char* given = std::getenv("TRIALS");
+    const int rigs = given ? std::atoi(given) : 100;
+    for (const std::vector<int>& windows : { std::vector<int>{ 0 }, { 0, 1 }, { 0, 0 }, { 0, 1, 2, 3 }, { 0, 0, 1, 1 },
+                                             { 0, 0, 0, 0 }, { 0, 1, 2, 3, 4, 5, 6, 7 }, { 0, 0, 0, 0, 0, 0, 0, 0 } })
+    {
+        const Tally tally = tallyOf(windows, rigs);
+        CHECK(tally.wrong == 0);
+        CHECK(tally.same + tally.better >= 0.99*tally.runs);
+    }
+}

@@ -1,0 +1,283 @@
+#include "calibration_scenes.hpp"
+#include "cramer_rao.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+int trials(int standard)
+{
+    const char* given = std::getenv("TRIALS");
+    return given ? std::atoi(given) : standard;
+}
+
+//! Two cameras before a scene, and what they should find.
+struct Matched
+{
+    Ptr<RefractiveCamera> camera1, camera2;
+    Vec3d rvec, T;
+    std::vector<Point3d> points;
+    std::vector<Point2d> perfect1, perfect2, pixels1, pixels2;
+    std::vector<uchar> isRight;
+};
+
+enum Medium { NOTHING, AIR, WATER };
+
+GlassWindow windowIn(Medium medium, bool second)
+{
+    if (medium == NOTHING)
+        return GlassWindow();
+    const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : Vec3d(-0.2483, 0.0961, 1);
+    return medium == AIR ? GlassWindow(normal, 20, 1.5437, 50) : GlassWindow(normal, 15, 1.49, 60, 1.333);
+}
+
+//! A pair with a wide lens before a deep scene.
+Matched matchedScene(Medium medium, Random& random, int count)
+{
+    Matched m;
+    m.camera1 = makeCamera(allLenses()[2], windowIn(medium, false));
+    m.camera2 = makeCamera(allLenses()[2], windowIn(medium, true));
+    m.rvec = Vec3d(0.05, 0.35, -0.04);
+    m.T = Vec3d(-200, 15, 40);
+    while ((int)m.points.size() < count)
+    {
+        const Point3d X(random.uniform(-250, 250), random.uniform(-150, 150), random.uniform(350, 900));
+        std::vector<Point2d> p, q;
+        std::vector<uchar> s1, s2;
+        refractiveProjectPoints(std::vector<Point3d>(1, X), Vec3d(), Vec3d(), m.camera1, p, s1);
+        refractiveProjectPoints(std::vector<Point3d>(1, X), m.rvec, m.T, m.camera2, q, s2);
+        const auto inside = [](const Point2d& a) { return a.x > 0 && a.x < 1280 && a.y > 0 && a.y < 1024; };
+        if (s1[0] || s2[0] || !inside(p[0]) || !inside(q[0]))
+            continue;
+        m.points.push_back(X);
+        m.perfect1.push_back(p[0]);
+        m.perfect2.push_back(q[0]);
+    }
+    return m;
+}
+
+void disturb(Matched& m, Random& random, double sigma, int wrong)
+{
+    m.pixels1 = m.perfect1;
+    m.pixels2 = m.perfect2;
+    m.isRight.assign(m.points.size(), 1);
+    for (size_t i = 0; i < m.points.size(); i++)
+    {
+        m.pixels1[i] += Point2d(random.normal(sigma), random.normal(sigma));
+        m.pixels2[i] += Point2d(random.normal(sigma), random.normal(sigma));
+        if ((int)i >= wrong)
+            continue;
+        m.pixels2[i] = Point2d(random.uniform(0, 1280), random.uniform(0, 1024));
+        m.isRight[i] = 0;
+    }
+}
+
+/* Covariance bound of (rvec, T) for pixels with a standard deviation of 1, from all right points and the pose at once: the points
+are eliminated. Nothing of the code under test is used. */
+Matx66d poseBound(const Matched& m)
+{
+    Mat information = Mat::zeros(6, 6, CV_64F), J1, J2;
+    std::vector<Point2d> pixels;
+    refractiveProjectPoints(m.points, Vec3d(1e-9, 0, 0), Vec3d(), m.camera1, pixels, noArray(), J1);
+    refractiveProjectPoints(m.points, m.rvec, m.T, m.camera2, pixels, noArray(), J2);
+    Matx33d R;
+    Rodrigues(m.rvec, R);
+    for (int i = 0; i < (int)m.points.size(); i++)
+    {
+        if (!m.isRight[i])
+            continue;
+        Mat K = Mat::zeros(4, 3, CV_64F), J = Mat::zeros(4, 6, CV_64F), fit;    // by the point, by the pose
+        J1(Rect(3, 2*i, 3, 2)).copyTo(K.rowRange(0, 2));
+        Mat(J2(Rect(3, 2*i, 3, 2))*Mat(R)).copyTo(K.rowRange(2, 4));
+        J2(Rect(0, 2*i, 6, 2)).copyTo(J.rowRange(2, 4));
+        solve(K, J, fit, DECOMP_QR);
+        information += J.t()*(J - K*fit);
+    }
+    return Matx66d(Mat(information.inv(DECOMP_SVD)).ptr<double>());
+}
+
+//! Trials of one kind, against the bound.
+struct Tally
+{
+    int count = 0, failed = 0, covered = 0, bounded = 0;
+    double rotation = 0, direction = 0, rotationBound = 0, directionBound = 0, logLength = 0;
+    Coverage axes;              //!< of stated sigmas of the rotation vector and of T across its direction
+
+    void add(const Matched& m, const Matx66d& bound, double sigma, const Mat& R, const Mat& T, const Mat& covariance,
+             const Vec2d& interval)
+    {
+        Matx33d truth;
+        Rodrigues(m.rvec, truth);
+        Vec3d rvec, t(T.ptr<double>());
+        Rodrigues(R, rvec);
+        const Matx<double, 3, 2> across = tangentsOf(normalize(m.T));
+        const Matx33d rotationC = bound.get_minor<3, 3>(0, 0)*(sigma*sigma), TC = bound.get_minor<3, 3>(3, 3)*(sigma*sigma);
+        const Matx22d directionC = (across.t()*TC*across)*(1/m.T.dot(m.T));
+        const Vec2d off = across.t()*normalize(t);
+        rotation += norm(rvec - m.rvec)*norm(rvec - m.rvec);
+        direction += off.dot(off);
+        rotationBound += trace(rotationC);
+        directionBound += trace(directionC);
+        logLength += std::log(norm(t)/norm(m.T));
+        covered += interval[0] <= norm(m.T) && norm(m.T) <= interval[1];
+        bounded += std::isfinite(interval[1]);
+        count++;
+        for (int k = 0; k < 3; k++)
+            axes.add(rvec[k] - m.rvec[k], std::sqrt(covariance.at<double>(k, k)));
+        const Matx22d stated = across.t()*Matx33d(Mat(covariance(Rect(3, 3, 3, 3)).clone()).ptr<double>())*across;
+        for (int k = 0; k < 2; k++)
+            axes.add(off[k], std::sqrt(stated(k, k))/norm(t));
+    }
+    void print(const std::string& what) const
+    {
+        std::cout << "[numbers] refractiveRecoverPose, " << what << ": rotation " << std::sqrt(rotation/rotationBound)
+                  << ", direction " << std::sqrt(direction/directionBound) << " times the bound ("
+                  << std::sqrt(rotationBound/count)*180/CV_PI << ", " << std::sqrt(directionBound/count)*180/CV_PI
+                  << " degrees), length off by " << 100*(std::exp(logLength/count) - 1)
+                  << " % on average, 95 % interval holds it in " << 100.*covered/count << " %, has an end above in "
+                  << 100.*bounded/count << " % (" << count << " trials, " << failed << " without answer)" << std::endl;
+        axes.print("refractiveRecoverPose, " + what + ", covariance");
+    }
+};
+
+} // namespace
+
+TEST_CASE("Perfect matches give the perfect pose, its length too", "[pose][recover]")
+{
+    for (Medium medium : { NOTHING, AIR, WATER })
+    {
+        Random random(6000);
+        Matched m = matchedScene(medium, random, 60);
+        disturb(m, random, 0, 0);
+        CAPTURE(medium, seed());
+        Mat R, T, covariance;
+        std::vector<uchar> mask;
+        Vec2d interval;
+        REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 0.1, mask, covariance,
+                                      interval) == 60);
+        Matx33d truth;
+        Rodrigues(m.rvec, truth);
+        CHECK(norm(R, Mat(truth)) < 1e-4);
+        CHECK(norm(normalize(Vec3d(T.ptr<double>())) - normalize(m.T)) < 1e-4);
+        CHECK(countNonZero(mask) == 60);
+        if (medium == NOTHING)
+        {
+            CHECK(norm(T) == Approx(1));
+            CHECK((interval[0] == 0 && std::isinf(interval[1])));
+        }
+        else
+            CHECK(norm(T) == Approx(norm(m.T)).epsilon(1e-2));
+    }
+}
+
+TEST_CASE("Two hundred matches, forty percent wrong, against the Cramer-Rao bound", "[pose][recover][slow]")
+{
+    const int TRIALS = trials(10);
+    const double SIGMA = 0.2;
+    for (Medium medium : { NOTHING, AIR, WATER })
+    {
+        Tally tally;
+        for (int trial = 0; trial < TRIALS; trial++)
+        {
+            Random random(6100 + trial);
+            Matched m = matchedScene(medium, random, 200);
+            disturb(m, random, SIGMA, 80);
+            Mat R, T, covariance;
+            Vec2d interval;
+            const int count = refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, noArray(),
+                                                    covariance, interval);
+            if (count < 100)
+                tally.failed++;
+            else
+                tally.add(m, poseBound(m), SIGMA, R, T, covariance, interval);
+        }
+        const char* names[] = { "no window", "air", "water" };
+        tally.print(names[medium]);
+        CAPTURE(medium, seed());
+        CHECK(tally.failed == 0);
+        const double spread = 1 + 2/std::sqrt(2.*TRIALS);       // of a few trials
+        CHECK(std::sqrt(tally.rotation/tally.rotationBound) < 1.2*spread);
+        CHECK(std::sqrt(tally.direction/tally.directionBound) < 1.2*spread);
+        if (medium != NOTHING)
+            CHECK(tally.covered >= TRIALS*0.95 - 3*std::sqrt(TRIALS*0.95*0.05));
+    }
+}
+
+TEST_CASE("What refraction cannot tell has no upper end", "[pose][recover]")
+{
+    Random random(6200);
+    Matched m = matchedScene(AIR, random, 40);      // few, and noisy
+    disturb(m, random, 1, 0);
+    Mat R, T, covariance;
+    Vec2d interval;
+    CAPTURE(seed());
+    REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 5, noArray(), covariance,
+                                  interval) > 30);
+    CAPTURE(interval, norm(T));
+    CHECK(std::isinf(interval[1]));
+    CHECK(interval[0] < norm(m.T));
+    CHECK(checkRange(covariance));
+    const Mat along = T/norm(T), C = covariance(Rect(3, 3, 3, 3));
+    CHECK(Mat(along.t()*C*along).at<double>(0) < 1e-9*trace(C)[0]);       // at the length that T has
+}
+
+TEST_CASE("Relative poses: unseen points, nothing to find, overload, errors", "[pose][recover]")
+{
+    Random random(6300);
+    Matched m = matchedScene(WATER, random, 50);
+    disturb(m, random, 0.1, 10);
+    Mat R, T, R2, T2;
+    std::vector<uchar> mask, mask2;
+    CAPTURE(seed());
+    REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, mask) >= 39);
+    CHECK(R.type() == CV_64F);
+    CHECK(T.size() == Size(1, 3));
+    for (int i = 10; i < 50; i++)
+        CHECK(mask[i] == 1);
+
+    SECTION("the overload agrees")
+    {
+        refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1->cameraMatrix(), m.camera1->distCoeffs(), m.camera1->window(),
+                              m.camera2->cameraMatrix(), m.camera2->distCoeffs(), m.camera2->window(), R2, T2, 0.999, 1, mask2);
+        CHECK(mask == mask2);
+        CHECK(largestDifference(T, T2) == 0);
+    }
+    SECTION("NaN points are left out")
+    {
+        m.pixels1[20].x = m.pixels2[30].y = NaN;
+        REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R2, T2, 0.999, 1, mask2) >= 37);
+        CHECK((mask2[20] == 0 && mask2[30] == 0 && mask2[31] == 1));
+    }
+    SECTION("no pose leaves R and T as they were")
+    {
+        const std::vector<Point2d> unseen(50, Point2d(NaN, NaN));
+        R2 = Mat(1, 1, CV_64F, Scalar(3));
+        CHECK(refractiveRecoverPose(unseen, m.pixels2, m.camera1, m.camera2, R2, T2, 0.999, 1, mask2) == 0);
+        CHECK(R2.at<double>(0) == 3);
+        CHECK((T2.empty() && mask2.size() == 50 && countNonZero(mask2) == 0));
+        const std::vector<Point2d> same(50, Point2d(600, 500));
+        CHECK(refractiveRecoverPose(same, same, m.camera1, m.camera2, R2, T2) == 0);
+    }
+    SECTION("nothing but wrong matches is no pose")
+    {
+        Matched all = matchedScene(WATER, random, 200);
+        disturb(all, random, 0.2, 200);
+        CHECK(refractiveRecoverPose(all.pixels1, all.pixels2, all.camera1, all.camera2, R2, T2, 0.999, 1, mask2) == 0);
+        CHECK((T2.empty() && countNonZero(mask2) == 0));
+    }
+    SECTION("errors")
+    {
+        const auto why = [&](int count, double prob, double threshold)
+        {
+            const std::vector<Point2d> p(m.pixels1.begin(), m.pixels1.begin() + count);
+            return thrown([&] { refractiveRecoverPose(p, p, m.camera1, m.camera2, R, T, prob, threshold); });
+        };
+        CHECK_THAT(why(5, 0.9, 1), Catch::Contains("points1 has 5 points"));
+        CHECK_THAT(why(9, 1, 1), Catch::Contains("prob is 1"));
+        CHECK_THAT(why(9, 0.9, NaN), Catch::Contains("threshold is nan"));
+        CHECK_THAT(thrown([&] { refractiveRecoverPose(m.pixels1, std::vector<Point2d>(3), m.camera1, m.camera2, R, T); }),
+                   Catch::Contains("points1 has 50 points, points2 3"));
+    }
+}

@@ -1,0 +1,100 @@
+// The central camera nearest to one behind a window, against calib3d's own projection.
+#include "export/central_camera.hpp"
+#include <catch2/catch.hpp>
+#include <opencv2/calib3d.hpp>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+Ptr<RefractiveCamera> cameraBehind(const GlassWindow& window, bool isFisheye = false)
+{
+    const Matx33d K(900, 0, 322, 0, 905, 236, 0, 0, 1), wide(250, 0, 322, 0, 250, 236, 0, 0, 1);
+    const Ptr<RefractiveCamera> camera =
+        isFisheye ? RefractiveCamera::createFisheye(wide, Vec4d(0.02, -0.003, 0.001, 0), window)
+                  : RefractiveCamera::create(K, Vec<double, 5>(-0.2, 0.1, 0.0004, -0.0003, 0.02), window);
+    camera->setImageSize(Size(640, 480));
+    return camera;
+}
+
+//! What cv::projectPoints (cv::fisheye::projectPoints) makes of points of the range is off by what was stated.
+void checkError(const Ptr<RefractiveCamera>& camera, const Vec2d& range, int coefficients)
+{
+    const CentralCamera central = fitCentralCamera(camera, range, coefficients, "camera1");
+    RNG rng(7);
+    std::vector<Point3d> points;
+    std::vector<Point2d> pixels;
+    for (int i = 0; i < 3000; i++)
+    {
+        const std::vector<Point2d> pixel = { Point2d(rng.uniform(0., 639.), rng.uniform(0., 479.)) };
+        std::vector<Point3d> X;
+        refractivePointsOnPlane(pixel, X, camera, Vec4d(0, 0, 1, 1/rng.uniform(1/range[1], 1/range[0])));
+        if (X[0].z != X[0].z)
+            continue;       // totally reflected
+        points.push_back(X[0]);
+        pixels.push_back(pixel[0]);
+    }
+    Vec3d rvec;
+    Rodrigues(central.R, rvec);
+    std::vector<Point2d> seen;
+    if (coefficients == 0)
+        fisheye::projectPoints(points, seen, rvec, central.T, central.camera->cameraMatrix(), central.camera->distCoeffs());
+    else
+        projectPoints(points, rvec, central.T, central.camera->cameraMatrix(), central.camera->distCoeffs(), seen);
+    double rms = 0, most = 0;
+    for (size_t i = 0; i < seen.size(); i++)
+    {
+        const double px = norm(seen[i] - pixels[i]);
+        rms += px*px/(double)seen.size();
+        most = std::max(most, px);
+    }
+    rms = std::sqrt(rms);
+    CAPTURE(rms, most, central.error.rms, central.error.max);
+    CHECK(rms == Approx(central.error.rms).epsilon(0.15).margin(1e-7));
+    CHECK(most <= 1.05*central.error.max + 1e-7);
+    CHECK(most >= 0.5*central.error.max - 1e-7);
+}
+
+} // namespace
+
+TEST_CASE("Without a window the central camera is the camera itself", "[tools][export]")
+{
+    const CentralCamera central = fitCentralCamera(cameraBehind(GlassWindow()), Vec2d(400, 1200), 5, "camera1");
+    CHECK(central.error.max < 1e-6);
+    CHECK(norm(central.T) < 1e-6);
+    CHECK(norm(central.R - Matx33d::eye()) < 1e-9);
+    CHECK(norm(central.camera->lensParameters(), cameraBehind(GlassWindow())->lensParameters(), NORM_INF) < 1e-5);
+    const CentralCamera wide = fitCentralCamera(cameraBehind(GlassWindow(), true), Vec2d(400, 1200), 0, "camera1");
+    CHECK(wide.error.max < 1e-6);
+}
+
+TEST_CASE("A central camera is off by what is stated, in air and in water", "[tools][export]")
+{
+    const GlassWindow pane(Vec3d(0.2, -0.1, 0.97), 25, 1.5, 60), port(Vec3d(0.02, -0.01, 1), 10, 1.5, 30, 1.333);
+    checkError(cameraBehind(pane), Vec2d(400, 1200), 8);
+    checkError(cameraBehind(pane), Vec2d(400, 1200), 12);
+    checkError(cameraBehind(port), Vec2d(400, 3000), 8);
+    checkError(cameraBehind(port), Vec2d(400, 3000), 4);
+    checkError(cameraBehind(pane, true), Vec2d(400, 1200), 0);
+}
+
+TEST_CASE("A pane straight before the camera moves it along the axis, by what Snell's law says", "[tools][export]")
+{
+    // Far off and near the axis a pane of thickness t seems to bring the scene nearer by t (1 - 1/n).
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(9000, 0, 319.5, 0, 9000, 239.5, 0, 0, 1), noArray(),
+                                                                  GlassWindow(Vec3d(0, 0, 1), 30, 1.5, 60));
+    camera->setImageSize(Size(640, 480));
+    const CentralCamera central = fitCentralCamera(camera, Vec2d(300, 900), 4, "camera1");
+    CHECK(central.T[2] == Approx(-10).margin(0.02));
+    CHECK(std::hypot(central.T[0], central.T[1]) < 1e-3);
+    CHECK(central.error.max < 0.01);
+}
+
+TEST_CASE("A range before or in the window has no central camera", "[tools][export]")
+{
+    CHECK_THROWS_WITH(fitCentralCamera(cameraBehind(GlassWindow(Vec3d(0, 0, 1), 25, 1.5, 60)), Vec2d(10, 50), 8, "camera1"),
+                      Catch::Contains("camera1") && Catch::Contains("beyond its window"));
+}

@@ -1,0 +1,38 @@
+#ifndef REFRACT_TOOLS_CENTRAL_CAMERA_HPP
+#define REFRACT_TOOLS_CENTRAL_CAMERA_HPP
+
+#include <opencv2/refract.hpp>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+/* The camera without a window that comes nearest to one with it, for what lies between two depths: lens and place are fitted to
+exact projections of points all over the image and the range. It stands elsewhere than the true one: a pane in air moves the place
+from which a scene seems to be seen, a port in water also the focal length. What it leaves is said. */
+
+//! By how much the central camera's projections are off all over the range.
+struct CentralError
+{
+    double rms = 0, max = 0;                //!< px
+    double lengthRms = 0, lengthMax = 0;    //!< in the plane of a point that is parallel to the image, unit of the rig
+};
+
+struct CentralCamera
+{
+    cv::Ptr<cv::refract::RefractiveCamera> camera;  //!< without a window
+    cv::Matx33d R;                                  //!< frame of the true camera -> this one
+    cv::Vec3d T;
+    CentralError error;
+};
+
+/** @param camera with its image size
+@param range z in the frame of the camera, near and far, both finite
+@param coefficients of OpenCV's model; 0: those of cv::fisheye
+@param name of the camera, for a sentence */
+CentralCamera fitCentralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int coefficients,
+                               const std::string& name);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CENTRAL_CAMERA_HPP

@@ -1,0 +1,36 @@
+#ifndef REFRACT_TOOLS_CENTRAL_RIG_HPP
+#define REFRACT_TOOLS_CENTRAL_RIG_HPP
+
+#include "export/central_camera.hpp"
+
+namespace tools {
+
+//! A camera of a rig, as those who know no windows are told of it.
+struct ExportedCamera
+{
+    std::string name;           //!< camera1, ...
+    cv::Ptr<cv::refract::RefractiveCamera> trueCamera;
+    cv::Matx33d trueR;          //!< frame of camera 1 of the calibration -> true camera
+    cv::Vec3d trueT;
+    CentralCamera central;
+    cv::Matx33d R;              //!< frame of camera 1 of the calibration -> central camera
+    cv::Vec3d T;
+};
+
+//! What is exported, and for what it holds.
+struct CentralRig
+{
+    std::vector<ExportedCamera> cameras;
+    std::string source;         //!< the calibration's file
+    cv::Vec2d range;            //!< z, frame of each camera
+    std::string unit;           //!< of length; may be empty
+};
+
+//! "rms 0.12 px, max 0.5 px, ..." of a camera.
+std::string errorText(const CentralRig& rig, const ExportedCamera& camera);
+//! What every file says first, without the comment sign.
+std::string headText(const CentralRig& rig);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CENTRAL_RIG_HPP

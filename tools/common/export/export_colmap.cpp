@@ -1,0 +1,149 @@
+#include "export/export_files.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <cmath>
+#include <map>
+
+namespace tools {
+
+using cv::Point2d;
+
+namespace {
+
+const double CORNER = 0.5;      // COLMAP's pixel (0, 0) is a corner, not a centre
+
+std::string cameraLine(const ExportedCamera& camera, int id)
+{
+    const auto& lens = camera.central.camera;
+    const cv::Mat p = lens->lensParameters();       // fx fy cx cy k1 k2 p1 p2 [k3 k4 k5 k6], or fisheye's k1 ... k4
+    const char* model = lens->lensModel() == "fisheye" ? "OPENCV_FISHEYE" : p.total() > 8 ? "FULL_OPENCV" : "OPENCV";
+    std::string line = cv::format("%d %s %d %d", id, model, lens->imageSize().width, lens->imageSize().height);
+    for (int i = 0; i < (int)p.total(); i++)
+        line += cv::format(" %.17g", p.at<double>(i) + (i == 2 || i == 3 ? CORNER : 0));
+    return line + "\n";
+}
+
+//! qw qx qy qz
+cv::Vec4d quaternionOf(const cv::Matx33d& R)
+{
+    cv::Vec3d rvec;
+    cv::Rodrigues(R, rvec);
+    const double angle = cv::norm(rvec), scale = angle > 0 ? std::sin(angle/2)/angle : 0.5;
+    return {std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]};
+}
+
+//! A camera at a moment.
+struct Image
+{
+    int camera;
+    std::string name;
+    std::vector<std::pair<Point2d, int>> points;        // where, and number of the 3-D point
+};
+
+/* Where the central camera would have seen a point: its own projection of it, and beside that what the true one was off by, so
+that what a bundle adjustment finds of the noise stays what it was. */
+struct CorrectedPixel
+{
+    CorrectedPixel(const ExportedCamera& camera, const cv::Point3d& X, const Point2d& raw)
+    {
+        std::vector<Point2d> central, refracted;
+        cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>{X}, camera.R, camera.T, camera.central.camera, central);
+        cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>{X}, camera.trueR, camera.trueT, camera.trueCamera, refracted);
+        residual = raw - refracted[0];
+        pixel = central[0] + residual;
+    }
+    bool isSeen() const { return pixel.x == pixel.x && pixel.y == pixel.y; }
+    Point2d pixel, residual;
+};
+
+//! COLMAP's model, line by line.
+class Model
+{
+public:
+    explicit Model(const CentralRig& rig) : rig_(rig) {}
+
+    void add(const MeasuredPoint& point)
+    {
+        std::string track;
+        double errors = 0;
+        int seen = 0;
+        for (int c = 0; c < (int)rig_.cameras.size(); c++)
+        {
+            const CorrectedPixel corrected(rig_.cameras[c], point.X, point.pixels[c]);
+            if (!corrected.isSeen())
+                continue;
+            const int index = imageOf(c, point.image);
+            track += cv::format(" %d %d", index + 1, (int)images_[index].points.size());
+            images_[index].points.push_back({corrected.pixel, count_ + 1});
+            errors += cv::norm(corrected.residual);
+            seen++;
+        }
+        if (seen == 0)
+            return;
+        count_++;
+        points_ += cv::format("%d %.17g %.17g %.17g 255 255 255 %.6g", count_, point.X.x, point.X.y, point.X.z, errors/seen) + track
+                   + "\n";
+    }
+
+    //! Of a rig without points: one image a camera.
+    void addImages()
+    {
+        for (int c = 0; c < (int)rig_.cameras.size(); c++)
+            imageOf(c, "");
+    }
+
+    std::string images() const
+    {
+        std::string text;
+        for (size_t i = 0; i < images_.size(); i++)
+        {
+            const ExportedCamera& camera = rig_.cameras[images_[i].camera];
+            const cv::Vec4d q = quaternionOf(camera.R);
+            text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.T[0],
+                               camera.T[1], camera.T[2], images_[i].camera + 1) + images_[i].name + "\n";
+            for (const auto& point : images_[i].points)
+                text += cv::format("%.10g %.10g %d ", point.first.x + CORNER, point.first.y + CORNER, point.second);
+            text += "\n";
+        }
+        return text;
+    }
+    const std::string& points() const { return points_; }
+
+private:
+    int imageOf(int camera, const std::string& moment)
+    {
+        const auto key = std::make_pair(camera, moment);
+        const auto known = index_.find(key);
+        if (known != index_.end())
+            return known->second;
+        const std::string& name = rig_.cameras[camera].name;
+        images_.push_back({camera, moment.empty() ? name : name + "/" + moment, {}});
+        return index_[key] = (int)images_.size() - 1;
+    }
+
+    const CentralRig& rig_;
+    std::vector<Image> images_;
+    std::map<std::pair<int, std::string>, int> index_;
+    std::string points_;
+    int count_ = 0;
+};
+
+} // namespace
+
+std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points)
+{
+    const std::string head = "# " + headText(rig) + "\n";
+    std::string cameras = head + "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+        cameras += "# " + errorText(rig, rig.cameras[c]) + "\n" + cameraLine(rig.cameras[c], (int)c + 1);
+    Model model(rig);
+    for (const MeasuredPoint& point : points)
+        model.add(point);
+    if (points.empty())
+        model.addImages();
+    return {{"cameras.txt", cameras},
+            {"images.txt", head + "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# POINTS2D[] as X Y POINT3D_ID\n" + model.images()},
+            {"points3D.txt", head + "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n" + model.points()}};
+}
+
+} // namespace tools

@@ -1,0 +1,32 @@
+#ifndef REFRACT_TOOLS_EXPORT_FILES_HPP
+#define REFRACT_TOOLS_EXPORT_FILES_HPP
+
+#include "export/central_rig.hpp"
+#include "export/measured_points.hpp"
+
+/* The files of those who know no windows. Each says how far off it is. */
+namespace tools {
+
+//! A file of a folder, and its text.
+struct ExportFile
+{
+    std::string name, text;
+};
+
+/** OpenCV: the keys of calib.yml without windows; R, T, R3 ... from the first central camera to each. `central_R`, `central_T`:
+frame of camera 1 of the calibration -> each central camera. */
+void writeOpenCV(const std::string& path, const CentralRig& rig);
+
+//! mrcal: NAME.cameramodel of each camera; the reference frame is that of camera 1 of the calibration.
+std::vector<ExportFile> mrcalFiles(const CentralRig& rig);
+
+//! ROS: NAME.yaml of each camera, sensor_msgs/CameraInfo; of a pair with its rectification.
+std::vector<ExportFile> rosFiles(const CentralRig& rig);
+
+/** COLMAP's text model: cameras.txt, images.txt, points3D.txt; the world is the frame of camera 1 of the calibration.
+@param points measured ones, with the pixels where the central cameras would have seen them; may be empty */
+std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_EXPORT_FILES_HPP

@@ -1,0 +1,162 @@
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/table.hpp"
+#include "export/export_files.hpp"
+
+#include <filesystem>
+#include <iostream>
+
+static const char MANUAL[] = R"(Tells programs that know no windows of cameras behind them, as well as that can be done.
+
+  refract_export calib.yml --to=opencv --range=400,1200 --out=central.yml
+  refract_export calib.yml --to=mrcal --range=400,1200 --out-dir=DIR       camera1.cameramodel ...
+  refract_export calib.yml --to=ros --range=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
+  refract_export calib.yml --to=colmap --range=400,1200 [--points=points.csv] --out-dir=DIR
+
+No camera without a window sees what one behind a window sees, but for one depth. What is written is the central camera (place,
+direction, lens) that comes nearest for scenes between the two depths z of --range, in the frame of each camera and the unit of
+calib.yml. How far off it is stands in the files and in the table: in pixels, and as a length at the point. Exit code 2 if a
+camera's largest error is above --max-error pixels: give a smaller range, or measure with refract_measure, which is exact.
+
+--points, what refract_measure wrote: COLMAP's model gets the points, each with the pixels where the central cameras would have
+seen it. These are exact, whatever the table says.)";
+
+namespace {
+
+using namespace tools;
+namespace fs = std::filesystem;
+
+struct Options
+{
+    std::string calibration, target, range, out, folder, points;
+    int coefficients = -1;
+    double maxError = 0;        // px; 0: none
+};
+
+void addOptions(CLI::App& app, Options& options)
+{
+    app.add_option("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras")->required();
+    app.add_option("--to", options.target, "whom to tell")->required()
+        ->check(CLI::IsMember({"opencv", "mrcal", "colmap", "ros"}));
+    app.add_option("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera")->required();
+    app.add_option("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
+    app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
+    app.add_option("--points", options.points, "points.csv of refract_measure (--to=colmap)");
+    app.add_option("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
+                   "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses)");
+    app.add_option("--max-error", options.maxError, "px: exit code 2 if a camera is further off")->check(moreThanZero());
+}
+
+cv::Vec2d parseRange(const std::string& text)
+{
+    const std::vector<double> numbers = parseNumbers(text, "--range");
+    if (numbers.size() != 2 || !(numbers[0] > 0 && numbers[1] > numbers[0]))
+        throw Failure("--range=" + text + ": give the near and the far end of the scene, 0 < NEAR < FAR");
+    return cv::Vec2d(numbers[0], numbers[1]);
+}
+
+void checkCombination(const Options& options)
+{
+    const bool isFile = options.target == "opencv";
+    if ((isFile ? options.out : options.folder).empty() || !(isFile ? options.folder : options.out).empty())
+        throw Failure("--to=" + options.target + (isFile ? " writes one file: give --out=FILE, and no --out-dir"
+                                                         : " writes several files: give --out-dir=DIR, and no --out"));
+    if (!options.points.empty() && options.target != "colmap")
+        throw Failure("--points: only COLMAP's model has points; give --to=colmap, or leave it out");
+    if (isFile)
+        checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}}, {options.calibration});
+}
+
+//! OpenCV's lens models that the other program knows, by their coefficients; 0: fisheye.
+std::vector<int> modelsOf(const std::string& target)
+{
+    static const std::map<std::string, std::vector<int>> known = {
+        {"opencv", {0, 4, 5, 8, 12, 14}}, {"mrcal", {4, 5, 8, 12}}, {"colmap", {0, 4, 8}}, {"ros", {0, 5, 8}}};
+    return known.at(target);
+}
+
+//! With the lens model asked for, else the plainest that is nearly as good as the rational one.
+CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range,
+                                const std::string& name)
+{
+    const std::vector<int> models = modelsOf(options.target);
+    const auto isKnown = [&](int coefficients) { return std::find(models.begin(), models.end(), coefficients) != models.end(); };
+    if (options.coefficients >= 0 && !isKnown(options.coefficients))
+        throw Failure(format("--coefficients=%d: %s has no such lens model", options.coefficients, options.target.c_str()));
+    if (options.coefficients >= 0)
+        return fitCentralCamera(camera, range, options.coefficients, name);
+    if (camera->lensModel() == "fisheye" && isKnown(0))
+        return fitCentralCamera(camera, range, 0, name);
+    const double NEARLY = 1.1;
+    const CentralCamera plain = fitCentralCamera(camera, range, isKnown(5) ? 5 : 4, name);
+    const CentralCamera rational = fitCentralCamera(camera, range, 8, name);
+    return plain.error.rms <= NEARLY*rational.error.rms ? plain : rational;
+}
+
+CentralRig centralRigOf(const Options& options, const cv::Vec2d& range)
+{
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
+    std::vector<cv::Mat> Rs, Ts;
+    cv::refract::readRig(options.calibration, cameras, Rs, Ts);
+    CentralRig rig = {{}, fs::path(options.calibration).filename().string(), range, ""};
+    for (size_t c = 0; c < cameras.size(); c++)
+    {
+        const std::string name = format("camera%d", (int)c + 1);
+        if (cameras[c]->imageSize().empty())
+            throw Failure("'" + options.calibration + "' does not say image_width and image_height of " + name + ": add them");
+        const CentralCamera central = bestCentralCamera(options, cameras[c], range, name);
+        const cv::Matx33d R(Rs[c].ptr<double>());
+        const cv::Vec3d T(Ts[c].ptr<double>());
+        rig.cameras.push_back({name, cameras[c], R, T, central, central.R*R, central.R*T + central.T});
+    }
+    return rig;
+}
+
+void write(const Options& options, const CentralRig& rig)
+{
+    if (options.target == "opencv")
+        return writeOpenCV(options.out, rig);
+    const std::vector<MeasuredPoint> points = options.points.empty() ? std::vector<MeasuredPoint>()
+                                                                     : readMeasuredPoints(options.points, (int)rig.cameras.size());
+    const std::vector<ExportFile> files = options.target == "mrcal" ? mrcalFiles(rig)
+                                        : options.target == "ros" ? rosFiles(rig) : colmapFiles(rig, points);
+    std::vector<Output> outputs;
+    for (const ExportFile& file : files)
+        outputs.push_back({"--out-dir", options.folder + "/" + file.name, OUTPUT_IN_FOLDER});
+    checkOutputs(outputs, {options.calibration, options.points});
+    makeFolder(options.folder);
+    for (const ExportFile& file : files)
+        writeText(options.folder + "/" + file.name, file.text);
+}
+
+void printTable(const CentralRig& rig)
+{
+    Table table({"central camera", "rms, px", "max, px", "rms, length", "max, length", "moved by"});
+    for (const ExportedCamera& camera : rig.cameras)
+    {
+        const CentralError& e = camera.central.error;
+        table.add({camera.name, format("%.3g", e.rms), format("%.3g", e.max), format("%.3g", e.lengthRms), format("%.3g", e.lengthMax),
+                   format("%.4g", cv::norm(camera.central.T))});
+    }
+    table.print(std::cout);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        const Options options = parsed(command, addOptions);
+        const cv::Vec2d range = parseRange(options.range);
+        checkCombination(options);
+        const CentralRig rig = centralRigOf(options, range);
+        write(options, rig);
+        if (!command.quiet())
+            printTable(rig);
+        double worst = 0;
+        for (const ExportedCamera& camera : rig.cameras)
+            worst = camera.central.error.max <= worst ? worst : camera.central.error.max;
+        return options.maxError > 0 && !(worst <= options.maxError) ? LIMIT_NOT_MET : DONE;
+    });
+}
