@@ -1,4 +1,5 @@
 #include "assess/measurement.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 #include "console/outputs.hpp"

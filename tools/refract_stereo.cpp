@@ -1,4 +1,5 @@
 #include "calibrate/calib_file.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
