@@ -23,7 +23,7 @@ The same RIG.yml gives the same images.
 
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
 
-  target: { pattern: chessboard, size: 6x5, square: 39. }     # or circles, acircles, charuco (with
+  target: { pattern: chessboard, size: "6x5", square: 39. }   # or circles, acircles, charuco (with
                          # marker: side, dictionary: DICT_4X4_250)
   camera1: { image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window }
   camera2: { ... }       # as in calib.yml, up to camera16; one camera: its keys at top level instead

@@ -7,7 +7,7 @@
 
 /* RIG.yml, what refract_simulate renders (cv::FileStorage):
 
-    target: { pattern: chessboard, size: 6x5, square: 39. }
+    target: { pattern: chessboard, size: "6x5", square: 39. }
     camera1: { ... as in calib.yml ... }     # one camera: its keys at top level instead
     camera2: { ... }
     R: ...                                   # camera 1 -> camera 2; of camera 3 they are R3 and T3, and so on
