@@ -43,6 +43,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
 #include "report/thumbnails.hpp"
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -199,7 +200,11 @@ std::vector<int> readWindowsOfCameras(const Options& o)
         return {};
     std::vector<int> windows;
     for (double number : parseNumbers(o.windowOfCamera, "--window-of-camera"))
+    {
+        if (number != std::floor(number) || std::abs(number) > 1e6)
+            throw Failure("--window-of-camera=" + o.windowOfCamera + ": give whole numbers, as 1,1,2,2");
         windows.push_back((int)number);
+    }
     if ((int)windows.size() != cameras)
         throw Failure(format("--window-of-camera=%s has %zu numbers, but there are %d cameras: give one for each",
                              o.windowOfCamera.c_str(), windows.size(), cameras));

@@ -170,6 +170,12 @@ TEST_CASE("Four cameras before two walls of a tank, from one view of a 3-D targe
     CHECK(file["R2"].empty());
     CHECK(file["camera5"].empty());
     CHECK(tank.worstNormalDeg(folder / "calib.yml") < 0.2);
+    std::vector<Ptr<RefractiveCamera>> cameras;
+    std::vector<Mat> Rs, Ts;
+    std::vector<int> walls;
+    Mat covariance;
+    readRig(folder / "calib.yml", cameras, Rs, Ts, walls, covariance);
+    CHECK(walls == tank.walls);
     Mat T4;
     file["T4"] >> T4;
     CHECK(norm(T4.reshape(1, 3), Mat(tank.Ts[3])) < 1.);
@@ -281,6 +287,7 @@ TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
         {first + third + size, "no --glass2"},
         {first + second, "--image-size"},
         {first + second + size + " --window-of-camera=1", "there are 2 cameras"},
+        {first + second + size + " --window-of-camera=1,1.5", "whole numbers"},
         {first + second + size + " --window-of-camera=1,1 --shared-window", "excludes"},
         {" --glass='*.png'", "--size"},
         {first + size + " --poses=" + folder / "poses.csv", "no pose of view 'cal'"},
@@ -295,6 +302,13 @@ TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
     }
     std::ofstream(folder / "u.csv") << "id,u1,v1,u2,v2\na,1,2,3,\n";
     REQUIRE(runTool(tank.inputs(folder)).code == 0);
+    std::string text = readFile(folder / "calib.yml");
+    const size_t key = text.find("window_of_camera: [");
+    REQUIRE(key != std::string::npos);
+    std::ofstream(folder / "short.yml") << text.replace(key, text.find(']', key) + 1 - key, "window_of_camera: [ 1, 1 ]");
+    const ToolResult cut = runTool("refract_measure " + folder / "short.yml --points=" + folder / "u.csv");
+    CHECK(cut.code == 1);
+    CHECK(cut.err.find("window_of_camera must have one whole number for each of 3 cameras") != std::string::npos);
     const ToolResult half = runTool("refract_measure " + folder / "calib.yml --points=" + folder / "u.csv");
     CHECK(half.code == 1);
     CHECK(half.err.find("line 2: u2 and v2") != std::string::npos);

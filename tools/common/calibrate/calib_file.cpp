@@ -159,6 +159,18 @@ void readPlace(const FileStorage& fs, const std::string& filename, size_t camera
         throw Failure("'" + filename + "': R" + suffix + " is not a rotation");
 }
 
+//! Equal numbers share a window; empty where the file does not say.
+std::vector<int> readWindows(const FileNode& node, const std::string& filename, size_t cameras)
+{
+    std::vector<int> windows;
+    for (const FileNode& number : node.isSeq() ? node : FileNode())
+        if (number.isInt())
+            windows.push_back((int)number);
+    if (!node.empty() && (!node.isSeq() || node.size() != cameras || windows.size() != cameras))
+        throw Failure("'" + filename + format("': window_of_camera must have one whole number for each of %zu cameras", cameras));
+    return windows;
+}
+
 //! Cameras under keys of their own.
 void readCameras(const FileStorage& fs, const std::string& filename, Calibration& calibration)
 {
@@ -174,6 +186,7 @@ void readCameras(const FileStorage& fs, const std::string& filename, Calibration
             readPlace(fs, filename, c, R, T);
         calibration.add(camera, R, T);
     }
+    calibration.windows = readWindows(fs["window_of_camera"], filename, calibration.cameras.size());
 }
 
 //! Where a camera's parameters begin in the covariance of its file.
@@ -335,6 +348,8 @@ void writeRig(FileStorage& fs, const Calibration& calibration)
     }
     for (size_t c = 1; c < calibration.cameras.size(); c++)
         fs << "R" + placeSuffix(c) << cv::Mat(calibration.Rs[c]) << "T" + placeSuffix(c) << cv::Mat(calibration.Ts[c]);
+    if (!calibration.windows.empty())
+        fs << "window_of_camera" << calibration.windows;
     if (calibration.rms >= 0)
         fs << "rms" << calibration.rms;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 /* calib.yml: one camera at top level; two under `camera1`, `camera2` with `R`, `T` beside them; more: `camera3` with `R3`, `T3`
-and so on.
+and so on; window_of_camera where some share a window: equal numbers look through the same one.
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
 thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
@@ -45,6 +45,7 @@ struct Calibration
     std::vector<CameraCalibration> cameras;
     std::vector<cv::Matx33d> Rs;                //!< camera 1 -> each camera; the first is the identity
     std::vector<cv::Vec3d> Ts;
+    std::vector<int> windows;                   //!< which window each camera looks through; empty: each has its own
     double rms = -1.;                           //!< px, over all cameras; negative where unknown
     cv::Mat covariance;     //!< of calibrateGlassRig, in its order; empty where unknown
     double sigma = -1.;     //!< standard deviation of a pixel coordinate, from the residuals; negative where unknown

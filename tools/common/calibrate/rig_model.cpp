@@ -1,5 +1,6 @@
 #include "calibrate/rig_model.hpp"
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
 
 using namespace cv;
 using namespace cv::refract;
@@ -73,6 +74,7 @@ Calibration firstPair(const Calibration& rig)
     pair.cameras.resize(2);
     pair.Rs.resize(2);
     pair.Ts.resize(2);
+    pair.windows.resize(std::min(rig.windows.size(), (size_t)2));
     if (rig.covariance.empty())
         return pair;
     int ofPair = 0, ofAll = 0;
@@ -93,6 +95,7 @@ Calibration calibrationOf(const RigModel& rig)
     Calibration calibration;
     for (const Ptr<RefractiveCamera>& camera : rig.cameras)
         calibration.cameras.push_back({camera, WindowStd(), -1.});
+    calibration.windows = rig.windows;
     calibration.Rs = rig.Rs;
     calibration.Ts = rig.Ts;
     return calibration;
