@@ -196,7 +196,7 @@ def test_calibrate_rig(rig, board):
 
     rms, Rs, Ts, rvecs, tvecs, deviations, covariance, per_view, status, inliers, minima = call()
     assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
-    assert deviations.shape == (2*17 + 6, 1) and minima.shape == (2, 4) and np.isnan(minima).all()
+    assert deviations.shape == (2*17 + 6, 1) and minima.shape == (2, 5) and np.isnan(minima).all()
     assert status.shape == (8, 4) and not status.any() and len(inliers) == 32 and all(mask.all() for mask in inliers)
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
     np.testing.assert_allclose(np.squeeze(call(refract.GLASS_FREE_EXTRINSICS)[2][1]), rig.T, atol=1e-4)
@@ -223,6 +223,17 @@ def test_calibrate_rig_in_short(rig, board):
     assert rms < 1e-5
     np.testing.assert_allclose(np.squeeze(Ts[1]), rig.T, atol=1e-4)
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
+
+
+def test_bundle_adjust(rig):
+    from conftest import rotation
+    start = rig.points + np.random.default_rng(1).normal(0, 1, rig.points.shape)
+    length = np.linalg.norm(rig.points[0] - rig.points[1])
+    rms, Rs, Ts, points = refract.refractiveBundleAdjust(
+        [rig.pixels1, rig.pixels2], [rig.camera1, rig.camera2], [], [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], start,
+        np.array([[0., 1., length, 0.01]]), flags=refract.GLASS_FIX_NORMAL)
+    assert rms < 1e-5
+    np.testing.assert_allclose(np.squeeze(points), np.squeeze(rig.points), atol=1e-3)
 
 
 def test_swapped_pairs_are_refused(rig, board):

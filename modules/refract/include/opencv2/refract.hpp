@@ -54,7 +54,7 @@ enum RefractiveStatus {
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
     REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, are parallel
     REFRACT_NO_INTERSECTION = 8,    //!< the rays come closest, or the ray meets the plane, behind an origin
-    REFRACT_TOO_FEW_VIEWS = 9       //!< fewer than two cameras saw the point
+    REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than two cameras saw the point (9: what refract_measure finds contradictory)
 };
 
 //! Flags of triangulateRefractive
@@ -978,8 +978,18 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
-The short form, for a rig that stands still: imagePoints is one array of Mx2 pixels per camera, points are in the frame of
-camera 1.
+The short form, for a rig that stands still: a wand that is waved, particles that drift. Cameras, windows, Rs and Ts are start and
+result; which of them move say the flags.
+@param imagePoints one array of Mx2 pixels per camera; a NaN point was not seen.
+@param cameras as above.
+@param windowOfCamera as above.
+@param Rs as above.
+@param Ts as above.
+@param points3D as above, in the frame of camera 1.
+@param lengths as above; without a pose at least one is needed.
+@param flags as above.
+@param criteria as above.
+@return RMS reprojection error in pixels.
 */
 CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
