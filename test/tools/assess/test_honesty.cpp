@@ -440,11 +440,10 @@ TEST_CASE("A stated +- of points is true in every flow: a few trials", "[honesty
 
 TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
 {
-    const char* trials = std::getenv("TRIALS");     // to try it out with fewer, or
-    const char* only = std::getenv("ONLY");         // some of the flows
+    const char* only = std::getenv("ONLY");     // some of the flows
     for (const Setup& setup : allSetups())
         if (!only || setup.name().find(only) != std::string::npos)
-            print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
+            print(setup, honestyOf(setup, scenes::trials(200), 9000));
 }
 
 TEST_CASE("A sealed rig's windows are not tilted the other way, and the second best minimum is told", "[honesty]")
@@ -593,12 +592,11 @@ struct SealedRig
 
 TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no crash, and intervals of lengths hold", "[.honesty]")
 {
-    const char* given = std::getenv("TRIALS");
-    const int trials = given ? std::atoi(given) : 500;
+    const int count = scenes::trials(500);
     Ratio lengths;
     int answers = 0;
     std::map<std::string, int> refusals;
-    for (int trial = 0; trial < trials; trial++)
+    for (int trial = 0; trial < count; trial++)
     {
         scenes::Random random(20000 + trial);
         const SealedRig scene(random);
@@ -631,7 +629,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             refusals[std::string(e.what()).substr(0, 60)]++;
         }
     }
-    std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << trials << " answer; 95 % intervals of a length hold "
+    std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << count << " answer; 95 % intervals of a length hold "
               << 100*lengths.within(1.96) << " %, error over stated " << lengths.value() << std::endl;
     for (const auto& refusal : refusals)
         std::cout << "    " << refusal.second << " x " << refusal.first << std::endl;
@@ -640,8 +638,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
 
 TEST_CASE("A stated +- is true from rendered images, where corners err together", "[.honesty]")
 {
-    const char* trials = std::getenv("TRIALS");
     for (const Setup& setup : {Setup{Flow::PAIRS, Medium::AIR, 1, true}, Setup{Flow::HAND_HELD, Medium::AIR, 1, true},
                                Setup{Flow::HAND_HELD, Medium::HOUSING, 1, true}, Setup{Flow::PAIRS, Medium::AIR, 2, true}})
-        print(setup, honestyOf(setup, trials ? std::atoi(trials) : 20, 9500));
+        print(setup, honestyOf(setup, scenes::trials(20), 9500));
 }
