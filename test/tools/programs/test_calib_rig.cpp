@@ -116,18 +116,19 @@ struct Tank
         return text + " --out=" + folder / "calib.yml";
     }
 
-    //! Largest angle between a window's normal as it is and as the file has it, degrees.
-    double worstNormalDeg(const std::string& path) const
+    //! Angle between a window's normal as it is and as the file has it.
+    double normalErrorDeg(const std::string& path, int c) const
     {
-        double worst = 0;
-        for (int c = 0; c < count(); c++)
-        {
-            const Vec3d a = RefractiveCamera::read(path, format("camera%d", c + 1))->window().normal, b = cameras[c]->window().normal;
-            worst = std::max(worst, std::atan2(norm(a.cross(b)), a.dot(b))*180/CV_PI);
-        }
-        return worst;
+        const Vec3d a = RefractiveCamera::read(path, format("camera%d", c + 1))->window().normal, b = cameras[c]->window().normal;
+        return std::atan2(norm(a.cross(b)), a.dot(b))*180/CV_PI;
     }
 };
+
+double largestNormalStdDeg(const nlohmann::json& summary, int c)
+{
+    const auto std = summary["cameras"][c]["window"]["normal_std_deg"].get<std::vector<double>>();
+    return *std::max_element(std.begin(), std.end());
+}
 
 //! Columns of a CSV by name; nan is taken.
 std::map<std::string, std::vector<double>> columnsOf(const std::string& text)
@@ -169,7 +170,6 @@ TEST_CASE("Four cameras before two walls of a tank, from one view of a 3-D targe
         CHECK(!file[key].empty());
     CHECK(file["R2"].empty());
     CHECK(file["camera5"].empty());
-    CHECK(tank.worstNormalDeg(folder / "calib.yml") < 0.2);
     std::vector<Ptr<RefractiveCamera>> cameras;
     std::vector<Mat> Rs, Ts;
     std::vector<int> walls;
@@ -180,7 +180,9 @@ TEST_CASE("Four cameras before two walls of a tank, from one view of a 3-D targe
     file["T4"] >> T4;
     CHECK(norm(T4.reshape(1, 3), Mat(tank.Ts[3])) < 1.);
     const nlohmann::json summary = nlohmann::json::parse(readFile(folder / "s.json"));
-    CHECK(summary["cameras"].size() == 4);
+    REQUIRE(summary["cameras"].size() == 4);
+    for (int c = 0; c < 4; c++)
+        CHECK(tank.normalErrorDeg(folder / "calib.yml", c) < 3.5*largestNormalStdDeg(summary, c));
     CHECK(summary["fit"]["sigma_px"].get<double>() == Approx(SIGMA).epsilon(0.15));
     CHECK(summary["cameras"][0]["corners"]["glass"].get<int>() > 100);
     const std::string page = readFile(folder / "report.html");
@@ -215,10 +217,14 @@ TEST_CASE("Four cameras before two walls of a tank, from one view of a 3-D targe
     CHECK(csv.substr(0, csv.find('\n')) == "image,id,u1,v1,u2,v2,u3,v3,u4,v4,x,y,z,sx,sy,sz,status");
     auto columns = columnsOf(csv);
     REQUIRE(columns["x"].size() == 40);
-    double squares = 0, stated = 0;
+    double squares = 0, stated = 0, ofLengths = 0;
+    Vec3d last;
     for (int i = 0; i < 39; i++)
     {
-        const Vec3d error = Vec3d(columns["x"][i], columns["y"][i], columns["z"][i]) - tank.inCamera1(markers[i]);
+        const Vec3d X(columns["x"][i], columns["y"][i], columns["z"][i]), error = X - tank.inCamera1(markers[i]);
+        if (i > 0)
+            ofLengths += std::pow(norm(X - last) - norm(markers[i] - markers[i - 1]), 2)/38;
+        last = X;
         squares += error.dot(error)/39;
         stated += (std::pow(columns["sx"][i], 2) + std::pow(columns["sy"][i], 2) + std::pow(columns["sz"][i], 2))/39;
         CHECK(columns["id"][i] == 100 + i);
@@ -227,9 +233,9 @@ TEST_CASE("Four cameras before two walls of a tank, from one view of a 3-D targe
     CHECK(std::isnan(columns["x"][39]));                        // a single camera saw it
     CHECK(columns["status"][39] == REFRACT_NOT_FINITE);
     std::cout << "[numbers] markers that took no part, 4 cameras: " << std::sqrt(squares) << " mm 3-D RMS, stated "
-              << std::sqrt(stated) << std::endl;
-    CHECK(std::sqrt(squares) < 0.1);
-    CHECK(std::sqrt(squares/stated) == Approx(1.).margin(0.5));
+              << std::sqrt(stated) << "; lengths between them " << std::sqrt(ofLengths) << " mm RMS" << std::endl;
+    CHECK(squares < 2.5*2.5*stated);        // a calibration's error moves all of them together: one draw
+    CHECK(std::sqrt(ofLengths) < 0.1);
 
     // The target's own points, matched between the cameras by their coordinates.
     std::string images;
@@ -256,7 +262,7 @@ TEST_CASE("Known poses, exact and uncertain, serve a rig", "[calib_rig]")
     std::ofstream(folder / "exact.csv") << "view,rx_deg,ry_deg,rz_deg,tx_mm,ty_mm,tz_mm\n" << pose << '\n';
     std::ofstream(folder / "uncertain.csv") << "view,rx_deg,ry_deg,rz_deg,tx_mm,ty_mm,tz_mm,sigma_deg,sigma_mm\n" << pose
                                             << ",0.01,0.1\n";
-    double distanceStd[3];
+    double distanceStd[3], firstTilt[3];
     const char* const files[] = {"", "uncertain.csv", "exact.csv"};
     for (int i = 0; i < 3; i++)
     {
@@ -264,13 +270,23 @@ TEST_CASE("Known poses, exact and uncertain, serve a rig", "[calib_rig]")
         const ToolResult calib = runTool(tank.inputs(folder) + poses + " --summary=" + folder / "s.json");
         CAPTURE(files[i], calib.err);
         REQUIRE(calib.code == 0);
-        CHECK(tank.worstNormalDeg(folder / "calib.yml") < 0.2);
         const nlohmann::json summary = nlohmann::json::parse(readFile(folder / "s.json"));
+        for (int c = 0; c < tank.count(); c++)
+        {
+            const double stated = largestNormalStdDeg(summary, c);
+            CAPTURE(c, stated);
+            CHECK(tank.normalErrorDeg(folder / "calib.yml", c) < 3.5*stated);
+            CHECK(stated < 0.3);
+        }
+        firstTilt[i] = largestNormalStdDeg(summary, 0);
         distanceStd[i] = summary["cameras"][0]["window"]["distance"]["std"].get<double>();
         CHECK(summary["fit"]["sigma_px"].get<double>() == Approx(SIGMA).epsilon(0.15));
     }
-    CHECK(distanceStd[1] < distanceStd[0]);
-    CHECK(distanceStd[2] < distanceStd[1]);
+    for (const double* std : {distanceStd, firstTilt})
+    {
+        CHECK(std[1] < std[0]);
+        CHECK(std[2] < std[1]);
+    }
 }
 
 TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
