@@ -440,7 +440,7 @@ void checkCombination(const Options& options, const Calibration& calibration)
     if (options.plane.empty() && !options.points.empty() && cameras == 1)
         throw Failure("--points of one camera need --plane=a,b,c,d, on which they lie");
     if (images > 0 && options.images[0].empty() && !options.triangulates())
-        throw Failure("'' in place of the images of camera 1: with one camera there must be some");
+        throw Failure("an empty name in place of the images of camera 1: with one camera there must be some");
     if (options.points.empty() && !options.target.given())
         for (const std::string& image : options.images)
             if (!image.empty() && fs::path(image).extension() != ".csv")
