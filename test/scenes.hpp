@@ -26,6 +26,13 @@ inline unsigned seed()
     return given ? (unsigned)std::strtoul(given, nullptr, 10) : 20240607u;
 }
 
+//! How often a random test is repeated: TRIALS, or as the test says.
+inline int trials(int otherwise)
+{
+    const char* given = std::getenv("TRIALS");
+    return given ? std::atoi(given) : otherwise;
+}
+
 class Random
 {
 public:

@@ -142,13 +142,12 @@ TEST_CASE("What matches and a length tell of windows without a target: the table
 TEST_CASE("Bundle adjustment attains the Cramer-Rao bound: many trials", "[.monte-carlo]")
 {
     CAPTURE(seed());
-    const char* given = std::getenv("TRIALS");
-    const int trials = given ? std::atoi(given) : 200;
+    const int count = trials(200);
     for (const Situation& s : { WAND_IN_WATER, MOVING_IN_WATER })
     {
-        const Attained a = attained(s, trials, 20000);
-        report(s, a, trials);
-        const double chance = 3/std::sqrt(2.*2*s.cameras*trials);     // three times the scatter of such a ratio
+        const Attained a = attained(s, count, 20000);
+        report(s, a, count);
+        const double chance = 3/std::sqrt(2.*2*s.cameras*count);     // three times the scatter of such a ratio
         CHECK(a.normalRatio() < 1.05 + chance);
         CHECK(a.ofNormal.rms() == Approx(1).margin(0.05 + chance));
         CHECK(a.distanceRatio() < 1.05 + 1.5*chance);

@@ -84,8 +84,7 @@ TEST_CASE("Rigs of one to four cameras from crude starts", "[rig_glass][slow]")
 
 TEST_CASE("Rigs of one to eight cameras from crude starts", "[.crude]")
 {
-    const char* given = std::getenv("TRIALS");
-    const int rigs = given ? std::atoi(given) : 100;
+    const int rigs = trials(100);
     for (const std::vector<int>& windows : { std::vector<int>{ 0 }, { 0, 1 }, { 0, 0 }, { 0, 1, 2, 3 }, { 0, 0, 1, 1 },
                                              { 0, 0, 0, 0 }, { 0, 1, 2, 3, 4, 5, 6, 7 }, { 0, 0, 0, 0, 0, 0, 0, 0 } })
     {

@@ -165,6 +165,32 @@ TEST_CASE("A wrong constant moves all views alike and is not taken for moved boa
     CHECK(countStatus(call.imageStatus, GLASS_IMAGE_USED) == 32);
 }
 
+TEST_CASE("A start far off does not make boards look moved", "[robust]")
+{
+    for (unsigned salt : { 0u, 1u, 2u, 3u })
+    {
+        Random random(748 + salt);
+        CAPTURE(seed(), salt);
+        RigTruth truth = makeRig(4, { 0, 1, 2, 3 }, 1.333);
+        for (const Ptr<RefractiveCamera>& camera : truth.cameras)
+        {
+            GlassWindow window = camera->window();
+            window.distance *= 3;
+            camera->setWindow(window);
+        }
+        const RigScene scene = makeRigScene(truth, 10, random, 0.1);
+        RigCall call(truth, scene, true);
+        for (const Ptr<RefractiveCamera>& camera : call.cameras)
+        {
+            GlassWindow window = camera->window();
+            window.distance /= 14;
+            camera->setWindow(window);
+        }
+        call.run(GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS | GLASS_ROBUST);
+        CHECK(countStatus(call.imageStatus, GLASS_IMAGE_USED) == 80);
+    }
+}
+
 TEST_CASE("A robust fit of images of which most show something else refuses; flags = 0 takes all points", "[robust]")
 {
     Rig rig(4, 750);

@@ -7,12 +7,6 @@ using namespace scenes;
 
 namespace {
 
-int trials(int standard)
-{
-    const char* given = std::getenv("TRIALS");
-    return given ? std::atoi(given) : standard;
-}
-
 //! A camera and a target of which some pixels are wrong.
 struct WrongMatches
 {

@@ -7,12 +7,6 @@ using namespace scenes;
 
 namespace {
 
-int trials(int standard)
-{
-    const char* given = std::getenv("TRIALS");
-    return given ? std::atoi(given) : standard;
-}
-
 //! Two cameras before a scene, and what they should find.
 struct Matched
 {

@@ -1,5 +1,5 @@
 // The manual: what --help prints first.
-static const char MANUAL[] = R"(Calibrates the flat window in front of one camera or of a stereo pair.
+static const char MANUAL[] = R"(Calibrates the flat windows in front of one camera, a stereo pair or a rig of up to 16 cameras.
 
   refract_calib --pattern=chessboard --size=6x5 --square=39
       --direct='direct/*.png' --glass='glass/*.png' --thickness=20 --index=1.5437 --out=calib.yml --report=report.html
@@ -7,9 +7,17 @@ static const char MANUAL[] = R"(Calibrates the flat window in front of one camer
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
 and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
 or more direct images in all: these serve the lens, unless --camera gives it, in one fit with the window, so that the lens's
-uncertainty is in every +-. With --direct2 and --glass2 the same name means the same moment in both cameras.
+uncertainty is in every +-. With --direct2 and --glass2 (to --direct16 and --glass16, and --camera2 to --camera16) the same name
+means the same moment in all cameras. Each camera looks through its own window, unless --shared-window (all through one) or
+--window-of-camera=1,1,2,2 (cameras 1 and 2 through one, 3 and 4 through another) says otherwise.
 
-Where an image glob stands, an mrcal corners.vnl may stand instead (then --image-size is needed).
+Where an image glob stands, an mrcal corners.vnl or a points.csv may stand instead (then --image-size is needed). points.csv,
+for any target, flat or not, each view its own: view,x,y,z,u,v, one row an observed point, `view` in place of the file's stem;
+what several cameras see is matched by view and x, y, z. If all inputs are such files, --size and --square are not needed.
+
+--poses=poses.csv: the target's poses in camera 1 are known: view,rx_deg,ry_deg,rz_deg,tx,ty,tz,sigma_deg,sigma, one row a view:
+rotation vector, translation, and their standard deviations about and along each axis (none: exact). Lengths in --unit, or in
+that of the name (tx_mm); the rotation may also be rx_rad,... or the matrix r11,r12,...,r33.
 
 Judge the result by the held-out boards (calibrated on the others in turn), not by the residuals of the fit: the table,
 --summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
@@ -23,6 +31,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "calibrate/data_checks.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
+#include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -34,8 +43,10 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
 #include "report/thumbnails.hpp"
+#include <cmath>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <regex>
 
 using namespace cv::refract;
@@ -47,11 +58,11 @@ struct Options
 {
     TargetOptions target;
     RigSources images;
-    std::string camera[2];
-    std::string thickness, index, imageSize, out, summary, report, pinholeOut, lens = "opencv5";
+    PerCamera<std::string> camera;
+    std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
     double innerIndex = 1., outerIndex = 1., distance = 0., thicknessStd = 0., indexStd = 0.;
     std::vector<std::string> free;
-    bool distanceGiven = false, unpaired = false, sharedWindow = false, stereo = false, crossValidation = true, robust = true;
+    bool distanceGiven = false, unpaired = false, sharedWindow = false, crossValidation = true, robust = true;
     Limits limits;
     Label label;
     std::string unit = "mm";
@@ -87,13 +98,18 @@ Options parseOptions(Command& command)
     Options o;
     std::vector<std::string> maxErrors, notes;
     CLI::App& app = command.app;
-    o.target.addTo(app, true);
-    app.add_option("--direct", o.images.direct[0], "images without the window: glob or corners.vnl");
-    app.add_option("--glass", o.images.glass[0], "images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct2", o.images.direct[1], "the same of camera 2");
-    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "the same of camera 2");
-    app.add_option("--camera", o.camera[0], "lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
-    app.add_option("--camera2", o.camera[1], "lens of camera 2");
+    o.target.addTo(app, false);
+    o.images.addTo(app, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
+    CLI::Option* glass2 = app.get_option("--glass2");
+    for (int c = 0; c < MAX_CAMERAS; c++)
+    {
+        CLI::Option* camera = app.add_option("--camera" + cameraSuffix(c), o.camera[c], c ? "lens of camera " + cameraSuffix(c)
+            : "lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
+        if (c)
+            camera->needs(app.get_option("--glass" + cameraSuffix(c)));
+        if (c > 1)
+            camera->group("");              // told in the manual
+    }
     app.add_option("--lens", o.lens, "lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
@@ -107,12 +123,16 @@ Options parseOptions(Command& command)
         "where it is needed and not given, it is estimated");
     app.add_option("--free", o.free, "what to estimate beside the normal")->delimiter(',')
         ->check(CLI::IsMember(namesOf(FREE)));
-    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
+    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
     app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
         "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
         ->needs(unpaired)->excludes(glass2);
-    app.add_flag("--shared-window", o.sharedWindow, "both cameras look through the same pane")->needs(glass2);
+    CLI::Option* shared = app.add_flag("--shared-window", o.sharedWindow, "all cameras look through the same pane")
+        ->needs(glass2);
+    app.add_option("--window-of-camera", o.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
+        "one pane (default: each has its own)")->needs(glass2)->excludes(shared);
+    app.add_option("--poses", o.poses, "known poses of the target in camera 1: poses.csv")->excludes(unpaired);
     app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--summary", o.summary, "JSON file with everything that the table and the report say");
     app.add_option("--report", o.report, "HTML page to judge the calibration by, and to keep (needs gnuplot)");
@@ -137,9 +157,10 @@ Options parseOptions(Command& command)
     for (const std::string& text : notes)
         o.label.notes.push_back(parseNote(text));
     o.distanceGiven = distance->count() > 0;
-    o.stereo = glass2->count() > 0;
-    if (!o.stereo && !(o.images.direct[1].empty() && o.camera[1].empty()))
-        throw Failure("--direct2 and --camera2 need --glass2: give the images of camera 2 through the window");
+    for (int c = 0; c < o.images.cameraCount(); c++)
+        if (o.images.glass[c].empty())
+            throw Failure(format("--glass%d is given, but no --glass%d: number the cameras 1, 2, 3, ... without a gap",
+                                 o.images.cameraCount(), c + 1));
     return o;
 }
 
@@ -169,8 +190,29 @@ void requireMaterials(const Options& o, const GlassWindow& window)
             throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
 }
 
+//! Which window each camera looks through; empty: each has its own.
+std::vector<int> readWindowsOfCameras(const Options& o)
+{
+    const int cameras = o.images.cameraCount();
+    if (o.sharedWindow)
+        return std::vector<int>(cameras, 0);
+    if (o.windowOfCamera.empty())
+        return {};
+    std::vector<int> windows;
+    for (double number : parseNumbers(o.windowOfCamera, "--window-of-camera"))
+    {
+        if (number != std::floor(number) || std::abs(number) > 1e6)
+            throw Failure("--window-of-camera=" + o.windowOfCamera + ": give whole numbers, as 1,1,2,2");
+        windows.push_back((int)number);
+    }
+    if ((int)windows.size() != cameras)
+        throw Failure(format("--window-of-camera=%s has %zu numbers, but there are %d cameras: give one for each",
+                             o.windowOfCamera.c_str(), windows.size(), cameras));
+    return windows;
+}
+
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
-void readWindow(const Options& o, double square, RigOptions& rig)
+void readWindow(const Options& o, RigOptions& rig)
 {
     GlassWindow& window = rig.window;
     if (!o.thickness.empty())
@@ -181,8 +223,9 @@ void readWindow(const Options& o, double square, RigOptions& rig)
     window.outerIndex = o.outerIndex;
     for (const std::string& name : o.free)
         rig.flags |= FREE.at(name);
-    if (o.sharedWindow)
-        rig.flags |= GLASS_SHARED_WINDOW;
+    rig.windows = readWindowsOfCameras(o);
+    if (!o.poses.empty())
+        rig.flags |= GLASS_USE_POSES;
 
     const bool equalMedia = o.innerIndex == o.outerIndex;
     if (window.thickness.size() != window.index.size())
@@ -198,15 +241,14 @@ void readWindow(const Options& o, double square, RigOptions& rig)
                       "on the image and cannot be found; leave it out");
     if (!equalMedia && !o.distanceGiven)
         rig.flags |= GLASS_FREE_DISTANCE;
-    // Away from its bound, 0; the fit does the rest.
-    window.distance = o.distanceGiven || equalMedia ? o.distance : square;
+    window.distance = o.distance;
     window.check();
 }
 
-void readImages(const Options& o, const Target& target, bool quiet, RigCalibration& c)
+void readImages(const Options& o, const Target* target, bool quiet, RigCalibration& c)
 {
-    const cv::Size size = o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size");
-    const cv::Size sizes[] = {size, size};
+    PerCamera<cv::Size> sizes;
+    sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
     const RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
     for (const ViewSet* set : sets.all())
     {
@@ -216,6 +258,11 @@ void readImages(const Options& o, const Target& target, bool quiet, RigCalibrati
     if (!o.unpaired)
         requirePairs(sets);
     c.data = pairViews(target, sets, o.unpaired);
+    if (!o.poses.empty())
+    {
+        readPoses(o.poses, o.unit, c.data);
+        c.inputs.push_back(o.poses);
+    }
     c.notices = noticesOf(sets, c.data);
     c.photos = photosOf(sets);
 }
@@ -250,27 +297,32 @@ std::string inOptions(std::string text)
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     RigCalibration c;
-    const Target target(o.target);
-    readWindow(o, target.square(), c.options);
+    std::unique_ptr<const Target> target;
+    if (o.target.given())
+        target = std::make_unique<Target>(o.target);
+    readWindow(o, c.options);
     c.options.lensCoefficients = LENSES.at(o.lens);
     c.options.thicknessStd = o.thicknessStd;
     c.options.indexStd = o.indexStd;
     c.limits = o.limits;
     c.label = o.label;
     c.unit = o.unit;
-    c.square = target.square();
+    c.square = target ? target->square() : 0.;
     c.crossValidated = o.crossValidation;
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < MAX_CAMERAS; k++)
         if (!o.camera[k].empty())
         {
-            // A rig's file may serve for both cameras.
-            const KnownLens lens = readLens(o.camera[k], k == 1 && o.camera[1] == o.camera[0] ? "camera2" : "");
+            // A rig's file may serve for all cameras.
+            const bool again = k > 0 && o.camera[k] == o.camera[0];
+            const KnownLens lens = readLens(o.camera[k], again ? "camera" + cameraSuffix(k) : "");
             c.options.known[k] = lens.camera;
             c.options.knownCovariance[k] = lens.covariance;
             c.inputs.push_back(o.camera[k]);
         }
-    readImages(o, target, quiet, c);
-    const Given given{c.data, c.options, target.square(), c.notices};
+    readImages(o, target.get(), quiet, c);
+    if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
+        c.options.window.distance = startDistance(c.data, c.square);
+    const Given given{c.data, c.options, c.square, c.notices};
     Progress progress("calibrating", 5, quiet);
     try
     {
@@ -302,9 +354,12 @@ void checkOutputs(const Options& o)
 {
     if (!o.report.empty())
         Plot::checkAvailable();
+    std::vector<std::string> inputs = o.images.all();
+    inputs.insert(inputs.end(), o.camera.begin(), o.camera.end());
+    inputs.push_back(o.poses);
     tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
                          {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
-                        {o.images.direct[0], o.images.glass[0], o.images.direct[1], o.images.glass[1], o.camera[0], o.camera[1]});
+                        inputs);
 }
 
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)

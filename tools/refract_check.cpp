@@ -47,10 +47,7 @@ void addOptions(CLI::App& app, Options& o)
     o.target.addTo(app, true);
     app.add_option("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")
         ->check(CLI::IsMember(unitNames()));
-    app.add_option("--glass", o.images.glass[0], "new images through the window: glob or corners.vnl")->required();
-    app.add_option("--direct", o.images.direct[0], "new images without the window");
-    CLI::Option* glass2 = app.add_option("--glass2", o.images.glass[1], "the same of camera 2");
-    app.add_option("--direct2", o.images.direct[1], "the same of camera 2")->needs(glass2);
+    o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
     app.add_option("--false-alarm", o.falseAlarm, "probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
         ->capture_default_str();
@@ -63,10 +60,7 @@ void addOptions(CLI::App& app, Options& o)
 CheckBasis basisOf(const Options& o, const Calibration& calibration)
 {
     CheckBasis basis;
-    for (const CameraCalibration& camera : calibration.cameras)
-        basis.rig.cameras.push_back(camera.camera);
-    basis.rig.R = calibration.R;
-    basis.rig.T = calibration.T;
+    basis.rig = modelOf(calibration);
     basis.covariance = calibration.covariance;
     basis.sigma = o.sigma > 0 ? o.sigma : pixelSigmaOf(calibration);
     basis.freedom = o.sigma > 0 || !(calibration.freedom > 0) ? EXACT : calibration.freedom;
@@ -82,19 +76,22 @@ CheckBasis basisOf(const Options& o, const Calibration& calibration)
 //! One image each is of one moment, whatever the names.
 void nameSingles(RigViewSets& sets)
 {
-    const std::vector<ViewSet*> all = {&sets.direct[0], &sets.glass[0], &sets.direct[1], &sets.glass[1]};
-    if (std::all_of(all.begin(), all.end(), [](const ViewSet* set) { return set->files.size() <= 1 && set->views.size() <= 1; }))
-        for (ViewSet* set : all)
-            for (DetectedView& view : set->views)
-                view.stem = stemOf(sets.glass[0].views[0].path);
+    const std::vector<const ViewSet*> all = sets.all();
+    if (std::any_of(all.begin(), all.end(), [](const ViewSet* set) { return set->files.size() > 1 || set->views.size() > 1; }))
+        return;
+    const std::string name = stemOf(sets.glass[0].views[0].path);
+    for (PerCamera<ViewSet>* images : {&sets.direct, &sets.glass})
+        for (ViewSet& set : *images)
+            for (DetectedView& view : set.views)
+                view.stem = name;
 }
 
 //! Direct images that have no glass image of their name are of no use here, and those are rarely meant.
 void requirePairs(const Options& o, const RigViewSets& sets, const Command& command)
 {
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
     {
-        const std::string number = c ? "2" : "";
+        const std::string number = cameraSuffix(c);
         std::string alone;
         int count = 0;
         for (const DetectedView& view : sets.direct[c].views)
@@ -119,17 +116,18 @@ void sayMissing(const RigViewSets& sets, const Command& command)
 
 std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
 {
-    if (!o.images.glass[1].empty() && !calibration.stereo())
-        throw Failure("'" + o.calibration + "' has one camera: leave --glass2 out");
-    cv::Size sizes[2];
+    const int count = (int)calibration.cameras.size(), given = o.images.cameraCount();
+    if (given > count)
+        throw Failure(format("'%s' has %d camera%s: leave --glass%d out", o.calibration.c_str(), count, count == 1 ? "" : "s", given));
+    PerCamera<cv::Size> sizes;
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
-    RigViewSets sets = readViewSets(o.images, target, sizes, command.quiet());
+    RigViewSets sets = readViewSets(o.images, &target, sizes, command.quiet());
     nameSingles(sets);
     requirePairs(o, sets, command);
     sayMissing(sets, command);
     std::vector<Moment> moments;
-    for (const Moment& m : pairViews(target, sets, false).moments)
+    for (const Moment& m : pairViews(&target, sets, false).moments)
         if (m.hasGlass())
             moments.push_back(m);
     return moments;
@@ -164,7 +162,7 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis
         if (power >= CERTAIN)
             continue;
         const int times = imagesNeeded(window, result.windows.size(), o, basis.freedom);
-        const bool pairs = !o.images.direct[0].empty() || !o.images.direct[1].empty();
+        const bool pairs = o.images.anyDirect();
         const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
@@ -218,12 +216,12 @@ int main(int argc, char** argv)
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, false, "");
         requireSameUnit(calibration, target.square(), options.unit);
-        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}},
-                     {options.calibration, options.images.glass[0], options.images.glass[1], options.images.direct[0],
-                      options.images.direct[1]});
+        std::vector<std::string> inputs = options.images.all();
+        inputs.push_back(options.calibration);
+        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
         const CheckBasis basis = basisOf(options, calibration);
         const std::vector<Moment> moments = readMoments(options, calibration, target, command);
-        const CheckResult result = checkTilts(basis, target.objectPoints(), moments, options.falseAlarm);
+        const CheckResult result = checkTilts(basis, moments, options.falseAlarm);
         const bool moved = anyMoved(result);
         const std::string why = whyNot(result, options, basis), verdict = verdictOf(moved, why);
         if (!options.summary.empty())

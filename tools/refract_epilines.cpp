@@ -1,4 +1,5 @@
 #include "assess/measurement.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 #include "console/outputs.hpp"
@@ -39,7 +40,7 @@ struct Options
 std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& points, const cv::Vec2d& depth)
 {
     std::vector<cv::Mat> lines;
-    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.R, rig.T, depth,
+    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.Rs[1], rig.Ts[1], depth,
                                            lines);
     std::vector<Curve> curves;
     for (const cv::Mat& line : lines)
@@ -92,7 +93,7 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
 {
     double near = std::numeric_limits<double>::infinity(), far = 0;
     if (!partners.empty())
-        for (const cv::Point3d& p : measureStereo(rig, points, partners, 0.).points)
+        for (const cv::Point3d& p : measureRig(rig, {points, partners}, 0.).points)
             if (p.z > 0)
             {
                 near = std::min(near, p.z);
@@ -100,7 +101,7 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
             }
     if (far > 0)
         return cv::Vec2d(0.92*near, 1.08*far);
-    return cv::Vec2d(cv::norm(rig.T), std::numeric_limits<double>::infinity());
+    return cv::Vec2d(cv::norm(rig.Ts[1]), std::numeric_limits<double>::infinity());
 }
 
 cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)
@@ -172,13 +173,14 @@ int main(int argc, char** argv)
         if (options.points.empty() == !options.target.given())
             throw Failure("give either --points=FILE or a target (--size, --square)");
 
-        const Calibration rig = readCalibration(options.calibration);
+        Calibration rig = readCalibration(options.calibration);
         requireWindows(rig, options.calibration, options.noWindow);
         checkOutputs({{"--out", options.out, OUTPUT_PICTURE}},
                      {options.calibration, options.image1, options.image2, options.points});
-        if (!rig.stereo())
+        if (rig.single())
             throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
                           "(refract_calib --direct2 --glass2)");
+        rig = firstPair(rig);
         const cv::Mat image1 = readRaw(options.image1, *rig.cameras[0].camera);
         const cv::Mat image2 = readRaw(options.image2, *rig.cameras[1].camera);
         std::vector<Point2d> points, partners;

@@ -2,30 +2,38 @@
 #include "assess/measurement.hpp"
 #include "assess/target_lengths.hpp"
 #include "calibrate/units.hpp"
+#include "console/csv.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "target/detected_views.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <limits>
-#include <set>
+#include <memory>
 #include <sstream>
 
 static const char MANUAL[] = R"(Measures the points of a target, in the frame of camera 1, from images through the window.
 
-  refract_measure calib.yml IMAGE1 IMAGE2 --size=6x5 --square=39 --out=points.csv     two cameras: triangulation
+  refract_measure calib.yml IMAGE1 IMAGE2 --size=6x5 --square=39 --out=points.csv     two cameras or more: triangulation
   refract_measure calib.yml IMAGE --plane=0,0,1,600 --size=... --square=...           one camera: points on a plane
   refract_measure calib.yml IMAGE --size=... --square=...                             one camera: pose of the target
+  refract_measure calib.yml --points=pixels.csv --out=points.csv                      points that are no target
 
-IMAGE may be a quoted glob ('measure1/*.png') or a corners.vnl; images of two cameras belong together when their file
-stems are equal. Images without target or without partner are skipped, and named on stderr.
+IMAGE may be a quoted glob ('measure1/*.png'), a corners.vnl or a points.csv (view,x,y,z,u,v; then no target need be said);
+images of different cameras belong together when their file stems are equal; '' stands for a camera that took none. Images
+without target or without partner are skipped, and named on stderr.
 
-points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point of the target; image is the file's stem (of camera 1), id
-counts within the target; s* is one standard deviation, from the pixel noise that the calibration found and from the
-calibration's own covariance, which calib.yml holds; nan where there is no answer. status: 0 fine; 1 to 8 why there is no
-answer (RefractiveStatus); 9 the pixels contradict each other by more than 5 standard deviations of noise and calibration: the
+--points: a table with the heading id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a
+camera did not see it. With --plane the u1,v1 will do.
+
+points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point (rigs of more cameras go on with u3,v3,... after v2);
+image is the file's stem (of camera 1), id counts within the target or is that of --points; s* is one standard deviation, from
+the pixel noise that the calibration found and from the calibration's own covariance, which calib.yml holds; nan where there is
+no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 1 also where fewer than two cameras saw the point);
+9 the pixels contradict each other by more than 5 standard deviations of noise and calibration: the
 point has the s* of that misfit, and far beyond it is nan; of a pose that its points contradict, all s* are nan. Look for
 swapped images, images of two moments, a moved camera.
 
@@ -37,25 +45,30 @@ or the distances between neighbouring points are on average more than 20 % off.)
 namespace {
 
 using namespace tools;
+namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, image1, image2, plane, out;
+    std::string calibration, points, plane, out;
+    std::vector<std::string> images;            //!< of each camera; empty: it took none
     std::vector<std::string> compareWith;
     TargetOptions target;
     double pixelSigma = 0.;
     bool compare = false, noWindow = false;
     std::string unit;
 
-    //! From the pose of a target of known shape, the distances come out as they went in.
-    bool lengthsMeasured() const { return !image2.empty() || !plane.empty(); }
+    bool triangulates() const { return plane.empty() && (images.size() > 1 || !points.empty()); }
+    //! From the pose of a target of known shape, the distances come out as they went in; other points have no known ones.
+    bool lengthsMeasured() const { return target.given() && (triangulates() || !plane.empty()); }
 };
 
-//! One view by one or two cameras.
+//! What the cameras saw of one moment, and what its points are called.
 struct Sight
 {
-    std::string stem;
-    std::vector<cv::Point2d> pixels1, pixels2;
+    Moment moment;
+    std::vector<std::string> ids;
+
+    const std::string& stem() const { return moment.stem; }
 };
 
 void sayMissing(const ViewSet& set, const std::string& which, const Command& command)
@@ -64,55 +77,102 @@ void sayMissing(const ViewSet& set, const std::string& which, const Command& com
         command.warn("skipped" + which + ", as the target was not found: " + listed(set.withoutTarget));
 }
 
-void sayAlone(const std::vector<std::string>& stems, int camera, int other, const Command& command)
+//! Moments that a single camera has say nothing.
+void sayAlone(const std::vector<Moment>& moments, size_t cameras, const Command& command)
 {
-    if (!stems.empty())
-        command.warn(format("skipped of camera %d, as camera %d has no image of that name with the target: ", camera, other)
-                     + listed(stems));
+    for (size_t c = 0; c < cameras; c++)
+    {
+        std::vector<std::string> alone;
+        for (const Moment& m : moments)
+            if (m.countGlass() == 1 && m.hasGlass((int)c))
+                alone.push_back(m.stem);
+        if (!alone.empty())
+            command.warn(format("skipped of camera %zu, as ", c + 1)
+                         + (cameras == 2 ? format("camera %zu has no", 2 - c) : std::string("no other camera has an"))
+                         + " image of that name with the target: " + listed(alone));
+    }
 }
 
-std::vector<Sight> readSights(const Options& options, const Calibration& calibration, const Target& target,
+//! One image each is of one moment, whatever the names.
+void nameSingles(RigViewSets& sets)
+{
+    std::string name;
+    for (ViewSet& set : sets.glass)
+        if (set.files.size() > 1 || set.views.size() > 1)
+            return;
+    for (ViewSet& set : sets.glass)
+        for (DetectedView& view : set.views)
+            view.stem = name = name.empty() ? view.stem : name;
+}
+
+Sight sightOf(const Moment& moment)
+{
+    Sight sight{moment, {}};
+    for (size_t i = 0; i < moment.objectPoints.size(); i++)
+        sight.ids.push_back(std::to_string(i));
+    return sight;
+}
+
+std::vector<Sight> readImages(const Options& options, const Calibration& calibration, const Target* target,
                               const Command& command)
 {
-    const auto readOf = [&](const std::string& source, int c) {
-        return readViews(source, target, calibration.cameras[c].camera->imageSize(), command.quiet());
-    };
-    const ViewSet first = readOf(options.image1, 0);
+    RigSources sources;
+    PerCamera<cv::Size> sizes;
+    std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        sizes[c] = calibration.cameras[c].camera->imageSize();
+    RigViewSets sets = readViewSets(sources, target, sizes, command.quiet());
+    for (size_t c = 0; c < options.images.size(); c++)
+        sayMissing(sets.glass[c], options.images.size() == 1 ? "" : format(" of camera %zu", c + 1), command);
+    if (options.triangulates())
+        nameSingles(sets);
+    const std::vector<Moment> moments = pairViews(target, sets, false, 1).moments;
     std::vector<Sight> sights;
-    if (options.image2.empty())
-    {
-        sayMissing(first, "", command);
-        for (const DetectedView& view : first.views)
-            sights.push_back({view.stem, view.points, {}});
-        return sights;
-    }
-    const ViewSet second = readOf(options.image2, 1);
-    const bool single = first.files.size() == 1 && second.files.size() == 1 && first.views.size() == 1
-                        && second.views.size() == 1;        // a pair whatever the names
-    std::vector<std::string> alone1, alone2;
-    std::set<std::string> paired;
-    for (const DetectedView& view : first.views)
-    {
-        const DetectedView* other = single ? &second.views[0] : second.find(view.stem);
-        if (!other)
-        {
-            alone1.push_back(view.stem);
-            continue;
-        }
-        paired.insert(other->stem);
-        sights.push_back({view.stem, view.points, target.alignWith(view.points, other->points)});
-    }
-    for (const DetectedView& view : second.views)
-        if (!paired.count(view.stem))
-            alone2.push_back(view.stem);
-    if (sights.empty())
-        throw Failure("no image of '" + options.image1 + "' has the name of one of '" + options.image2
+    for (const Moment& m : moments)
+        if (m.countGlass() > 1 || !options.triangulates())
+            sights.push_back(sightOf(m));
+    if (sights.empty() && options.images.size() == 2)
+        throw Failure("no image of '" + options.images[0] + "' has the name of one of '" + options.images[1]
                       + "': images of one moment need equal names");
-    sayMissing(first, " of camera 1", command);
-    sayMissing(second, " of camera 2", command);
-    sayAlone(alone1, 1, 2, command);
-    sayAlone(alone2, 2, 1, command);
+    if (sights.empty())
+        throw Failure("no two cameras have images of one name with the target: images of one moment need equal names");
+    if (options.triangulates())
+        sayAlone(moments, options.images.size(), command);
     return sights;
+}
+
+//! Points that are no target.
+std::vector<Sight> readPoints(const Options& options, const Calibration& calibration)
+{
+    const CsvTable table(options.points, {"id", "u1", "v1"}, "a file of image points");
+    Sight sight;
+    sight.moment.stem = stemOf(options.points);
+    const int cameras = (int)calibration.cameras.size();
+    if (table.find(format("u%d", cameras + 1)) >= 0)
+        throw Failure(format("'%s' has pixels of camera %d, the calibration '%s' has %d camera%s", options.points.c_str(),
+                             cameras + 1, options.calibration.c_str(), cameras, cameras == 1 ? "" : "s"));
+    for (const CsvTable::Row& row : table.rows())
+    {
+        sight.ids.push_back(table.text(row, "id"));
+        sight.moment.objectPoints.emplace_back();
+        for (int c = 0; c < cameras; c++)
+        {
+            const std::string u = format("u%d", c + 1), v = format("v%d", c + 1);
+            if (table.find(u) < 0 || table.find(v) < 0)
+                continue;
+            const cv::Point2d pixel(table.numberOrNone(row, u), table.numberOrNone(row, v));
+            if (seen(pixel) != (pixel.x == pixel.x || pixel.y == pixel.y))
+                throw Failure(table.where(row) + ": " + u + " and " + v + " must both be numbers, or both empty");
+            sight.moment.glass[c].push_back(pixel);
+        }
+    }
+    return {sight};
+}
+
+std::vector<Sight> readSights(const Options& options, const Calibration& calibration, const Target* target,
+                              const Command& command)
+{
+    return options.points.empty() ? readImages(options, calibration, target, command) : readPoints(options, calibration);
 }
 
 double pixelSigma(const Options& options, const Calibration& calibration)
@@ -120,29 +180,28 @@ double pixelSigma(const Options& options, const Calibration& calibration)
     return options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
 }
 
-Measurement measure(const Options& options, const Calibration& calibration, const Target& target, const Sight& sight)
+Measurement measure(const Options& options, const Calibration& calibration, const Sight& sight)
 {
     const double sigma = pixelSigma(options, calibration);
-    if (!sight.pixels2.empty())
-        return measureStereo(calibration, sight.pixels1, sight.pixels2, sigma);
+    if (options.triangulates())
+        return measureRig(calibration, glassPixels(sight.moment, (int)calibration.cameras.size()), sigma);
     if (options.plane.empty())
-        return measureTarget(calibration, target, sight.pixels1, sigma);
-    return measureOnPlane(calibration, sight.pixels1, parsePlane(options.plane), sigma);
+        return measureTarget(calibration, sight.moment.objectPoints, sight.moment.glass[0], sigma);
+    return measureOnPlane(calibration, sight.moment.glass[0], parsePlane(options.plane), sigma);
 }
 
-std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const Target& target,
-                                    const std::vector<Sight>& sights)
+std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights)
 {
     std::vector<Measurement> results;
     for (const Sight& sight : sights)
-        results.push_back(measure(options, calibration, target, sight));
+        results.push_back(measure(options, calibration, sight));
     return results;
 }
 
 void judge(const Options& options, const Calibration& calibration, std::vector<Measurement>& results)
 {
     for (Measurement& m : results)
-        if (!m.pixels2.empty())
+        if (options.triangulates())
             judgePartners(calibration, pixelSigma(options, calibration), m);
         else if (options.plane.empty())
             judgePose(pixelSigma(options, calibration), m);
@@ -160,7 +219,7 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
         all += (int)m.points.size();
         if (!m.inconsistent())
             continue;
-        names.push_back(sights[i].stem);
+        names.push_back(sights[i].stem());
         points += m.inconsistent();
         for (size_t k = 0; k < m.points.size(); k++)
             nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
@@ -168,16 +227,18 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
     }
     if (names.empty())
         return "";
-    const bool pairs = !results[0].pixels2.empty();
+    const bool pairs = results[0].pixels.size() == 2, rig = results[0].pixels.size() > 1;
     const std::string left = pairs ? "the two pixels of a point miss each other by up to %.3g px"
+                             : rig ? "the pixels of a point miss each other by up to %.3g px RMS per coordinate"
                                    : "the pose leaves residuals of up to %.3g px per coordinate";
     return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
         + format(left.c_str(), pairs ? std::sqrt(2.)*worst : worst) + " (" + listed(names) + "; status 9"
         + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere)
-           : pairs ? ", large sx, sy, sz" : ", no sx, sy, sz")
+           : rig ? ", large sx, sy, sz" : ", no sx, sy, sz")
         + "). "
-        + (pairs ? "Check that left and right are not swapped, that the images of a pair are of one moment, and that no camera "
-                   "and no window has moved since the calibration"
+        + (rig ? std::string("Check that ") + (pairs ? "left and right are not swapped, that the images of a pair"
+                                                     : "the cameras are in the calibration's order, that images of one name")
+                 + " are of one moment, and that no camera and no window has moved since the calibration"
                  : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
 }
 
@@ -193,13 +254,13 @@ bool mostContradict(const std::vector<Measurement>& results)
 }
 
 //! What lengths say that are far from the target's, or empty.
-std::string wrongLengths(const Target& target, const std::vector<Measurement>& results)
+std::string wrongLengths(double square, const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
     const double FAR_OFF = 0.2;
     double sum = 0;
     int count = 0;
-    for (const Measurement& m : results)
-        for (const double ratio : lengthRatios(target, m.points))
+    for (size_t k = 0; k < results.size(); k++)
+        for (const double ratio : lengthRatios(sights[k].moment, results[k].points))
         {
             sum += ratio;
             count++;
@@ -208,7 +269,7 @@ std::string wrongLengths(const Target& target, const std::vector<Measurement>& r
         return "";
     return format("the distances between neighbouring points are on average %.3g times those of the target: is --square=%g "
                   "right, in the unit of the calibration, and are images and calibration of the same cameras?", sum/count,
-                  target.square());
+                  square);
 }
 
 void sayNoisier(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights,
@@ -220,7 +281,7 @@ void sayNoisier(const Options& options, const Calibration& calibration, const st
     for (size_t i = 0; i < results.size(); i++)
         if (!results[i].inconsistent() && results[i].noise > few*sigma)
         {
-            names.push_back(sights[i].stem);
+            names.push_back(sights[i].stem());
             worst = std::max(worst, results[i].noise);
         }
     if (!names.empty())
@@ -250,34 +311,45 @@ std::string cellOf(const std::string& text)
     return cell + "\"";
 }
 
-std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measurement>& measurements)
+std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measurement>& measurements, size_t cameras)
 {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const cv::Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
     std::ostringstream csv;
     csv.precision(12);
-    csv << "image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\n";
+    csv << "image,id";
+    cameras = std::max(cameras, (size_t)2);
+    for (size_t c = 1; c <= cameras; c++)
+        csv << ",u" << c << ",v" << c;
+    csv << ",x,y,z,sx,sy,sz,status\n";
     for (size_t k = 0; k < sights.size(); k++)
-        for (size_t i = 0; i < sights[k].pixels1.size(); i++)
+        for (size_t i = 0; i < sights[k].ids.size(); i++)
         {
             const Measurement& m = measurements[k];
-            const cv::Point2d second = m.pixels2.empty() ? cv::Point2d(nan, nan) : m.pixels2[i];
-            csv << cellOf(sights[k].stem) << ',' << i;
-            for (const double number : {m.pixels1[i].x, m.pixels1[i].y, second.x, second.y, m.points[i].x, m.points[i].y,
-                                        m.points[i].z, m.sigma[i][0], m.sigma[i][1], m.sigma[i][2]})
+            std::vector<double> numbers;
+            for (size_t c = 0; c < cameras; c++)
+            {
+                const cv::Point2d pixel = c < m.pixels.size() ? m.pixels[c][i] : none;
+                numbers.insert(numbers.end(), {pixel.x, pixel.y});
+            }
+            numbers.insert(numbers.end(), {m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0], m.sigma[i][1],
+                                           m.sigma[i][2]});
+            csv << cellOf(sights[k].stem()) << ',' << cellOf(sights[k].ids[i]);
+            for (const double number : numbers)
                 std::isnan(number) ? csv << ",nan" : csv << ',' << number;
             csv << ',' << (int)m.status[i] << '\n';
         }
     return csv.str();
 }
 
-std::vector<std::string> rowOf(const std::string& name, const Target& target, const std::vector<Measurement>& results,
-                               bool lengthsMeasured)
+std::vector<std::string> rowOf(const std::string& name, const std::vector<Sight>& sights,
+                               const std::vector<Measurement>& results, bool lengthsMeasured)
 {
     double squares = 0, sum = 0, largest = 0, near = std::numeric_limits<double>::infinity(), far = -near, depthSigma = 0;
     int lengths = 0, answers = 0, points = 0;
-    for (const Measurement& m : results)
+    for (size_t k = 0; k < results.size(); k++)
     {
-        for (const double error : lengthErrors(target, m.points))
+        const Measurement& m = results[k];
+        for (const double error : lengthErrors(sights[k].moment, m.points))
         {
             squares += error*error;
             sum += error;
@@ -316,31 +388,31 @@ std::vector<Calibration> readOthers(const Options& options, const Calibration& c
 }
 
 void printTable(const Options& options, const Calibration& calibration, const std::vector<Calibration>& others,
-                const Target& target, const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+                const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
     const bool lengthsMeasured = options.lengthsMeasured();
     Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
                                                            "mean error", "largest"}
                                 : std::vector<std::string>{"", "points", "depth z", "mean sz"});
     if (options.compare)
-        table.add(rowOf("glass ignored", target, measureAll(options, withoutWindows(calibration), target, sights),
+        table.add(rowOf("glass ignored", sights, measureAll(options, withoutWindows(calibration), sights),
                         lengthsMeasured));
     for (size_t i = 0; i < others.size(); i++)
-        table.add(rowOf(stemOf(options.compareWith[i]), target, measureAll(options, others[i], target, sights), lengthsMeasured));
+        table.add(rowOf(stemOf(options.compareWith[i]), sights, measureAll(options, others[i], sights), lengthsMeasured));
     const bool alone = !options.compare && options.compareWith.empty();
-    table.add(rowOf(alone ? "measured" : "with the window", target, results, lengthsMeasured));
+    table.add(rowOf(alone ? "measured" : "with the window", sights, results, lengthsMeasured));
     std::cout << sights.size() << (sights.size() == 1 ? " view" : " views")
               << (lengthsMeasured ? "; distances between neighbouring points, measured minus true:\n\n"
-                                  : "; points from the pose of the target:\n\n");
+              : options.triangulates() || !options.plane.empty() ? ":\n\n" : "; points from the pose of the target:\n\n");
     table.print(std::cout);
 }
 
 void addOptions(CLI::App& app, Options& options)
 {
     app.add_option("calib.yml", options.calibration, "what refract_calib wrote")->required();
-    app.add_option("IMAGE", options.image1, "of camera 1")->required();
-    app.add_option("IMAGE2", options.image2, "of camera 2");
-    options.target.addTo(app, true);
+    app.add_option("IMAGE", options.images, "of camera 1, of camera 2, ...");
+    app.add_option("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
+    options.target.addTo(app, false);
     app.add_option("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         ->check(CLI::IsMember(unitNames()));
     app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
@@ -354,11 +426,25 @@ void addOptions(CLI::App& app, Options& options)
 
 void checkCombination(const Options& options, const Calibration& calibration)
 {
-    if (!options.image2.empty() && !calibration.stereo())
-        throw Failure("'" + options.calibration + "' has one camera, but there are images of two: calibrate the pair "
-                      "(refract_calib --direct2 --glass2), or give one image");
-    if (!options.plane.empty() && !options.image2.empty())
+    const size_t cameras = calibration.cameras.size(), images = options.images.size();
+    if (options.points.empty() == (images == 0))
+        throw Failure("give images of the target, or --points=FILE");
+    if (images > cameras)
+        throw Failure(format("'%s' has %s camera%s, but there are images of %s: calibrate ", options.calibration.c_str(),
+                             cameras == 1 ? "one" : std::to_string(cameras).c_str(), cameras == 1 ? "" : "s",
+                             images == 2 ? "two" : std::to_string(images).c_str())
+                      + (images == 2 ? "the pair (refract_calib --direct2 --glass2), or give one image"
+                                     : "them together (refract_calib --glass2 --glass3 ...), or give as many as it has"));
+    if (!options.plane.empty() && images > 1)
         throw Failure("--plane is for one camera: leave it out, or give one image");
+    if (options.plane.empty() && !options.points.empty() && cameras == 1)
+        throw Failure("--points of one camera need --plane=a,b,c,d, on which they lie");
+    if (images > 0 && options.images[0].empty() && !options.triangulates())
+        throw Failure("an empty name in place of the images of camera 1: with one camera there must be some");
+    if (options.points.empty() && !options.target.given())
+        for (const std::string& image : options.images)
+            if (!image.empty() && fs::path(image).extension() != ".csv")
+                throw Failure("which target is in '" + image + "'? Give --size and --square, or --points=FILE for other points");
     if (!options.plane.empty())
         parsePlane(options.plane);
 }
@@ -369,36 +455,40 @@ int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
-        const Target target(options.target);
+        std::unique_ptr<const Target> target;
+        if (options.target.given())
+            target = std::make_unique<Target>(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
-        requireSameUnit(calibration, target.square(), options.unit);
+        if (target)
+            requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);
-        std::vector<std::string> inputs = {options.calibration, options.image1, options.image2};
+        std::vector<std::string> inputs = {options.calibration, options.points};
+        inputs.insert(inputs.end(), options.images.begin(), options.images.end());
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
         const std::vector<Calibration> others = readOthers(options, calibration);
-        const std::vector<Sight> sights = readSights(options, calibration, target, command);
-        std::vector<Measurement> results = measureAll(options, calibration, target, sights);
+        const std::vector<Sight> sights = readSights(options, calibration, target.get(), command);
+        std::vector<Measurement> results = measureAll(options, calibration, sights);
         judge(options, calibration, results);
         const std::string contradiction = contradictionIn(sights, results);
         int answers = 0;
         for (const Measurement& m : results)
             answers += m.answers();
         if (!answers)
-            throw Failure(contradiction.empty() ? "no point of the target could be measured: are images and calibration of the "
+            throw Failure(contradiction.empty() ? "no point could be measured: are images and calibration of the "
                                                   "same cameras?" : contradiction);
         if (!contradiction.empty())
             command.warn(contradiction);
-        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target, results) : "";
+        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), sights, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
         sayNoisier(options, calibration, sights, results, command);
         sayUncovered(options, calibration, command);
         if (!options.out.empty())
-            writeText(options.out, csvOf(sights, results));
+            writeText(options.out, csvOf(sights, results, calibration.cameras.size()));
         if (!command.quiet())
-            printTable(options, calibration, others, target, sights, results);
+            printTable(options, calibration, others, sights, results);
         return mostContradict(results) || !lengths.empty() ? LIMIT_NOT_MET : DONE;
     });
 }

@@ -6,6 +6,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 
 static const char MANUAL[] = R"(Renders images of a calibration target or a textured scene seen through flat windows, and the truth.
@@ -13,22 +14,24 @@ static const char MANUAL[] = R"(Renders images of a calibration target or a text
   refract_simulate RIG.yml --out-dir=DIR
 
 Each pixel's ray is traced through lens and window to the target; edges are anti-aliased; then blur, vignetting, noise
-and 8 bits. Writes DIR/SET/STEM.png (two cameras: DIR/SET1, DIR/SET2) and DIR/truth.yml: target, cameras, R and T as
-given, and for each image the pose of the target in camera 1 and the exact pixels of its points.
+and 8 bits. Writes DIR/SET/STEM.png (several cameras: DIR/SET1, DIR/SET2, ...) and DIR/truth.yml: target, cameras, R and T as
+given, and for each image the pose of the target in camera 1 and the exact pixels of its points; and DIR/poses.csv, those
+poses as refract_calib --poses takes them.
 Of a scene: DIR/SET/scene.png, in colour, and DIR/SET/scene_depth.tiff, float32: z in the frame of the image's camera of
 what the pixel's centre sees; NaN where it sees nothing.
 The same RIG.yml gives the same images.
 
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
 
-  target: { pattern: chessboard, size: 6x5, square: 39. }     # or circles, acircles, charuco (with
+  target: { pattern: chessboard, size: "6x5", square: 39. }   # or circles, acircles, charuco (with
                          # marker: side, dictionary: DICT_4X4_250)
   camera1: { image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window }
-  camera2: { ... }       # as in calib.yml; one camera: its keys at top level instead
-  R, T                   # camera 1 -> camera 2
+  camera2: { ... }       # as in calib.yml, up to camera16; one camera: its keys at top level instead
+  R, T                   # camera 1 -> camera 2; R3, T3: camera 1 -> camera 3; ...
   exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
   seed: 1
-  poses:                 # of the target in camera 1, by name: given, or drawn so that all cameras see all points
+  poses:                 # of the target in camera 1, by name: given, or drawn so that all cameras see all points (with
+                         # seen_by: N in the braces, N of them)
     board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] } ]
     pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }
   scene:                 # in place of target and poses, or beside them; in the frame of camera 1
@@ -68,7 +71,7 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
     for (const ImageSet& set : scene.sets)
         for (int camera = 0; camera < (int)scene.cameras.cameras.size(); camera++)
         {
-            const std::string folder = set.name + (scene.cameras.stereo() ? std::to_string(camera + 1) : "") + "/";
+            const std::string folder = set.name + (scene.cameras.single() ? "" : std::to_string(camera + 1)) + "/";
             if (set.scene)
                 jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {},
                                 folder + "scene_depth.tiff", {}});
@@ -90,18 +93,12 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
 
 BoardPose poseOf(const Scene& scene, const Job& job)
 {
-    return job.camera ? inSecondCamera(job.pose, scene.cameras.R, scene.cameras.T) : job.pose;
+    return inOtherCamera(job.pose, scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera]);
 }
 
 Viewpoint viewOf(const Scene& scene, const Job& job)
 {
-    Viewpoint view{cameraOf(scene, job), cv::Matx33d::eye(), cv::Vec3d()};
-    if (job.camera == 1)
-    {
-        view.R = scene.cameras.R;
-        view.T = scene.cameras.T;
-    }
-    return view;
+    return {cameraOf(scene, job), scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera]};
 }
 
 //! Before anything is written, as a camera that sees nothing is a mistake in the file.
@@ -124,22 +121,6 @@ void writeTarget(FileStorage& fs, const TargetOptions& options, const Target& ta
     if (target.pattern() == Target::CHARUCO)
         fs << "marker" << options.marker << "dictionary" << options.dictionary;
     fs << "}";
-}
-
-void writeCameras(FileStorage& fs, const Calibration& rig)
-{
-    if (!rig.stereo())
-    {
-        rig.cameras[0].camera->write(fs);
-        return;
-    }
-    for (int i = 0; i < 2; i++)
-    {
-        fs << "camera" + std::to_string(i + 1) << "{";
-        rig.cameras[i].camera->write(fs);
-        fs << "}";
-    }
-    fs << "R" << cv::Mat(rig.R) << "T" << cv::Mat(rig.T);
 }
 
 //! The list of all views of the target, or of all of the scene.
@@ -172,13 +153,29 @@ void writeTruth(const std::string& path, const Scene& scene, const Target* targe
     fs << "command" << command;
     if (target)
         writeTarget(fs, scene.target, *target);
-    writeCameras(fs, scene.cameras);
+    writeRig(fs, calibrationOf(modelOf(scene.cameras)));
     if (target)
         writeViews(fs, scene, target, jobs);
     if (!scene.surfaces.surfaces.empty())
         writeViews(fs, scene, nullptr, jobs);
     fs.release();
     file.commit();
+}
+
+//! The poses of the target as refract_calib takes them, each once.
+void writePoses(const std::string& path, const std::vector<Job>& jobs)
+{
+    std::map<std::string, BoardPose> poses;
+    for (const Job& job : jobs)
+        if (!job.isOfScene())
+            poses[job.stem] = job.pose;
+    std::string text = "view,rx_deg,ry_deg,rz_deg,tx,ty,tz\n";
+    for (const auto& entry : poses)
+    {
+        const cv::Vec3d r = entry.second.rvec*(180./CV_PI), t = entry.second.tvec;
+        text += entry.first + cv::format(",%.15g,%.15g,%.15g,%.15g,%.15g,%.15g\n", r[0], r[1], r[2], t[0], t[1], t[2]);
+    }
+    writeText(path, text);
 }
 
 void renderAll(const std::string& folder, const Scene& scene, const Target* target, const std::vector<Job>& jobs,
@@ -203,6 +200,8 @@ void renderAll(const std::string& folder, const Scene& scene, const Target* targ
 void refuseOverwriting(const std::string& rig, const Scene& scene, const std::string& folder, const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs = {{"--out-dir", folder + "/truth.yml", OUTPUT_IN_FOLDER}};
+    if (scene.target.given())
+        outputs.push_back({"--out-dir", folder + "/poses.csv", OUTPUT_IN_FOLDER});
     for (const Job& job : jobs)
     {
         outputs.push_back({"--out-dir", folder + "/" + job.path, OUTPUT_IN_FOLDER});
@@ -243,6 +242,8 @@ int main(int argc, char** argv)
             parameters = {extension == "jpg" ? (int)cv::IMWRITE_JPEG_QUALITY : (int)cv::IMWRITE_WEBP_QUALITY, quality};
         renderAll(folder, scene, target.get(), jobs, parameters, command.quiet());
         writeTruth(folder + "/truth.yml", scene, target.get(), jobs, command.line());
+        if (target)
+            writePoses(folder + "/poses.csv", jobs);
         if (!command.quiet())
             std::cout << jobs.size() << " images and truth.yml written to " << folder << std::endl;
         return DONE;

@@ -1,4 +1,5 @@
 #include "calibrate/calib_file.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
@@ -100,14 +101,14 @@ void checkCombination(const Options& options)
         throw Failure("--depth-map=" + options.depthMap + ": its numbers need a .tiff; --picture is for looking at");
 }
 
-Calibration readRig(const Options& options)
+Calibration readPair(const Options& options)
 {
     const Calibration rig = readCalibration(options.calibration);
-    if (!rig.stereo())
+    if (rig.single())
         throw Failure("'" + options.calibration + "' has one camera; depth needs a calibrated pair (refract_calib --direct2 "
                       "--glass2)");
     requireWindows(rig, options.calibration, options.noWindow);
-    return rig;
+    return firstPair(rig);
 }
 
 std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePair>& pairs)
@@ -410,7 +411,7 @@ int main(int argc, char** argv)
         checkCombination(options);
         if (!options.depth.empty())
             parseDepthRange(options.depth);
-        const Calibration rig = readRig(options);
+        const Calibration rig = readPair(options);
         Frames first(options.left), second(options.right);
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);

@@ -8,8 +8,9 @@ const char fuzz::EXTENSION[] = ".yml";
 void fuzz::tryFile(const std::string& path)
 {
     const tools::Calibration calibration = tools::readCalibration(path);
-    promise(calibration.cameras.size() == 1 || calibration.cameras.size() == 2, "one camera or two");
-    promise(cv::checkRange(calibration.R) && cv::checkRange(calibration.T), "R and T are finite");
+    promise(!calibration.cameras.empty(), "at least one camera");
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        promise(cv::checkRange(calibration.Rs.at(c)) && cv::checkRange(calibration.Ts.at(c)), "R and T are finite");
     const std::string copy = (scratch().path() / "copy.yml").string();
     tools::writeCalibration(copy, calibration);
     const tools::Calibration again = tools::readCalibration(copy);

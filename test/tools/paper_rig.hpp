@@ -7,21 +7,24 @@
 #include "scenes.hpp"
 #include <opencv2/calib3d.hpp>
 
+//! @param cameras up to 4: those after the paper's two stand below and beside them
 inline tools::RigModel paperRig(int cameras)
 {
     using namespace cv;
     using namespace cv::refract;
     const Matx33d K(2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1);
     const Mat dist = (Mat_<double>(1, 4) << -0.4082, 0.4359, 0, 0);
-    const Vec3d normals[2] = {Vec3d(-0.2483, 0.0961, 1), Vec3d(0.1823, -0.2809, 1)};
+    const Vec3d normals[] = {{-0.2483, 0.0961, 1}, {0.1823, -0.2809, 1}, {0.05, 0.2, 1}, {-0.1, -0.15, 1}};
+    const Vec3d rvecs[] = {{}, {0.02, 0.29, 0.01}, {0.25, -0.02, 0.02}, {-0.05, -0.3, 0.03}};
+    const Vec3d tvecs[] = {{}, {-211, 1.3, 53}, {10, -170, 40}, {190, 30, 45}};
     tools::RigModel rig;
     for (int c = 0; c < cameras; c++)
     {
-        rig.cameras.push_back(RefractiveCamera::create(Mat(K), dist, GlassWindow(normals[c], 20., 1.5437, 50.)));
+        Matx33d R;
+        Rodrigues(rvecs[c], R);
+        rig.add(RefractiveCamera::create(Mat(K), dist, GlassWindow(normals[c], 20., 1.5437, 50.)), R, tvecs[c]);
         rig.cameras.back()->setImageSize(Size(1280, 1024));
     }
-    Rodrigues(Vec3d(0.02, 0.29, 0.01), rig.R);
-    rig.T = Vec3d(-211, 1.3, 53);
     return rig;
 }
 
@@ -40,6 +43,7 @@ inline tools::Moment observe(const tools::RigModel& rig, const std::vector<cv::P
 {
     tools::Moment moment;
     moment.stem = "new";
+    moment.objectPoints = object;
     for (int c = 0; c < (int)rig.cameras.size(); c++)
         for (bool glass : {false, true})
         {

@@ -75,8 +75,8 @@ RigModel trueRig(const Setup& setup)
     if (setup.shared())
     {
         second = rig.cameras[0]->window();
-        second.normal = rig.R*second.normal;
-        second.distance += second.normal.dot(rig.T);
+        second.normal = rig.Rs[1]*second.normal;
+        second.distance += second.normal.dot(rig.Ts[1]);
         if (second.distance < 20.)
         {
             GlassWindow first = rig.cameras[0]->window();
@@ -173,9 +173,7 @@ Images takeImages(const RigModel& rig, const Setup& setup, scenes::Random& rando
     Images images;
     RigData& data = images.data;
     data.cameraCount = setup.cameras;
-    data.objectPoints = board(9, 6, 25.);
-    if (setup.rendered)
-        data.objectPoints = renderedBoard().objectPoints();
+    const std::vector<Point3d> object = setup.rendered ? renderedBoard().objectPoints() : board(9, 6, 25.);
     data.imageSize[0] = data.imageSize[1] = Size(1280, 1024);
     const int directs = 14, glasses = setup.paired() ? 6 : setup.hasDirect() ? 15 : 25;
     const auto take = [&](bool direct, bool glass)
@@ -184,8 +182,8 @@ Images takeImages(const RigModel& rig, const Setup& setup, scenes::Random& rando
         BoardPose pose;
         while (!moment.hasDirect(0) && !moment.hasGlass())      // a rendered board may not be all in the image
         {
-            pose = randomPose(data.objectPoints, random);
-            moment = look(rig, data.objectPoints, pose, direct, glass, setup, random);
+            pose = randomPose(object, random);
+            moment = look(rig, object, pose, direct, glass, setup, random);
         }
         moment.stem = "view" + std::to_string(data.moments.size());
         images.poses.push_back(pose);
@@ -221,18 +219,21 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
             glass[c].push_back(Mat(data.moments[i].glass[c], true));
         }
     }
-    std::vector<Mat> Rs = {Mat::eye(3, 3, CV_64F), Mat(start.R, true)}, Ts = {Mat::zeros(3, 1, CV_64F), Mat(start.T, true)};
-    Rs.resize(cameras);
-    Ts.resize(cameras);
-    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.objectPoints), direct, glass,
+    std::vector<Mat> Rs, Ts;
+    for (int c = 0; c < cameras; c++)
+    {
+        Rs.push_back(Mat(start.Rs[c], true));
+        Ts.push_back(Mat(start.Ts[c], true));
+    }
+    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.moments[0].objectPoints), direct, glass,
                                 fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations,
                                 fit.covariance, noArray(), fit.imageStatus, fit.inliers, fit.otherMinima,
                                 flags | GLASS_USE_POSES | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS,
                                 std::vector<Mat>(poses.size(), poseCovariance));
     if (cameras == 2)
     {
-        fit.rig.R = Rs[1];
-        fit.rig.T = Ts[1];
+        fit.rig.Rs[1] = Rs[1];
+        fit.rig.Ts[1] = Ts[1];
     }
     return fit;
 }
@@ -251,7 +252,7 @@ Fit calibrate(const Images& images, const Setup& setup, const RigModel& truth, s
         options.flags |= GLASS_FREE_DISTANCE;
     }
     if (setup.shared())
-        options.flags |= GLASS_SHARED_WINDOW;
+        options.windows = {0, 0};
     if (!setup.hasDirect())
         options.flags |= GLASS_FREE_INTRINSICS;
     std::vector<LensSource> sources;
@@ -323,11 +324,11 @@ void compare(const Fit& fit, const RigModel& truth, Honesty& honesty)
     if (truth.cameras.size() == 2)
     {
         Vec3d r, rt;
-        Rodrigues(fit.rig.R, r);
-        Rodrigues(truth.R, rt);
+        Rodrigues(fit.rig.Rs[1], r);
+        Rodrigues(truth.Rs[1], rt);
         const int at = columnsOf(fit.rig, 1).end;
         addParameters(honesty.ratios["R"], C, at, {r[0] - rt[0], r[1] - rt[1], r[2] - rt[2]});
-        const Vec3d d = fit.rig.T - truth.T;
+        const Vec3d d = fit.rig.Ts[1] - truth.Ts[1];
         addParameters(honesty.ratios["T"], C, at + 3, {d[0], d[1], d[2]});
     }
 }
@@ -347,8 +348,8 @@ void comparePoints(const Fit& fit, const RigModel& truth, Honesty& honesty)
     const double none = 1e-9;
     if (truth.cameras.size() == 2)
     {
-        refractiveProjectPoints(points, Mat(truth.R), truth.T, truth.cameras[1], pixels2);
-        const Measurement m = measureStereo(calibration, pixels1, pixels2, none);
+        refractiveProjectPoints(points, Mat(truth.Rs[1]), truth.Ts[1], truth.cameras[1], pixels2);
+        const Measurement m = measureRig(calibration, {pixels1, pixels2}, none);
         for (size_t i = 0; i < points.size(); i++)
             for (int k = 0; k < 3; k++)
                 honesty.ratios["points"].add((Vec3d(m.points[i]) - Vec3d(points[i]))[k], m.sigma[i][k]);
@@ -439,11 +440,10 @@ TEST_CASE("A stated +- of points is true in every flow: a few trials", "[honesty
 
 TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
 {
-    const char* trials = std::getenv("TRIALS");     // to try it out with fewer, or
-    const char* only = std::getenv("ONLY");         // some of the flows
+    const char* only = std::getenv("ONLY");     // some of the flows
     for (const Setup& setup : allSetups())
         if (!only || setup.name().find(only) != std::string::npos)
-            print(setup, honestyOf(setup, trials ? std::atoi(trials) : 200, 9000));
+            print(setup, honestyOf(setup, scenes::trials(200), 9000));
 }
 
 TEST_CASE("A sealed rig's windows are not tilted the other way, and the second best minimum is told", "[honesty]")
@@ -504,12 +504,12 @@ TEST_CASE("Boards that took no part are as far off as stated, and the check sees
         scenes::Random random(8100 + trial);
         const Images images = takeImages(truth, setup, random);
         const Fit fit = calibrate(images, setup, truth, random);
-        const std::vector<Point3d>& object = images.data.objectPoints;
+        const std::vector<Point3d>& object = images.data.moments[0].objectPoints;
         std::vector<Moment> fresh;
         for (int i = 0; i < 5; i++)
             fresh.push_back(look(truth, object, randomPose(object, random), true, true, setup, random));     // pairs: they tell most
-        stated.add(misfitOf(fit.rig, fit.covariance, fit.sigma, object, fresh));
-        tooSure.add(misfitOf(fit.rig, Mat(0.04*fit.covariance), fit.sigma, object, fresh));
+        stated.add(misfitOf(fit.rig, fit.covariance, fit.sigma, fresh));
+        tooSure.add(misfitOf(fit.rig, Mat(0.04*fit.covariance), fit.sigma, fresh));
     }
     std::cout << "[numbers] held-out boards, error over stated: " << stated.calibrationRatio() << "; +- five times too small: "
               << tooSure.calibrationRatio() << std::endl;
@@ -549,30 +549,29 @@ struct SealedRig
     {
         truth = paperRig(2);
         const double toe = random.uniform(0.05, 0.25);
-        Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.R);
-        truth.T = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
+        Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.Rs[1]);
+        truth.Ts[1] = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
         GlassWindow window(Vec3d(random.normal(0.1), random.normal(0.1), 1), 12, 1.49, random.uniform(120, 300), 1.333);
         truth.cameras[0]->setWindow(window);
-        window.normal = truth.R*window.normal;
-        window.distance += window.normal.dot(truth.T);
+        window.normal = truth.Rs[1]*window.normal;
+        window.distance += window.normal.dot(truth.Ts[1]);
         if (!shared)
             window.normal = normalize(Vec3d(random.normal(0.1), random.normal(0.1), 1));
         window.distance = std::max(window.distance, 10.);
         if (shared)
         {
             GlassWindow first = truth.cameras[0]->window();
-            first.distance = window.distance - window.normal.dot(truth.T);
+            first.distance = window.distance - window.normal.dot(truth.Ts[1]);
             truth.cameras[0]->setWindow(first);
         }
         truth.cameras[1]->setWindow(window);
         data.cameraCount = 2;
-        data.objectPoints = board(9, 6, 60.);
         data.imageSize[0] = data.imageSize[1] = Size(1280, 1024);
         const int views = 5 + (int)random.uniform(0, 6);
         for (int i = 0; i < views; i++)
         {
             const double z = random.uniform(1000, 3000);
-            Moment m = observe(truth, data.objectPoints, random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1)*z,
+            Moment m = observe(truth, board(9, 6, 60.), random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1)*z,
                                random.uniform(-0.08, 0.08)*z, z), false, 0.3, random);
             m.stem = "view" + std::to_string(i);
             for (int c = 0; c < 2; c++)
@@ -593,12 +592,11 @@ struct SealedRig
 
 TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no crash, and intervals of lengths hold", "[.honesty]")
 {
-    const char* given = std::getenv("TRIALS");
-    const int trials = given ? std::atoi(given) : 500;
+    const int count = scenes::trials(500);
     Ratio lengths;
     int answers = 0;
     std::map<std::string, int> refusals;
-    for (int trial = 0; trial < trials; trial++)
+    for (int trial = 0; trial < count; trial++)
     {
         scenes::Random random(20000 + trial);
         const SealedRig scene(random);
@@ -608,7 +606,9 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             options.window = scene.truth.cameras[0]->window();
             options.window.normal = Vec3d(0, 0, 1);
             options.window.distance = 60.;
-            options.flags = GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | (scene.shared ? (int)GLASS_SHARED_WINDOW : 0);
+            options.flags = GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS;
+            if (scene.shared)
+                options.windows = {0, 0};
             options.lensCoefficients = 4;
             std::vector<LensSource> sources;
             RigData data = scene.data;
@@ -619,8 +619,8 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             std::vector<Point2d> pixels1, pixels2;
             std::vector<Point3d> points;
             refractiveProjectPoints(std::vector<Point3d>{a, b}, Vec3d(), Vec3d(), scene.truth.cameras[0], pixels1);
-            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.R), scene.truth.T, scene.truth.cameras[1], pixels2);
-            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.R, fit.rig.T, pixels1, pixels2, points);
+            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.Rs[1]), scene.truth.Ts[1], scene.truth.cameras[1], pixels2);
+            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.Rs[1], fit.rig.Ts[1], pixels1, pixels2, points);
             answers++;
             lengths.add(norm(points[1] - points[0]) - norm(b - a), std::sqrt(lengthVariance(fit, points[0], points[1])));
         }
@@ -629,7 +629,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             refusals[std::string(e.what()).substr(0, 60)]++;
         }
     }
-    std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << trials << " answer; 95 % intervals of a length hold "
+    std::cout << "[numbers] sealed rigs from afar: " << answers << " of " << count << " answer; 95 % intervals of a length hold "
               << 100*lengths.within(1.96) << " %, error over stated " << lengths.value() << std::endl;
     for (const auto& refusal : refusals)
         std::cout << "    " << refusal.second << " x " << refusal.first << std::endl;
@@ -638,8 +638,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
 
 TEST_CASE("A stated +- is true from rendered images, where corners err together", "[.honesty]")
 {
-    const char* trials = std::getenv("TRIALS");
     for (const Setup& setup : {Setup{Flow::PAIRS, Medium::AIR, 1, true}, Setup{Flow::HAND_HELD, Medium::AIR, 1, true},
                                Setup{Flow::HAND_HELD, Medium::HOUSING, 1, true}, Setup{Flow::PAIRS, Medium::AIR, 2, true}})
-        print(setup, honestyOf(setup, trials ? std::atoi(trials) : 20, 9500));
+        print(setup, honestyOf(setup, scenes::trials(20), 9500));
 }

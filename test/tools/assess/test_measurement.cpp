@@ -102,7 +102,7 @@ TEST_CASE("Points of a target of known shape carry the calibration's uncertainty
     const Target target = smallBoard();
     const std::vector<Point2d> pixels = seenBy(rig.cameras[0], target);
     checkSpread(rig, pixels, 3021, [&target](const Calibration& c, const std::vector<Point2d>& p) {
-        return measureTarget(c, target, p, PIXEL);
+        return measureTarget(c, target.objectPoints(), p, PIXEL);
     });
 }
 
@@ -121,16 +121,16 @@ Measurement seenByTwo(const Calibration& calibration, double noise, Point2d off,
         points.push_back(Point3d(rotation*Vec3d(p) + tvec));
     std::vector<Point2d> pixels[2];
     Vec3d rig;
-    Rodrigues(calibration.R, rig);
+    Rodrigues(calibration.Rs[1], rig);
     refractiveProjectPoints(points, Vec3d(), Vec3d(), calibration.cameras[0].camera, pixels[0]);
-    refractiveProjectPoints(points, rig, calibration.T, calibration.cameras[1].camera, pixels[1]);
+    refractiveProjectPoints(points, rig, calibration.Ts[1], calibration.cameras[1].camera, pixels[1]);
     for (std::vector<Point2d>& image : pixels)
         for (Point2d& p : image)
             p += Point2d(random.normal(noise), random.normal(noise));
     pixels[1][7] += off;
     if (truth)
         *truth = points;
-    return measureStereo(calibration, pixels[0], pixels[1], PIXEL);
+    return measureRig(calibration, {pixels[0], pixels[1]}, PIXEL);
 }
 
 } // namespace
@@ -162,7 +162,7 @@ TEST_CASE("Partners that agree within the noise keep their uncertainty", "[measu
                 rig.cameras[1]->setWindow(window);
             }
             Measurement m = seenByTwo(calibrationOf(rig), PIXEL, {}, random);
-            m = measureStereo(c, m.pixels1, m.pixels2, PIXEL);
+            m = measureRig(c, m.pixels, PIXEL);
             const Measurement before = m;
             judgePartners(c, PIXEL, m);
             flagged += m.inconsistent();
@@ -236,10 +236,10 @@ TEST_CASE("A pose carries its residuals, if they are larger than the noise", "[m
     std::vector<Point2d> pixels = seenBy(rig.cameras[0], target);
     scenes::Random random(3043);
     const Calibration c = calibrationOf(rig);
-    const Measurement exact = measureTarget(c, target, pixels, PIXEL);
+    const Measurement exact = measureTarget(c, target.objectPoints(), pixels, PIXEL);
     for (Point2d& p : pixels)
         p += Point2d(random.normal(10), random.normal(10));
-    Measurement m = measureTarget(c, target, pixels, PIXEL);
+    Measurement m = measureTarget(c, target.objectPoints(), pixels, PIXEL);
     CHECK(m.noise == Approx(10).epsilon(0.3));
     for (size_t i = 0; i < pixels.size(); i++)
         for (int k = 0; k < 3; k++)

@@ -16,7 +16,7 @@ Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
     Given given;
     given.square = 39.;
     given.data.cameraCount = cameras;
-    given.data.objectPoints = board(6, 5);
+    const std::vector<Point3d> object = board(6, 5);
     given.options.window = rig.cameras[0]->window();
     given.options.window.distance = 0.;         // as the tool has it with air on both sides
     for (int c = 0; c < cameras; c++)
@@ -28,11 +28,12 @@ Given rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
         const Vec3d rvec = random.vector(0.4);
-        given.data.moments.push_back(observe(rig, given.data.objectPoints, rvec, tvec, true, 0.1, random));
+        given.data.moments.push_back(observe(rig, object, rvec, tvec, true, 0.1, random));
         given.data.moments.back().stem = "pair" + std::to_string(i);
+        given.data.moments.back().neighbours = {{0, 1}};       // a board
         if (i % 2 && outermostRows)     // the glass image shows a part of the board that begins a row later
         {
-            std::vector<Point3d> later = given.data.objectPoints;
+            std::vector<Point3d> later = object;
             for (Point3d& X : later)
                 X.y += outermostRows*given.square;
             given.data.moments.back().glass[0] = observe(rig, later, rvec, tvec, false, 0.1, random).glass[0];
@@ -60,8 +61,9 @@ TEST_CASE("A wrong square, thickness, index or medium is found and named", "[mis
 
     Given square = right;
     square.square = 3.9;
-    for (Point3d& X : square.data.objectPoints)
-        X *= 0.1;
+    for (Moment& m : square.data.moments)
+        for (Point3d& X : m.objectPoints)
+            X *= 0.1;
     CHECK_THAT(explained(square), (Catch::Contains("--square=39") || Catch::Contains("--square=38.9"))
                                   && Catch::Contains("in place of 3.9") && Catch::Contains("unit"));
 
@@ -92,7 +94,7 @@ TEST_CASE("Water taken for air is found from glass-only views, and refused", "[m
     for (Moment& m : given.data.moments)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(640, 800));
-        m.glass[0] = observe(wet, given.data.objectPoints, random.vector(0.4), tvec, false, 0.1, random).glass[0];
+        m.glass[0] = observe(wet, m.objectPoints, random.vector(0.4), tvec, false, 0.1, random).glass[0];
         m.direct[0].clear();
     }
     CHECK_THAT(explained(given), Catch::Contains("--outer-index=1.333 in place of 1"));

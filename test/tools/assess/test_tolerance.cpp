@@ -14,13 +14,12 @@ RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
 {
     scenes::Random random(1010);
     RigData data;
-    data.objectPoints = board(6, 5);
     data.imageSize[0] = Size(1280, 1024);
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
-        data.moments.push_back(observe(rig, data.objectPoints, rvec, tvec, true, 0., random));
-        data.moments.back().glass[0] = observe(rig, data.objectPoints, rvec, tvec + shift, false, 0., random).glass[0];
+        data.moments.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
+        data.moments.back().glass[0] = observe(rig, board(6, 5), rvec, tvec + shift, false, 0., random).glass[0];
     }
     return data;
 }
@@ -28,6 +27,7 @@ RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
 RigCalibration calibrated(const RigModel& rig, const Vec3d& shift)
 {
     RigCalibration c;
+    c.square = 39.;
     c.data = pairsMovedBy(rig, shift);
     c.start = rig;
     c.lensSources.resize(1);
@@ -76,10 +76,10 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
 {
     const RigModel rig = paperRig(2);
     RigCalibration right;
+    right.square = 39.;
     right.data.cameraCount = 2;
-    right.data.objectPoints = board(6, 5);
     right.data.imageSize[0] = right.data.imageSize[1] = Size(1280, 1024);
-    std::vector<Point3d> bent = right.data.objectPoints;        // as seen: 0.1 mm from corner to middle
+    std::vector<Point3d> bent = board(6, 5);        // as seen: 0.1 mm from corner to middle
     for (Point3d& X : bent)
         X.z = 0.1*(1. - (X.x*X.x + X.y*X.y)/(97.5*97.5 + 78.*78.));
     RigData ofBent = right.data;
@@ -88,8 +88,9 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
         const Vec3d rvec = random.vector(0.4);
-        right.data.moments.push_back(observe(rig, right.data.objectPoints, rvec, tvec, true, 0., random));
+        right.data.moments.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
         ofBent.moments.push_back(observe(rig, bent, rvec, tvec, true, 0., random));
+        ofBent.moments.back().objectPoints = board(6, 5);      // taken for flat
     }
     right.start = rig;
     right.lensSources.resize(2);
@@ -113,11 +114,11 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     {
         std::vector<Point2d> seen[2];
         Vec3d rvec;
-        Rodrigues(rig.R, rvec);
+        Rodrigues(rig.Rs[1], rvec);
         refractiveProjectPoints(std::vector<Point3d>{X}, Vec3d(), Vec3d(), rig.cameras[0], seen[0]);
-        refractiveProjectPoints(std::vector<Point3d>{X}, rvec, rig.T, rig.cameras[1], seen[1]);
+        refractiveProjectPoints(std::vector<Point3d>{X}, rvec, rig.Ts[1], rig.cameras[1], seen[1]);
         std::vector<Point3d> point;
-        triangulateRefractive(found.cameras[0], found.cameras[1], found.R, found.T, seen[0], seen[1], point);
+        triangulateRefractive(found.cameras[0], found.cameras[1], found.Rs[1], found.Ts[1], seen[0], seen[1], point);
         worst = std::max(worst, norm(point[0] - X));
     }
     CAPTURE(worst, bow.rms, bow.worst, bow.lengths);

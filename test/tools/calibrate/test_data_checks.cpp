@@ -17,8 +17,8 @@ RigViewSets views(const std::string& direct, const std::string& glass, double ti
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
         const Moment m = observe(rig, board(6, 5), random.vector(tilt), tvec, true, 0.1, random);
         const std::string number = std::to_string(i);
-        sets.direct[0].views.push_back({direct + number, "d/" + direct + number + ".png", m.direct[0]});
-        sets.glass[0].views.push_back({glass + number, "g/" + glass + number + ".png", m.glass[0]});
+        sets.direct[0].views.push_back({direct + number, "d/" + direct + number + ".png", m.direct[0], {}});
+        sets.glass[0].views.push_back({glass + number, "g/" + glass + number + ".png", m.glass[0], {}});
     }
     for (ViewSet* set : {&sets.direct[0], &sets.glass[0]})
         set->imageSize = Size(1280, 1024);
@@ -36,7 +36,8 @@ Target chessboard()
 std::string allNotices(const RigViewSets& sets, bool unpaired)
 {
     std::string text;
-    for (const std::string& notice : noticesOf(sets, pairViews(chessboard(), sets, unpaired)))
+    const Target target = chessboard();
+    for (const std::string& notice : noticesOf(sets, pairViews(&target, sets, unpaired)))
         text += notice + '\n';
     return text;
 }

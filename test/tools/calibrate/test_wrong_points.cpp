@@ -11,12 +11,11 @@ namespace {
 RigData sixPairs(const RigModel& rig, scenes::Random& random)
 {
     RigData data;
-    data.objectPoints = board(6, 5);
     data.imageSize[0] = Size(1280, 1024);
     for (int i = 0; i < 6; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
-        data.moments.push_back(observe(rig, data.objectPoints, random.vector(0.4), tvec, true, 0.1, random));
+        data.moments.push_back(observe(rig, board(6, 5), random.vector(0.4), tvec, true, 0.1, random));
         data.moments.back().stem = "pair" + std::to_string(i);
     }
     return data;
@@ -59,4 +58,37 @@ TEST_CASE("If most points are wrong, all stay and it is said", "[wrong_points]")
     CHECK(wrong.dropped.empty());
     CHECK_THAT(wrong.fault, Catch::Contains("points fit"));
     CHECK(!std::isnan(data.moments[0].glass[0][0].x));
+}
+
+TEST_CASE("A lens from few images of a small board does not cost good images", "[wrong_points]")
+{
+    for (unsigned salt : {0u, 1u, 2u, 3u, 4u, 5u})
+    {
+        scenes::Random random(730 + salt);
+        CAPTURE(scenes::seed(), salt);
+        const RigModel rig = paperRig(4);
+        RigData data;
+        data.cameraCount = 4;
+        data.imageSize.fill(Size(1280, 1024));
+        for (int i = 0; i < 8; i++)
+        {
+            const Vec3d rvec = random.vector(0.4);
+            const Vec3d tvec(random.uniform(-60, 60), random.uniform(-50, 50), random.uniform(500, 700));
+            data.moments.push_back(observe(rig, board(6, 5, 15.), rvec, tvec, true, 0.02, random));
+            data.moments.back().stem = "pair" + std::to_string(i);
+        }
+        RigOptions options;
+        options.window = rig.cameras[0]->window();
+        options.window.normal = Vec3d(0, 0, 1);
+        options.lensCoefficients = 4;
+        RigModel start;
+        std::vector<LensSource> lensSources;
+        const WrongPoints wrong = startWithoutWrongPoints(data, options, start, lensSources);
+        CHECK(wrong.fault == "");
+        for (const Dropped& dropped : wrong.dropped)
+        {
+            CAPTURE(dropped.sentence());
+            CHECK(!dropped.image);
+        }
+    }
 }

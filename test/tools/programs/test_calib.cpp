@@ -473,7 +473,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
     std::ofstream(f / "cut.png") << "\x89PNG\r\n";
     const size_t before = f.count();
     const Refusal cases[] = {
-        {"refract_calib", "--size"},
+        {"refract_calib", "--glass"},
         {inputs(f, lens(f)), "--thickness"},
         {inputs(f, PANE + lens(f) + " --free=distance"), "no effect"},
         {inputs(f, lens(f) + " --thickness=20"), "--index"},

@@ -32,7 +32,8 @@ enum Kind { PAIR, GLASS_ONLY, DIRECT_ONLY };
 class Adviser
 {
 public:
-    explicit Adviser(const RigCalibration& c) : c_(c), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
+    explicit Adviser(const RigCalibration& c)
+        : c_(c), board_(c.data.moments[c.fit.moments[0]].objectPoints), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
 
     const MatrixXd& now() const { return now_; }
 
@@ -62,7 +63,8 @@ public:
         return worth;
     }
 
-    /** The square root of what a view tells about the parameters; empty if too little of the board is seen. */
+    /** The square root of what a view tells about the parameters; empty if too little of the board is seen by camera 1, or by
+    all others. */
     MatrixXd informationOf(const Placement& placement, Kind kind) const
     {
         std::vector<ImageOfView> images;
@@ -71,12 +73,16 @@ public:
             {
                 if ((glass && kind == DIRECT_ONLY) || (!glass && kind == GLASS_ONLY))
                     continue;
-                images.push_back(pointsInImage(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, camera, glass));
-                if (images.back().points.size() < MUST_BE_SEEN*c_.data.objectPoints.size())
+                const ImageOfView image = pointsInImage(c_.fit.rig, board_, placement.rvec, placement.tvec, camera, glass);
+                if (image.points.size() >= MUST_BE_SEEN*board_.size())
+                    images.push_back(image);
+                else if (camera == 0 || c_.data.cameraCount == 2)
                     return MatrixXd();
             }
-        const ViewDerivatives d = differentiateView(c_.fit.rig, c_.data.objectPoints, placement.rvec, placement.tvec, images);
-        const MatrixXd J = basisWithoutPose(d.byPose).transpose()*d.byParameters;
+        if (c_.data.cameraCount > 1 && images.back().camera == 0)
+            return MatrixXd();
+        const ViewDerivatives d = differentiateView(c_.fit.rig, board_, placement.rvec, placement.tvec, images);
+        const MatrixXd J = WithoutPose(d.byPose)(d.byParameters);
         const Eigen::Index n = std::min(J.rows(), J.cols());
         return Eigen::HouseholderQR<MatrixXd>(J).matrixQR().topRows(n).triangularView<Eigen::Upper>();
     }
@@ -117,14 +123,15 @@ private:
         refractivePointsOnPlane(std::vector<Point2d>{{share.x*size.width, share.y*size.height}}, middle,
                                 c_.fit.rig.cameras[0], Vec4d(0, 0, 1, z));
         Point3d centre;
-        for (const Point3d& X : c_.data.objectPoints)
-            centre += X*(1./c_.data.objectPoints.size());
+        for (const Point3d& X : board_)
+            centre += X*(1./board_.size());
         Matx33d R;
         Rodrigues(axis*(TILT_DEG*CV_PI/180.), R);
         return Vec3d(middle[0]) - R*Vec3d(centre);
     }
 
     const RigCalibration& c_;
+    std::vector<Point3d> board_;
     MatrixXd now_;
     double sigma_;
 };
@@ -134,6 +141,10 @@ private:
 Advice adviseImages(const RigCalibration& calibration)
 {
     const Adviser adviser(calibration);
+    Advice advice;
+    advice.now = adviser.worthOf(adviser.now());
+    if (!(calibration.square > 0))      // where another target would be put nobody knows
+        return advice;
     std::vector<Placement> placements;
     std::vector<MatrixXd> informations;
     for (const Placement& placement : adviser.placements())
@@ -144,8 +155,6 @@ Advice adviseImages(const RigCalibration& calibration)
         placements.push_back(placement);
         informations.push_back(information);
     }
-    Advice advice;
-    advice.now = adviser.worthOf(adviser.now());
     MatrixXd covariance = adviser.now();
     int first = -1;
     for (int n = 0; n < NEXT && !placements.empty(); n++)

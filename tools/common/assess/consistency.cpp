@@ -2,6 +2,7 @@
 #include "assess/eigen_matrix.hpp"
 #include "assess/point_derivatives.hpp"
 #include <opencv2/calib3d.hpp>
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -22,26 +23,40 @@ const double MEDIAN = 0.6745;           // of |N(0, 1)|
 const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
 const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
 
-//! What is left over of the two pixels of a point.
+/* Of the root mean square of `freedom` numbers with deviation 1: where it lies with the probability of a normal number's
+`deviations` (Wilson and Hilferty's cube root; of a single number exactly). */
+double rmsAt(double deviations, int freedom)
+{
+    if (freedom == 1)
+        return deviations > 0 ? deviations : MEDIAN;
+    const double variance = 2./(9.*freedom);
+    return std::pow(1. - variance + deviations*std::sqrt(variance), 1.5);
+}
+
+//! What is left over of the pixels of a point.
 struct PartnerMisfit
 {
-    double pixels, expected;        //!< expected: one standard deviation; NaN where there is no point
-    MatrixXd byPoint;               //!< 4x3, of both pixels
+    double pixels, expected;        //!< RMS per degree of freedom; expected: one standard deviation; NaN where there is no point
+    int freedom;                    //!< coordinates - 3
+    MatrixXd byPoint;               //!< 2 rows of each camera that sees it
 };
 
 class PartnerMisfits
 {
 public:
     PartnerMisfits(const Calibration& calibration, const Measurement& m, double pixelSigma)
-        : m_(m), sigma_(pixelSigma), R_(toEigen(Mat(calibration.R)))
+        : m_(m), sigma_(pixelSigma), cameras_(calibration.cameras.size())
     {
-        Vec3d rvec;
-        Rodrigues(calibration.R, rvec);
-        const Vec3d tvecs[] = {Vec3d(), calibration.T}, rvecs[] = {Vec3d(), rvec};
-        for (int c = 0; c < 2; c++)
+        for (size_t c = 0; c < cameras_.size(); c++)
         {
-            refract::refractiveProjectPoints(m.points, rvecs[c], tvecs[c], calibration.cameras[c].camera, predicted_[c]);
-            derivatives_[c] = differentiatePoints(calibration.cameras[c].camera, m.points, rvecs[c], tvecs[c]);
+            Camera& camera = cameras_[c];
+            Vec3d rvec;
+            Rodrigues(calibration.Rs[c], rvec);
+            camera.R = toEigen(Mat(calibration.Rs[c]));
+            refract::refractiveProjectPoints(m.points, rvec, calibration.Ts[c], calibration.cameras[c].camera, camera.predicted);
+            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.Ts[c]);
+            camera.column = parameters_;
+            parameters_ += camera.derivatives.byParameters.cols();
         }
         if (!calibration.covariance.empty())
             covariance_ = toEigen(calibration.covariance);
@@ -49,33 +64,63 @@ public:
 
     PartnerMisfit operator()(size_t i) const
     {
-        const PointDerivatives &d1 = derivatives_[0], &d2 = derivatives_[1];
-        const Point2d e1 = m_.pixels1[i] - predicted_[0][i], e2 = m_.pixels2[i] - predicted_[1][i];
-        MatrixXd J(4, 3);
-        J << d1.byPose.block(2*i, 3, 2, 3), d2.byPose.block(2*i, 3, 2, 3)*R_;
-        if (!J.allFinite())
-            return {NOT_KNOWN, NOT_KNOWN, J};
-        const Eigen::Vector4d over = Eigen::HouseholderQR<MatrixXd>(J).householderQ()*Eigen::Vector4d::UnitW();
-        double variance = sigma_*sigma_;
-        if (covariance_.size())
+        std::vector<size_t> views;
+        for (size_t c = 0; c < cameras_.size(); c++)
+            if (seen(m_.pixels[c][i]))
+                views.push_back(c);
+        const int rows = 2*(int)views.size(), freedom = rows - 3;
+        MatrixXd J(rows, 3);
+        Eigen::VectorXd e(rows);
+        for (size_t k = 0; k < views.size(); k++)
         {
-            const Eigen::Index n1 = d1.byParameters.cols(), n2 = d2.byParameters.cols();
-            MatrixXd A = MatrixXd::Zero(4, n1 + n2 + 6);
-            A.block(0, 0, 2, n1) = d1.byParameters.middleRows(2*i, 2);
-            A.block(2, n1, 2, n2) = d2.byParameters.middleRows(2*i, 2);
-            A.block(2, n1 + n2, 2, 6) = d2.byPose.middleRows(2*i, 2);
-            const Eigen::VectorXd a = A.transpose()*over;
-            variance += a.dot(covariance_*a);
+            const Camera& camera = cameras_[views[k]];
+            const Point2d error = m_.pixels[views[k]][i] - camera.predicted[i];
+            J.middleRows(2*k, 2) = camera.derivatives.byPose.block(2*i, 3, 2, 3)*camera.R;
+            e.segment(2*k, 2) << error.x, error.y;
         }
-        return {std::abs(over.dot(Eigen::Vector4d(e1.x, e1.y, e2.x, e2.y))), std::sqrt(variance), J};
+        if (freedom < 1 || !J.allFinite() || !e.allFinite())
+            return {NOT_KNOWN, NOT_KNOWN, freedom, J};
+        const MatrixXd over = MatrixXd(Eigen::HouseholderQR<MatrixXd>(J).householderQ()).rightCols(freedom);
+        const Eigen::VectorXd w = over.transpose()*e;
+        const MatrixXd S = covarianceOf(i, views, over);
+        const double expected = std::sqrt(S.trace()/freedom);
+        if (!(sigma_ > 0))
+            return {std::sqrt(w.squaredNorm()/freedom), expected, freedom, J};
+        return {std::sqrt(w.dot(S.ldlt().solve(w))/freedom)*expected, expected, freedom, J};
     }
 
 private:
+    struct Camera
+    {
+        MatrixXd R;
+        std::vector<Point2d> predicted;
+        PointDerivatives derivatives;
+        Eigen::Index column;            //!< of its parameters
+    };
+
+    MatrixXd covarianceOf(size_t i, const std::vector<size_t>& views, const MatrixXd& over) const
+    {
+        MatrixXd S = sigma_*sigma_*MatrixXd::Identity(over.cols(), over.cols());
+        if (!covariance_.size())
+            return S;
+        MatrixXd A = MatrixXd::Zero(over.rows(), covariance_.rows());
+        for (size_t k = 0; k < views.size(); k++)
+        {
+            const Camera& camera = cameras_[views[k]];
+            const PointDerivatives& d = camera.derivatives;
+            A.block(2*k, camera.column, 2, d.byParameters.cols()) = d.byParameters.middleRows(2*i, 2);
+            if (views[k] > 0)
+                A.block(2*k, parameters_ + 6*(views[k] - 1), 2, 6) = d.byPose.middleRows(2*i, 2);
+        }
+        const MatrixXd a = A.transpose()*over;
+        return S + a.transpose()*covariance_*a;
+    }
+
     const Measurement& m_;
     double sigma_;
-    MatrixXd R_, covariance_;
-    std::vector<Point2d> predicted_[2];
-    PointDerivatives derivatives_[2];
+    std::vector<Camera> cameras_;
+    Eigen::Index parameters_ = 0;
+    MatrixXd covariance_;
 };
 
 /* How many times as large as expected the misfits of a view are, by their median, which a few wrong points do not move. 1 if
@@ -84,20 +129,22 @@ double timesNoisier(const std::vector<PartnerMisfit>& misfits, double pixelSigma
 {
     std::vector<double> ratios;
     double ofPixels = 0;            // share of the variance
+    int freedom = 0;
     for (const PartnerMisfit& misfit : misfits)
         if (misfit.expected > 0)
         {
-            ratios.push_back(misfit.pixels/misfit.expected);
+            ratios.push_back(misfit.pixels/misfit.expected/rmsAt(0, misfit.freedom));      // 1 is in their middle
+            freedom += misfit.freedom;
             ofPixels += std::pow(pixelSigma/misfit.expected, 2);
         }
     if (ratios.empty())
         return 1.;
     ofPixels /= ratios.size();
-    const double byNoise = 1 + 4.7/std::sqrt((double)ratios.size());      // four standard deviations of the median's estimate
+    const double byNoise = 1 + 4.7/std::sqrt((double)freedom);            // four standard deviations of the median's estimate
     const double byCalibration = USUAL/MEDIAN;
     const double byChance = std::sqrt(ofPixels*byNoise*byNoise + (1 - ofPixels)*byCalibration*byCalibration);
     std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
-    const double times = ratios[ratios.size()/2]/MEDIAN;
+    const double times = ratios[ratios.size()/2];
     return times > byChance ? times : 1.;
 }
 
@@ -122,12 +169,13 @@ void judgePartners(const Calibration& calibration, double pixelSigma, Measuremen
     for (size_t i = 0; i < m.points.size(); i++)
     {
         const double misfit = misfits[i].pixels, expected = known ? misfits[i].expected : 0.;
+        const auto farOff = [&](double deviations) { return rmsAt(deviations, misfits[i].freedom)*expected; };
         if (!(misfit == misfit))
             continue;
-        const double limit = known ? FEW*std::min(times, NOISIER)*expected : GROSS_PIXELS;
+        const double limit = known ? std::min(times, NOISIER)*farOff(FEW) : GROSS_PIXELS;
         if (known)
         {
-            const double beyond = std::max(0., misfit*misfit - std::pow(USUAL*times*expected, 2));
+            const double beyond = std::max(0., misfit*misfit - std::pow(times*farOff(USUAL), 2));
             const double more = (times*times - 1)*pixelSigma*pixelSigma + beyond;
             const MatrixXd& J = misfits[i].byPoint;
             const MatrixXd C = more*(J.transpose()*J).inverse();
@@ -138,7 +186,7 @@ void judgePartners(const Calibration& calibration, double pixelSigma, Measuremen
         {
             m.status[i] = INCONSISTENT;
             m.worstMisfit = std::max(m.worstMisfit, misfit);
-            if (misfit > std::max(GROSS_PIXELS, GROSS*expected))
+            if (misfit > std::max(GROSS_PIXELS, farOff(GROSS)))
                 forget(m, i);
         }
     }

@@ -1,4 +1,5 @@
 #include "assess/cross_validation.hpp"
+#include "assess/measurement.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include <opencv2/calib3d.hpp>
@@ -18,9 +19,10 @@ const size_t MIN_HELD_OUT = 3;      // moments with a glass image, to hold any o
 //! Range of the board's middle from camera 1.
 double rangeOf(const RigData& data, const Fit& fit, size_t k)
 {
+    const std::vector<Point3d>& object = data.moments[fit.moments[k]].objectPoints;
     Point3d middle;
-    for (const Point3d& X : data.objectPoints)
-        middle += X*(1./data.objectPoints.size());
+    for (const Point3d& X : object)
+        middle += X*(1./object.size());
     Matx33d R;
     Rodrigues(fit.rvecs[k], R);
     return norm(R*Vec3d(middle) + fit.tvecs[k]);
@@ -58,12 +60,7 @@ RigModel trainPinhole(const RigData& data, const Fit& fit, const std::vector<int
     try
     {
         const Calibration pinhole = calibratePinholeRig(data, train, pinholeCoefficients(*fit.rig.cameras[0]));
-        RigModel rig;
-        for (const CameraCalibration& camera : pinhole.cameras)
-            rig.cameras.push_back(camera.camera);
-        rig.R = pinhole.R;
-        rig.T = pinhole.T;
-        return rig;
+        return modelOf(pinhole);
     }
     catch (const std::exception&)
     {
@@ -88,28 +85,27 @@ private:
     int count_ = 0;
 };
 
-void addLengths(const RigData& data, const RigModel& rig, const Moment& m, Pool& lengths)
+void addLengths(const RigModel& rig, const Moment& m, Pool& lengths)
 {
-    if (data.cameraCount == 1 || !m.hasGlass(0) || !m.hasGlass(1))
+    if (m.countGlass() < 2)
         return;
-    std::vector<Point3d> points;
-    triangulateRefractive(rig.cameras[0], rig.cameras[1], rig.R, rig.T, m.glass[0], m.glass[1], points);
-    for (const auto& pair : data.neighbours)
+    const std::vector<Point3d> points = measureRig(calibrationOf(rig), glassPixels(m, (int)rig.cameras.size()), NONE).points;
+    for (const auto& pair : m.neighbours)
     {
         const double length = norm(points[pair.second] - points[pair.first]);
         if (length == length)
-            lengths.add(length - norm(data.objectPoints[pair.second] - data.objectPoints[pair.first]));
+            lengths.add(length - norm(m.objectPoints[pair.second] - m.objectPoints[pair.first]));
     }
 }
 
 //! The board where the direct image shows it: what the glass image should then be.
-void addTransfer(const RigData& data, const Ptr<RefractiveCamera>& camera, const Moment& m, int c, Pool& errors)
+void addTransfer(const Ptr<RefractiveCamera>& camera, const Moment& m, int c, Pool& errors)
 {
     Vec3d rvec, tvec;
-    if (!m.isPair(c) || !refractiveSolvePnP(data.objectPoints, m.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
+    if (!m.isPair(c) || !refractiveSolvePnP(m.objectPoints, m.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
         return;
     std::vector<Point2d> predicted;
-    refractiveProjectPoints(data.objectPoints, rvec, tvec, camera, predicted);
+    refractiveProjectPoints(m.objectPoints, rvec, tvec, camera, predicted);
     for (size_t i = 0; i < predicted.size(); i++)
     {
         const double error = norm(m.glass[c][i] - predicted[i]);
@@ -125,7 +121,7 @@ void addMisfit(const RigData& data, const Fit& trained, const std::vector<int>& 
         moments.push_back(data.moments[i]);
     try
     {
-        misfit.add(misfitOf(trained.rig, trained.covariance, trained.sigma, data.objectPoints, moments));
+        misfit.add(misfitOf(trained.rig, trained.covariance, trained.sigma, moments));
     }
     catch (const Failure&) {}       // no pose: the other numbers say it
 }
@@ -135,7 +131,7 @@ double testRig(const RigData& data, const RigModel& rig, const std::vector<int>&
     PooledRms rms;
     for (size_t c = 0; c < rig.cameras.size(); c++)
         for (int i : test)
-            rms.add(data.objectPoints, data.moments[i].glass[c], rig.cameras[c]);
+            rms.add(data.moments[i].objectPoints, data.moments[i].glass[c], rig.cameras[c]);
     return rms.value();
 }
 
@@ -170,15 +166,15 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
             const Moment& m = data.moments[i];
             for (size_t c = 0; c < window.cameras.size(); c++)
             {
-                px.add(data.objectPoints, m.glass[c], window.cameras[c]);
-                addTransfer(data, window.cameras[c], m, (int)c, transfer);
+                px.add(m.objectPoints, m.glass[c], window.cameras[c]);
+                addTransfer(window.cameras[c], m, (int)c, transfer);
             }
             for (size_t c = 0; c < pinhole.cameras.size(); c++)
-                pinholePx.add(data.objectPoints, m.glass[c], pinhole.cameras[c]);
+                pinholePx.add(m.objectPoints, m.glass[c], pinhole.cameras[c]);
             if (!window.cameras.empty())
-                addLengths(data, window, m, lengths);
+                addLengths(window, m, lengths);
             if (!pinhole.cameras.empty())
-                addLengths(data, pinhole, m, pinholeLengths);
+                addLengths(pinhole, m, pinholeLengths);
         }
     }
     result.px = px.value();

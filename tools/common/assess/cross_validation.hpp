@@ -18,7 +18,7 @@ struct HeldOut
     double pinholePx = NONE;        //!< the same for a pinhole calibrated through the glass
     Misfit misfit;                  //!< of all images of the moments, over all folds: error against what was stated
     double transferPx = NONE;       //!< RMS through the window, the board's pose from the direct image of the pair alone
-    double lengthRms = NONE;        //!< two cameras: distances of neighbouring corners, triangulated minus true, RMS
+    double lengthRms = NONE;        //!< several cameras: distances of neighbouring corners, triangulated minus true, RMS
     double lengthMean = NONE;
     double pinholeLengthRms = NONE; //!< the same for a pinhole rig calibrated through the glass
 };

@@ -26,19 +26,13 @@ const double NARROW_RANGE = 1.2;            // farthest / nearest
 const int FEW_VIEWS = 5;
 const double HELD_OUT_CHANCE = 1e-3;        // that true +- look so wrong on held-out boards
 
-//! "camera 2: " where there are two.
+//! "camera 2: " where there are several.
 std::string of(const RigCalibration& c, int camera)
 {
     return c.data.cameraCount == 1 ? "" : format("camera %d: ", camera + 1);
 }
 
 bool equalMedia(const GlassWindow& window) { return window.innerIndex == window.outerIndex; }
-
-//! The camera that the window's parameters belong to: with one shared window, the first.
-bool ownsWindow(const RigCalibration& c, int camera)
-{
-    return camera == 0 || !(c.options.flags & GLASS_SHARED_WINDOW);
-}
 
 void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
 {
@@ -111,7 +105,7 @@ bool isOneOf(const EstimatedParameter& p, int first, int second) { return p.colu
 
 void judgeCorrelations(const RigCalibration& c, Findings& f)
 {
-    const std::vector<EstimatedParameter> free = estimatedWindowParameters(c.fit, c.options.flags);
+    const std::vector<EstimatedParameter> free = estimatedWindowParameters(c.fit);
     for (size_t i = 0; i < free.size(); i++)
         for (size_t j = i + 1; j < free.size(); j++)
         {
@@ -247,8 +241,10 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
             f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
-    f.assumed.push_back(format("the square of %g %s: all lengths are in proportion to it, and no image shows it", c.square,
-                               c.unit.c_str()));
+    f.assumed.push_back((c.square > 0 ? format("the square of %g", c.square) : std::string("the coordinates of the points in"))
+                        + " " + c.unit + ": all lengths are in proportion to it, and no image shows it");
+    if (c.options.flags & GLASS_USE_POSES)
+        f.assumed.push_back("the poses of the target, within their given standard deviations");
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.thicknessStd == 0.)
         f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
@@ -263,24 +259,41 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
                                 "all the same way, which no residual shows");
     if (!c.wrong.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
-    f.assumed.push_back("a flat board with even spacing, a flat window with parallel surfaces, and independent corner noise");
+    f.assumed.push_back((c.square > 0 ? "a flat board with even spacing" : "a rigid target that is as its coordinates say")
+                        + std::string(", a flat window with parallel surfaces, and independent corner noise"));
 }
 
-//! "camera 1: x" and "camera 2: x" become "x".
-void mergeCameras(std::vector<std::string>& sentences)
+//! "camera 1: x", "camera 2: x" and so on of all cameras become "x"; of several "cameras 1, 2: x".
+void mergeCameras(const RigCalibration& c, std::vector<std::string>& sentences)
 {
+    std::vector<std::string> merged;
     for (size_t i = 0; i < sentences.size(); i++)
     {
-        const std::string first = "camera 1: ";
-        if (sentences[i].compare(0, first.size(), first) != 0)
+        int camera = 0;
+        while (camera < c.data.cameraCount && sentences[i].compare(0, of(c, camera).size(), of(c, camera)) != 0)
+            camera++;
+        if (camera == c.data.cameraCount || c.data.cameraCount == 1)
+        {
+            merged.push_back(sentences[i]);
             continue;
-        const std::string rest = sentences[i].substr(first.size());
-        const auto twin = std::find(sentences.begin(), sentences.end(), "camera 2: " + rest);
-        if (twin == sentences.end())
-            continue;
-        sentences.erase(twin);
-        sentences[i] = rest;
+        }
+        const std::string rest = sentences[i].substr(of(c, camera).size());
+        std::vector<int> twins = {camera};
+        for (int other = camera + 1; other < c.data.cameraCount; other++)
+        {
+            const auto twin = std::find(sentences.begin() + i, sentences.end(), of(c, other) + rest);
+            if (twin == sentences.end())
+                continue;
+            sentences.erase(twin);
+            twins.push_back(other);
+        }
+        std::string numbers;
+        for (int twin : twins)
+            numbers += (numbers.empty() ? "" : ", ") + std::to_string(twin + 1);
+        merged.push_back((int)twins.size() == c.data.cameraCount ? rest
+                         : (twins.size() == 1 ? "camera " : "cameras ") + numbers + ": " + rest);
     }
+    sentences = merged;
 }
 
 } // namespace
@@ -315,7 +328,7 @@ Findings judge(const RigCalibration& calibration, const Assessment& assessment)
     judgeLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {
-        if (ownsWindow(calibration, c))
+        if (calibration.fit.rig.ownsWindow(c))
             judgeWindow(calibration, c, findings);
         judgeFit(calibration, c, findings);
         judgeViews(calibration, c, findings);
@@ -326,7 +339,7 @@ Findings judge(const RigCalibration& calibration, const Assessment& assessment)
         findings.contradictions.push_back(contradiction.sentence());
     judgeAssumptions(calibration, findings);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
-        mergeCameras(*list);
+        mergeCameras(calibration, *list);
     return findings;
 }
 

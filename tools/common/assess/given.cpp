@@ -6,7 +6,7 @@ namespace tools {
 
 bool hasPairs(const RigData& data)
 {
-    return data.countPairs(0) + (data.cameraCount == 2 ? data.countPairs(1) : 0) > 0;
+    return data.countPairs() > 0;
 }
 
 Given oneCamera(const Given& given, int camera)
@@ -15,15 +15,18 @@ Given oneCamera(const Given& given, int camera)
     one.data.cameraCount = 1;
     one.data.imageSize[0] = given.data.imageSize[camera];
     one.options.known[0] = given.options.known[camera];
-    one.options.flags &= ~GLASS_SHARED_WINDOW;
+    one.options.knownCovariance[0] = given.options.knownCovariance[camera];
+    one.options.windows.clear();
+    one.options.flags &= ~GLASS_USE_POSES;      // they are of camera 1
     one.data.moments.clear();
     for (const Moment& m : given.data.moments)
         if (m.hasDirect(camera) || m.hasGlass(camera))
         {
-            one.data.moments.push_back({});
-            one.data.moments.back().stem = m.stem;
-            one.data.moments.back().direct[0] = m.direct[camera];
-            one.data.moments.back().glass[0] = m.glass[camera];
+            Moment alone = m;
+            alone.direct = alone.glass = {};
+            alone.direct[0] = m.direct[camera];
+            alone.glass[0] = m.glass[camera];
+            one.data.moments.push_back(alone);
         }
     return one;
 }

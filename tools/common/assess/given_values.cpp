@@ -57,14 +57,16 @@ std::vector<Contradiction> contradictedValues(const RigCalibration& c)
         try
         {
             const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
-            const bool shared = c.options.flags & GLASS_SHARED_WINDOW;
-            for (int k = 0; k < (shared ? 1 : c.data.cameraCount); k++)
+            const int windows = countWindows(c.fit.rig);
+            for (int k = 0; k < c.data.cameraCount; k++)
             {
+                if (!c.fit.rig.ownsWindow(k))
+                    continue;
                 const double before = given.valueOf(c.fit.rig.cameras[k]->window());
                 const double estimate = given.valueOf(fit.rig.cameras[k]->window());
                 const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
                 if (std::abs(estimate - before) > SURE*std)
-                    contradictions.push_back({given.word + (c.data.cameraCount == 1 || shared ? std::string()
+                    contradictions.push_back({given.word + (windows == 1 ? std::string()
                                               : format(" of camera %d's window", k + 1)), given.option, before, estimate, std});
             }
         }

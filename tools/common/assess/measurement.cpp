@@ -54,24 +54,44 @@ int Measurement::inconsistent() const
 int Measurement::seenPoints() const
 {
     int count = 0;
-    for (size_t i = 0; i < pixels1.size(); i++)
-        count += seen(pixels1[i]) && (pixels2.empty() || seen(pixels2[i]));
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const auto views = std::count_if(pixels.begin(), pixels.end(), [i](const auto& image) { return seen(image[i]); });
+        count += views >= (pixels.size() == 1 ? 1 : 2);
+    }
     return count;
 }
 
-Measurement measureStereo(const Calibration& calibration, const std::vector<Point2d>& pixels1,
-                          const std::vector<Point2d>& pixels2, double pixelSigma)
+RigPixels glassPixels(const Moment& moment, int cameraCount)
+{
+    RigPixels pixels(moment.glass.begin(), moment.glass.begin() + cameraCount);
+    for (std::vector<Point2d>& image : pixels)
+        image.resize(moment.objectPoints.size(), Point2d(NOT_KNOWN, NOT_KNOWN));
+    return pixels;
+}
+
+Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, double pixelSigma)
 {
     Measurement result;
-    result.pixels1 = pixels1;
-    result.pixels2 = pixels2;
+    result.pixels = pixels;
+    std::vector<Ptr<refract::RefractiveCamera>> cameras;
+    std::vector<Mat> Rs, Ts;
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+    {
+        cameras.push_back(calibration.cameras[c].camera);
+        Rs.push_back(Mat(calibration.Rs[c]));
+        Ts.push_back(Mat(calibration.Ts[c]));
+    }
     Mat covariance;
-    refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.R,
-        calibration.T, pixels1, pixels2, result.points, result.status, refract::TRIANGULATE_OPTIMAL,
-        pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
-    result.sigma.assign(pixels1.size(), Vec3d::all(NOT_KNOWN));
+    refract::triangulateRefractive(cameras, Rs, Ts, pixels, result.points, result.status, refract::TRIANGULATE_OPTIMAL,
+                                   pixelSigma > 0 ? pixelSigma : 1., calibration.covariance, covariance);
+    // 9 is INCONSISTENT in the files of the tools, and a pixel that is not there was never finite.
+    for (uchar& status : result.status)
+        if (status == refract::REFRACT_TOO_FEW_VIEWS)
+            status = refract::REFRACT_NOT_FINITE;
+    result.sigma.assign(result.points.size(), Vec3d::all(NOT_KNOWN));
     if (pixelSigma > 0)
-        for (size_t i = 0; i < pixels1.size(); i++)
+        for (size_t i = 0; i < result.points.size(); i++)
         {
             const double* c = covariance.ptr<double>((int)i);
             result.sigma[i] = Vec3d(std::sqrt(c[0]), std::sqrt(c[4]), std::sqrt(c[8]));
@@ -86,7 +106,7 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
 {
     const auto& camera = calibration.cameras[0].camera;
     Measurement result;
-    result.pixels1 = pixels;
+    result.pixels = {pixels};
     refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
     const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
     const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
@@ -103,19 +123,19 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
 }
 
 /* The pose of least squares: dpose = K^+ (du - A dp), K: pixels by pose. */
-Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<Point2d>& pixels,
-                          double pixelSigma)
+Measurement measureTarget(const Calibration& calibration, const std::vector<Point3d>& objectPoints,
+                          const std::vector<Point2d>& pixels, double pixelSigma)
 {
     const auto& camera = calibration.cameras[0].camera;
     Vec3d rvec, tvec;
-    if (!refract::refractiveSolvePnP(target.objectPoints(), pixels, camera, rvec, tvec))
+    if (!refract::refractiveSolvePnP(objectPoints, pixels, camera, rvec, tvec))
         throw Failure("no pose of the target explains its points: check --size and --square");
     std::vector<Point3d> seenPoints;
     std::vector<Point2d> seenPixels, predicted;
     for (size_t i = 0; i < pixels.size(); i++)
         if (seen(pixels[i]))
         {
-            seenPoints.push_back(target.objectPoints()[i]);
+            seenPoints.push_back(objectPoints[i]);
             seenPixels.push_back(pixels[i]);
         }
     Measurement result;
@@ -135,8 +155,8 @@ Measurement measureTarget(const Calibration& calibration, const Target& target, 
     Mat jacobian;                               // 3x9: by rvec, of R row by row
     Rodrigues(rvec, R, jacobian);
     const MatrixXd dR = toEigen(jacobian);
-    result.pixels1 = pixels;
-    for (const Point3d& point : target.objectPoints())
+    result.pixels = {pixels};
+    for (const Point3d& point : objectPoints)
     {
         const Vec3d X(point);
         result.points.push_back(Point3d(R*X + tvec));

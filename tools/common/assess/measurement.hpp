@@ -2,7 +2,7 @@
 #define REFRACT_TOOLS_MEASUREMENT_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "target/target.hpp"
+#include "calibrate/rig_data.hpp"
 
 namespace tools {
 
@@ -10,10 +10,13 @@ namespace tools {
 and calibration explain. */
 const uchar INCONSISTENT = 9;
 
+//! A pixel of each point in each camera, NaN where it was not seen.
+using RigPixels = std::vector<std::vector<cv::Point2d>>;
+
 //! Points in the camera-1 frame; NaN where there is no answer.
 struct Measurement
 {
-    std::vector<cv::Point2d> pixels1, pixels2;      //!< as seen; pixels2 is empty for one camera
+    RigPixels pixels;                               //!< as seen
     std::vector<cv::Point3d> points;
     std::vector<cv::Vec3d> sigma;                   //!< one standard deviation of x, y, z
     std::vector<uchar> status;                      //!< cv::refract::RefractiveStatus, or INCONSISTENT
@@ -22,15 +25,17 @@ struct Measurement
 
     int answers() const;                            //!< points that are not NaN
     int inconsistent() const;
-    int seenPoints() const;                         //!< that the image shows, or both
+    int seenPoints() const;                         //!< that the image shows, or at least two
 };
+
+//! What the first cameras saw of a moment through their windows.
+RigPixels glassPixels(const Moment& moment, int cameraCount);
 
 /* The uncertainty has two parts: pixelSigma, one standard deviation of each pixel coordinate, and the calibration's own
 covariance if the file has one. Unknown pixelSigma (NaN): unknown uncertainty. */
 
-//! Maximum-likelihood triangulation.
-Measurement measureStereo(const Calibration& calibration, const std::vector<cv::Point2d>& pixels1,
-                          const std::vector<cv::Point2d>& pixels2, double pixelSigma);
+//! Maximum-likelihood triangulation by all cameras that see a point. @param pixels of each camera of the calibration
+Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, double pixelSigma);
 
 //! Where the rays of camera 1 meet a plane (a, b, c, d) of its frame.
 Measurement measureOnPlane(const Calibration& calibration, const std::vector<cv::Point2d>& pixels, const cv::Vec4d& plane,
@@ -38,8 +43,8 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<cv:
 
 /** The points of a target of known shape, from its pose to camera 1. Residuals larger than pixelSigma take its place, and are
 said in Measurement::noise. */
-Measurement measureTarget(const Calibration& calibration, const Target& target, const std::vector<cv::Point2d>& pixels,
-                          double pixelSigma);
+Measurement measureTarget(const Calibration& calibration, const std::vector<cv::Point3d>& objectPoints,
+                          const std::vector<cv::Point2d>& pixels, double pixelSigma);
 
 //! The same rig with the windows left out.
 Calibration withoutWindows(const Calibration& calibration);

@@ -41,9 +41,8 @@ std::vector<std::string> explainMisfit(const Given& given)
         if (!sentence.empty())
             sentences.push_back(sentence);
     const std::vector<Explanation> tried = {
-        wrongScale(given), wrongIndex(given), directAndGlassExchanged(given, -1), directAndGlassExchanged(given, 0),
-        directAndGlassExchanged(given, 1), camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given),
-        otherMoments(given), unpaired(given)};
+        wrongScale(given), wrongIndex(given), directAndGlassExchanged(given), directAndGlassExchangedOfOne(given),
+        camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given), otherMoments(given), unpaired(given)};
     double best = NO_FIT;
     for (const Explanation& e : tried)
         best = std::min(best, e.px);
@@ -64,8 +63,7 @@ void requireSensible(const RigCalibration& c, const Given& given)
         fault = format("the calibration does not fit its images: half of the corners lie more than %.2g px from where it puts "
                        "them", now);
     else if (hasPairs(given.data) && !hasPairs(c.data))
-        fault = format("all %d pair(s) contradict the calibration", given.data.countPairs(0)
-                       + (given.data.cameraCount == 2 ? given.data.countPairs(1) : 0));
+        fault = format("all %d pair(s) contradict the calibration", given.data.countPairs());
     if (!fault.empty())
     {
         std::vector<std::string> reasons = explainMisfit(given);

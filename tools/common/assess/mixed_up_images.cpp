@@ -5,29 +5,62 @@
 
 namespace tools {
 
-Explanation directAndGlassExchanged(const Given& given, int only)
+namespace {
+
+const int MOST_TO_EXCHANGE = 4;         // cameras: each two of them are a fit of all
+
+//! @param only of this camera; -1: of all
+RigData exchanged(const RigData& given, int only)
 {
-    if (!hasPairs(given.data) || only >= given.data.cameraCount || (only >= 0 && given.data.cameraCount == 1))
-        return {"", NO_FIT};
-    RigData data = given.data;
+    RigData data = given;
     for (Moment& m : data.moments)
         for (int c = 0; c < data.cameraCount; c++)
             if (only < 0 || only == c)
                 std::swap(m.direct[c], m.glass[c]);
-    const char* suffix = only == 1 ? "2" : "";
-    return {format("--direct%s and --glass%s exchanged", suffix, suffix), medianErrorOfFit(data, given.options)};
+    return data;
+}
+
+Explanation better(const Explanation& a, const Explanation& b) { return b.px < a.px ? b : a; }
+
+} // namespace
+
+Explanation directAndGlassExchanged(const Given& given)
+{
+    if (!hasPairs(given.data))
+        return {"", NO_FIT};
+    return {"--direct and --glass exchanged", medianErrorOfFit(exchanged(given.data, -1), given.options)};
+}
+
+Explanation directAndGlassExchangedOfOne(const Given& given)
+{
+    Explanation best{"", NO_FIT};
+    for (int c = 0; c < given.data.cameraCount && given.data.cameraCount > 1 && hasPairs(given.data); c++)
+    {
+        const std::string suffix = cameraSuffix(c);
+        best = better(best, {"--direct" + suffix + " and --glass" + suffix + " exchanged",
+                             medianErrorOfFit(exchanged(given.data, c), given.options)});
+    }
+    return best;
 }
 
 Explanation camerasExchanged(const Given& given, bool glass)
 {
-    const bool lensKnown = given.options.known[0] || given.options.known[1];
-    if (!hasPairs(given.data) || given.data.cameraCount < 2 || (!glass && !lensKnown))
-        return {"", NO_FIT};
-    RigData data = given.data;
-    for (Moment& m : data.moments)
-        glass ? std::swap(m.glass[0], m.glass[1]) : std::swap(m.direct[0], m.direct[1]);
-    const std::string sentence = glass ? "--glass and --glass2 exchanged" : "--direct and --direct2 exchanged";
-    return {sentence + (lensKnown ? "" : " (or --direct and --direct2)"), medianErrorOfFit(data, given.options)};
+    const auto& known = given.options.known;
+    const bool lensKnown = std::any_of(known.begin(), known.end(), [](const auto& camera) { return bool(camera); });
+    Explanation best{"", NO_FIT};
+    if (!hasPairs(given.data) || (!glass && !lensKnown) || given.data.cameraCount > MOST_TO_EXCHANGE)
+        return best;
+    for (int b = 1; b < given.data.cameraCount; b++)
+        for (int a = 0; a < b; a++)
+        {
+            RigData data = given.data;
+            for (Moment& m : data.moments)
+                glass ? std::swap(m.glass[a], m.glass[b]) : std::swap(m.direct[a], m.direct[b]);
+            const std::string first = cameraSuffix(a), second = cameraSuffix(b), direct = "--direct" + first + " and --direct" + second;
+            const std::string sentence = glass ? "--glass" + first + " and --glass" + second + " exchanged" : direct + " exchanged";
+            best = better(best, {sentence + (lensKnown ? "" : " (or " + direct + ")"), medianErrorOfFit(data, given.options)});
+        }
+    return best;
 }
 
 Explanation otherMoments(const Given& given)
@@ -35,13 +68,13 @@ Explanation otherMoments(const Given& given)
     if (given.data.cameraCount < 2)
         return {"", NO_FIT};
     double worst = 0.;
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < given.data.cameraCount; c++)
     {
         const Given one = oneCamera(given, c);
         worst = std::max(worst, medianErrorOfFit(one.data, one.options));
     }
-    return {"each camera calibrated alone, so equal names of camera 1 and camera 2 are not the same moment (or the cameras "
-            "moved to each other)", worst};
+    return {"each camera calibrated alone, so equal names of " + std::string(given.data.cameraCount == 2 ? "camera 1 and camera 2"
+            : "different cameras") + " are not the same moment (or the cameras moved to each other)", worst};
 }
 
 Explanation unpaired(const Given& given)
@@ -53,14 +86,14 @@ Explanation unpaired(const Given& given)
     for (const Moment& m : given.data.moments)
     {
         Moment direct = m, glass = m;
-        for (int c = 0; c < 2; c++)
+        for (int c = 0; c < data.cameraCount; c++)
         {
             direct.glass[c].clear();
             glass.direct[c].clear();
         }
         if (m.hasGlass())
             data.moments.push_back(glass);
-        if (m.hasDirect(0) || m.hasDirect(1))
+        if (m.countDirect())
             data.moments.push_back(direct);
     }
     return {"each image fitted alone, so equal names of --direct and --glass are not one place of the board (it moved, or it "

@@ -35,8 +35,8 @@ double largest(const std::vector<double>& values)
 
 std::vector<double> errorsOf(const Calibration& calibration, const PointsAtRange& seen, double range, double pixelSigma)
 {
-    const Measurement m = calibration.stereo() ? measureStereo(calibration, seen.pixels[0], seen.pixels[1], pixelSigma)
-                                               : measureOnPlane(calibration, seen.pixels[0], Vec4d(0, 0, 1, range), pixelSigma);
+    const Measurement m = calibration.single() ? measureOnPlane(calibration, seen.pixels[0], Vec4d(0, 0, 1, range), pixelSigma)
+                                               : measureRig(calibration, seen.pixels, pixelSigma);
     std::vector<double> errors;
     for (size_t i = 0; i < m.points.size(); i++)
         errors.push_back(m.status[i] == REFRACT_OK ? norm(m.sigma[i]) : NOT_SEEN);
@@ -76,18 +76,25 @@ std::vector<Point2d> gridOver(Size image, int columns, Size& grid)
 PointsAtRange pointsAtRange(const Calibration& calibration, const std::vector<Point2d>& pixels1, double range)
 {
     PointsAtRange result;
-    result.pixels[0] = pixels1;
+    result.pixels = {pixels1};
     refractivePointsOnPlane(pixels1, result.points, calibration.cameras[0].camera, Vec4d(0, 0, 1, range));
-    if (!calibration.stereo())
-        return result;
-    const Ptr<RefractiveCamera>& camera2 = calibration.cameras[1].camera;
-    refractiveProjectPoints(result.points, Mat(calibration.R), calibration.T, camera2, result.pixels[1]);
-    const Rect2d image(Point2d(-0.5, -0.5), Size2d(camera2->imageSize()));
-    for (size_t i = 0; i < pixels1.size(); i++)
-        if (!image.contains(result.pixels[1][i]))
+    const Point2d none(NOT_SEEN, NOT_SEEN);
+    for (size_t c = 1; c < calibration.cameras.size(); c++)
+    {
+        const Ptr<RefractiveCamera>& camera = calibration.cameras[c].camera;
+        std::vector<Point2d> pixels;
+        refractiveProjectPoints(result.points, Mat(calibration.Rs[c]), calibration.Ts[c], camera, pixels);
+        const Rect2d image(Point2d(-0.5, -0.5), Size2d(camera->imageSize()));
+        for (Point2d& pixel : pixels)
+            if (!image.contains(pixel))         // false for NaN
+                pixel = none;
+        result.pixels.push_back(pixels);
+    }
+    for (size_t i = 0; i < pixels1.size() && !calibration.single(); i++)
+        if (std::none_of(result.pixels.begin() + 1, result.pixels.end(), [i](const auto& pixels) { return tools::seen(pixels[i]); }))
         {
             result.points[i] = Point3d(NOT_SEEN, NOT_SEEN, NOT_SEEN);
-            result.pixels[0][i] = result.pixels[1][i] = Point2d(NOT_SEEN, NOT_SEEN);
+            result.pixels[0][i] = none;
         }
     return result;
 }

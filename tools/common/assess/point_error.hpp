@@ -1,11 +1,11 @@
 #ifndef REFRACT_TOOLS_POINT_ERROR_HPP
 #define REFRACT_TOOLS_POINT_ERROR_HPP
 
-#include "calibrate/calib_file.hpp"
+#include "assess/measurement.hpp"
 
 /* How well a point can be measured, anywhere: its expected error (one standard deviation: the root of the mean square of its
-3-D distance from the truth) from pixel noise and from the calibration's covariance. Two cameras: triangulation; one: a point
-on a plane square to the camera's axis. */
+3-D distance from the truth) from pixel noise and from the calibration's covariance. Several cameras: triangulation by those
+that see it; one: a point on a plane square to the camera's axis. */
 namespace tools {
 
 //! At one range, over a grid of pixels of camera 1 that reaches the image's borders.
@@ -32,8 +32,8 @@ ErrorMap mapErrors(const Calibration& calibration, double range, double pixelSig
 //! What the cameras see of the points where camera 1's rays through some pixels meet the plane z = range.
 struct PointsAtRange
 {
-    std::vector<cv::Point3d> points;            //!< NaN: not seen by all cameras
-    std::vector<cv::Point2d> pixels[2];         //!< exact
+    std::vector<cv::Point3d> points;            //!< NaN: not seen by camera 1 and another one, if there is one
+    RigPixels pixels;                           //!< exact; NaN where a camera does not see the point
 };
 PointsAtRange pointsAtRange(const Calibration& calibration, const std::vector<cv::Point2d>& pixels1, double range);
 

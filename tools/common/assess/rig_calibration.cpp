@@ -64,10 +64,9 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
         return SecondSolution{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
     // else those of one camera, that with most points, and their poses and the normal to fit.
     Rms seen = rmsOf(calibration, camera, true);
-    if (calibration.options.flags & GLASS_SHARED_WINDOW)
-        for (int other = 0; other < calibration.data.cameraCount; other++)
-            if (rmsOf(calibration, other, true).points > seen.points)
-                seen = rmsOf(calibration, other, true);
+    for (int other = 0; other < calibration.data.cameraCount; other++)
+        if (fit.rig.sharesWindow(camera, other) && rmsOf(calibration, other, true).points > seen.points)
+            seen = rmsOf(calibration, other, true);
     return SecondSolution{normal, excess, rmsWith(seen.px, 2.*seen.points - 6.*seen.views - 2.), seen.px};
 }
 
@@ -88,13 +87,14 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
     const Fit& fit = calibration.fit;
     for (size_t k = 0; k < fit.moments.size(); k++)
     {
-        if (!calibration.data.moments[fit.moments[k]].hasGlass(camera))
+        const Moment& m = calibration.data.moments[fit.moments[k]];
+        if (!m.hasGlass(camera))
             continue;
         Vec3d rvec, tvec;
         poseInCamera(fit, k, camera, rvec, tvec);
         Matx33d R;
         Rodrigues(rvec, R);
-        for (const Point3d& X : calibration.data.objectPoints)
+        for (const Point3d& X : m.objectPoints)
             depths.push_back((R*Vec3d(X) + tvec)[2]);
     }
     std::sort(depths.begin(), depths.end());

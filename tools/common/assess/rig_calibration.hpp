@@ -52,7 +52,7 @@ struct RigCalibration
     Limits limits;
     Label label;
     std::string unit = "mm";                    //!< of length
-    double square = 0.;                         //!< side of a square of the board, as given
+    double square = 0.;                         //!< side of a square of the board, as given; 0: there is no board
 };
 
 struct Rms

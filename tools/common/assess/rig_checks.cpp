@@ -72,9 +72,9 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
         PooledRms ignored, through;
         for (const Moment& m : data.moments)
         {
-            ignored.add(data.objectPoints, m.glass[c], bare);
+            ignored.add(m.objectPoints, m.glass[c], bare);
             if (pinhole)
-                through.add(data.objectPoints, m.glass[c], pinhole);
+                through.add(m.objectPoints, m.glass[c], pinhole);
         }
         // A lens that itself came from the glass images knows no "without".
         const bool airLens = lensSources[c].kind != LensSource::FROM_GLASS;
@@ -90,7 +90,7 @@ std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flag
     std::vector<Influence> result;
     for (int i : fit.moments)
         if (data.moments[i].hasGlass())
-            result.push_back({i, {NONE, NONE}});
+            result.push_back({i, std::vector<double>(data.cameraCount, NONE)});
     if (result.size() < 3)
         return {};
     Progress progress("leaving out one view at a time", (int)result.size(), quiet);

@@ -38,7 +38,7 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
 struct Influence
 {
     int moment;
-    double turnDeg[2];              //!< NaN: not determined without it
+    std::vector<double> turnDeg;    //!< of each camera's window; NaN: not determined without it
 };
 
 //! Moments with a glass image; empty if there are fewer than three.

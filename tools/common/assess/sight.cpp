@@ -13,33 +13,30 @@ namespace tools {
 
 namespace {
 
-//! Poses are found in the first of: direct image, glass image; of camera 1, of camera 2.
-bool startPose(const RigModel& rig, const std::vector<Point3d>& object, const Moment& m, Sight& sight)
+//! Poses are found in the first of: direct images, glass images; of camera 1, of camera 2, ...
+bool startPose(const RigModel& rig, const Moment& m, Sight& sight)
 {
     for (bool glass : {false, true})
         for (int c = 0; c < (int)rig.cameras.size(); c++)
         {
             const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
             const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
-            if (pixels.empty() || !refractiveSolvePnP(object, pixels, camera, sight.rvec, sight.tvec))
+            if (pixels.empty() || !refractiveSolvePnP(m.objectPoints, pixels, camera, sight.rvec, sight.tvec))
                 continue;
-            if (c == 1)
-            {
-                RigModel back = rig;
-                back.R = rig.R.t();
-                back.T = -(rig.R.t()*rig.T);
-                poseInCamera(back, 1, sight.rvec, sight.tvec);
-            }
+            RigModel back = rig;        // camera c -> camera 1
+            back.Rs[c] = rig.Rs[c].t();
+            back.Ts[c] = -(rig.Rs[c].t()*rig.Ts[c]);
+            poseInCamera(back, c, sight.rvec, sight.tvec);
             return true;
         }
     return false;
 }
 
 //! Gauss-Newton on the pose alone.
-ViewDerivatives atBestPose(const RigModel& rig, const std::vector<Point3d>& object, Sight& sight)
+ViewDerivatives atBestPose(const RigModel& rig, Sight& sight)
 {
     const int ITERATIONS = 4;       // from a pose that one of the images alone fits best
-    ViewDerivatives view = differentiateView(rig, object, sight.rvec, sight.tvec, sight.images);
+    ViewDerivatives view = differentiateView(rig, sight.objectPoints, sight.rvec, sight.tvec, sight.images);
     for (int i = 0; i < ITERATIONS; i++)
     {
         const VectorXd step = view.byPose.colPivHouseholderQr().solve(sight.pixels - view.predicted);
@@ -48,7 +45,7 @@ ViewDerivatives atBestPose(const RigModel& rig, const std::vector<Point3d>& obje
             sight.rvec[k] += step[k];
             sight.tvec[k] += step[3 + k];
         }
-        view = differentiateView(rig, object, sight.rvec, sight.tvec, sight.images);
+        view = differentiateView(rig, sight.objectPoints, sight.rvec, sight.tvec, sight.images);
     }
     return view;
 }
@@ -64,10 +61,11 @@ MatrixXd rootOf(const MatrixXd& covariance)
 
 } // namespace
 
-Sight sightOf(const RigModel& rig, const std::vector<Point3d>& object, const Moment& m)
+Sight sightOf(const RigModel& rig, const Moment& m)
 {
     Sight sight;
-    if (!startPose(rig, object, m, sight))
+    sight.objectPoints = m.objectPoints;
+    if (!startPose(rig, m, sight))
         throw Failure("no pose of the target explains its points in view '" + m.stem + "': check --size and --square");
     std::vector<double> pixels;
     for (int c = 0; c < (int)rig.cameras.size(); c++)
@@ -106,22 +104,22 @@ double Misfit::calibrationRatio() const
     return directions ? std::sqrt(chiSquare/directions) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Misfit misfitOf(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<Point3d>& object,
-                const std::vector<Moment>& moments)
+Misfit misfitOf(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<Moment>& moments)
 {
     const MatrixXd H = rootOf(toEigen(covariance));
     MatrixXd AH(0, H.cols());
     VectorXd r(0);
     for (const Moment& moment : moments)
     {
-        Sight sight = sightOf(rig, object, moment);
-        const ViewDerivatives view = atBestPose(rig, object, sight);
-        const MatrixXd Qt = basisWithoutPose(view.byPose).transpose();
+        Sight sight = sightOf(rig, moment);
+        const ViewDerivatives view = atBestPose(rig, sight);
+        const WithoutPose project(view.byPose);
+        const MatrixXd part = project(view.byParameters*H);
         const Eigen::Index rows = r.size();
-        AH.conservativeResize(rows + Qt.rows(), Eigen::NoChange);
-        AH.bottomRows(Qt.rows()) = Qt*(view.byParameters*H);
-        r.conservativeResize(rows + Qt.rows());
-        r.tail(Qt.rows()) = Qt*(sight.pixels - view.predicted);
+        AH.conservativeResize(rows + part.rows(), Eigen::NoChange);
+        AH.bottomRows(part.rows()) = part;
+        r.conservativeResize(rows + part.rows());
+        r.tail(part.rows()) = project(sight.pixels - view.predicted);
     }
     const Eigen::BDCSVD<MatrixXd> svd(AH, Eigen::ComputeThinU);
     Misfit misfit;

@@ -10,13 +10,14 @@ namespace tools {
 //! Images of one moment, the pixels in the order of differentiateView, and the board's pose so far.
 struct Sight
 {
+    std::vector<cv::Point3d> objectPoints;
     std::vector<ImageOfView> images;
     Eigen::VectorXd pixels;
     cv::Vec3d rvec, tvec;
 };
 
 //! The start: the pose that one of the images tells. Throws Failure if none does.
-Sight sightOf(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const Moment& moment);
+Sight sightOf(const RigModel& rig, const Moment& moment);
 
 /** How far the pixels of moments are from a calibration that has not seen them, each board where it fits best, and how far
 they should be:
@@ -37,8 +38,7 @@ struct Misfit
 };
 
 //! Throws Failure if no pose of the target explains its points.
-Misfit misfitOf(const RigModel& rig, const cv::Mat& covariance, double sigma, const std::vector<cv::Point3d>& objectPoints,
-                const std::vector<Moment>& moments);
+Misfit misfitOf(const RigModel& rig, const cv::Mat& covariance, double sigma, const std::vector<Moment>& moments);
 
 } // namespace tools
 

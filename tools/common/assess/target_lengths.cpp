@@ -5,30 +5,30 @@ namespace tools {
 using cv::Point3d;
 
 //! Measured and true, of each pair of neighbours that was measured.
-static std::vector<std::pair<double, double>> lengthsOf(const Target& target, const std::vector<Point3d>& points)
+static std::vector<std::pair<double, double>> lengthsOf(const Moment& m, const std::vector<Point3d>& points)
 {
     std::vector<std::pair<double, double>> lengths;
-    for (const auto& pair : target.neighbours())
+    for (const auto& pair : m.neighbours)
     {
         const double measured = cv::norm(points[pair.second] - points[pair.first]);
         if (measured == measured)
-            lengths.push_back({measured, cv::norm(target.objectPoints()[pair.second] - target.objectPoints()[pair.first])});
+            lengths.push_back({measured, cv::norm(m.objectPoints[pair.second] - m.objectPoints[pair.first])});
     }
     return lengths;
 }
 
-std::vector<double> lengthErrors(const Target& target, const std::vector<Point3d>& points)
+std::vector<double> lengthErrors(const Moment& m, const std::vector<Point3d>& points)
 {
     std::vector<double> errors;
-    for (const auto& length : lengthsOf(target, points))
+    for (const auto& length : lengthsOf(m, points))
         errors.push_back(length.first - length.second);
     return errors;
 }
 
-std::vector<double> lengthRatios(const Target& target, const std::vector<Point3d>& points)
+std::vector<double> lengthRatios(const Moment& m, const std::vector<Point3d>& points)
 {
     std::vector<double> ratios;
-    for (const auto& length : lengthsOf(target, points))
+    for (const auto& length : lengthsOf(m, points))
         ratios.push_back(length.first/length.second);
     return ratios;
 }

@@ -29,21 +29,22 @@ const int GRID_COLUMNS = 9;
 struct Cause
 {
     std::string name;
-    int camera;                         //!< -1: all
+    int camera;                         //!< in whose frame tilts are, and its window's if `own`
+    bool own;                           //!< of that window alone; else of all
     std::function<void(GlassWindow&)> spoil;
-    std::vector<Vec3d> tilts;           //!< of the outer surface, each tried on its own, in the frame of its camera
+    std::vector<Vec3d> tilts;           //!< of the outer surface, each tried on its own
     bool nudge = false;                 //!< they are not tilts but shifts of the boards seen through the window, camera 1
     std::function<void(std::vector<Point3d>&)> deform = nullptr;        //!< the board that is seen
 
-    bool concerns(int k) const { return camera < 0 || camera == k; }
+    bool concerns(const RigModel& rig, int k) const { return !own || rig.sharesWindow(camera, k); }
 };
 
-//! One pane before both cameras lies to camera 2 as R turns it, and is thicker there by the way along the tilt.
+//! One pane before several cameras lies to each as R turns it, and is thicker there by the way along the tilt.
 Wedge wedgeBefore(const RigModel& rig, const Cause& cause, int camera, const Vec3d& tilt)
 {
-    if (camera == cause.camera || camera == 0)
-        return {tilt, 0.};
-    return {rig.R*tilt, tilt.dot(rig.R.t()*rig.T)};
+    const Matx33d R = rig.Rs[camera]*rig.Rs[cause.camera].t();             // from the camera whose frame the tilt is in
+    const Vec3d T = rig.Ts[camera] - R*rig.Ts[cause.camera];
+    return {R*tilt, tilt.dot(R.t()*T)};
 }
 
 //! Points of the working volume as the calibrated rig sees them.
@@ -72,8 +73,8 @@ public:
             PointsAtRange s = seen_[k];
             for (int c = 0; c < (int)truth.cameras.size(); c++)
                 bend(truth, cause, c, s.points, tilt, s.pixels[c]);
-            const Measurement m = calibration.stereo() ? measureStereo(calibration, s.pixels[0], s.pixels[1], 0.)
-                : measureOnPlane(calibration, s.pixels[0], Vec4d(0, 0, 1, range_[k]), 0.);
+            const Measurement m = calibration.single() ? measureOnPlane(calibration, s.pixels[0], Vec4d(0, 0, 1, range_[k]), 0.)
+                                                       : measureRig(calibration, s.pixels, 0.);
             for (size_t i = 0; i < m.points.size(); i++)
                 moved.push_back(m.points[i] - s.points[i]);
         }
@@ -104,11 +105,11 @@ public:
     static void bend(const RigModel& truth, const Cause& cause, int camera, const std::vector<Point3d>& points,
                      const Vec3d& tilt, std::vector<Point2d>& pixels)
     {
-        if (cause.nudge || !cause.concerns(camera) || tilt == Vec3d())
+        if (cause.nudge || !cause.concerns(truth, camera) || tilt == Vec3d())
             return;
         std::vector<Point3d> inCamera;
         for (const Point3d& X : points)
-            inCamera.push_back(camera == 0 ? X : Point3d(truth.R*Vec3d(X) + truth.T));
+            inCamera.push_back(Point3d(truth.Rs[camera]*Vec3d(X) + truth.Ts[camera]));
         const std::vector<Point2d> shift = wedgeShift(truth.cameras[camera], inCamera,
                                                       wedgeBefore(truth, cause, camera, tilt));
         for (size_t i = 0; i < pixels.size(); i++)
@@ -134,7 +135,8 @@ RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
             {
                 Vec3d rvec = c.fit.rvecs[k], tvec = c.fit.tvecs[k] + (moved ? shift : Vec3d());
                 poseInCamera(c.fit.rig, camera, rvec, tvec);
-                refractiveProjectPoints(data.objectPoints, rvec, tvec, c.fit.rig.cameras[camera], moved ? after : before);
+                refractiveProjectPoints(data.moments[c.fit.moments[k]].objectPoints, rvec, tvec, c.fit.rig.cameras[camera],
+                                        moved ? after : before);
             }
             for (size_t i = 0; i < pixels.size(); i++)
                 pixels[i] += after[i] - before[i];
@@ -146,24 +148,26 @@ RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
 RigData deformedData(const RigCalibration& c, const Cause& cause)
 {
     RigData data = c.data;
-    std::vector<Point3d> board = data.objectPoints;
-    cause.deform(board);
     for (size_t k = 0; k < c.fit.moments.size(); k++)
+    {
+        Moment& m = data.moments[c.fit.moments[k]];
+        std::vector<Point3d> deformed = m.objectPoints;
+        cause.deform(deformed);
         for (int camera = 0; camera < data.cameraCount; camera++)
             for (bool glass : {false, true})
             {
-                Moment& m = data.moments[c.fit.moments[k]];
                 std::vector<Point2d>& pixels = (glass ? m.glass : m.direct)[camera];
                 const Ptr<RefractiveCamera> in = c.fit.rig.cameras[camera];
                 const Ptr<RefractiveCamera> by = glass ? in : copyWithWindow(in, GlassWindow());
                 Vec3d rvec, tvec;
                 poseInCamera(c.fit, k, camera, rvec, tvec);
                 std::vector<Point2d> before, after;
-                refractiveProjectPoints(data.objectPoints, rvec, tvec, by, before);
-                refractiveProjectPoints(board, rvec, tvec, by, after);
+                refractiveProjectPoints(m.objectPoints, rvec, tvec, by, before);
+                refractiveProjectPoints(deformed, rvec, tvec, by, after);
                 for (size_t i = 0; i < pixels.size(); i++)
                     pixels[i] += after[i] - before[i];
             }
+    }
     return data;
 }
 
@@ -180,7 +184,7 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
         Matx33d R;
         Rodrigues(c.fit.rvecs[k], R);
         std::vector<Point3d> points;
-        for (const Point3d& X : data.objectPoints)
+        for (const Point3d& X : data.moments[c.fit.moments[k]].objectPoints)
             points.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
         for (int camera = 0; camera < data.cameraCount; camera++)
             Volume::bend(c.fit.rig, cause, camera, points, tilt, data.moments[c.fit.moments[k]].glass[camera]);
@@ -192,7 +196,7 @@ RigModel refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
 {
     RigModel start = c.fit.rig.clone();
     for (int k = 0; k < c.data.cameraCount; k++)
-        if (cause.spoil && cause.concerns(k))
+        if (cause.spoil && cause.concerns(start, k))
         {
             GlassWindow window = start.cameras[k]->window();
             cause.spoil(window);
@@ -245,54 +249,69 @@ void bow(std::vector<Point3d>& board, double height)
         X.z += height*(1. - std::pow(norm(X - middle)/farthest, 2));
 }
 
-//! What no image shows of the board itself, which is calibrated with as given.
-std::vector<Cause> causesOfBoard(double millimetre)
+//! What no image shows of the target itself, which is calibrated with as given.
+std::vector<Cause> causesOfTarget(bool isBoard, double millimetre)
 {
     const auto scale = [](std::vector<Point3d>& board) {
         for (Point3d& X : board)
             X *= 1. + SQUARE;
     };
     const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM*millimetre); };
-    return {{"square wrong by 0.1 %", -1, nullptr, {Vec3d()}, false, scale},
-            {"board bent by 0.1 mm", -1, nullptr, {Vec3d()}, false, bend}};
+    if (!isBoard)
+        return {{"coordinates wrong by 0.1 %", 0, false, nullptr, {Vec3d()}, false, scale}};
+    return {{"square wrong by 0.1 %", 0, false, nullptr, {Vec3d()}, false, scale},
+            {"board bent by 0.1 mm", 0, false, nullptr, {Vec3d()}, false, bend}};
+}
+
+//! ", camera 2", or all that look through it; nothing for a single camera.
+std::string whoseWindow(const RigModel& rig, int camera)
+{
+    std::string list;
+    int count = 0;
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        if (rig.sharesWindow(camera, c))
+            list += (count++ ? ", " : "") + std::to_string(c + 1);
+    if (rig.cameras.size() == 1)
+        return "";
+    if (count == (int)rig.cameras.size())
+        return count == 2 ? ", both cameras" : ", all cameras";
+    return (count == 1 ? ", camera " : ", cameras ") + list;
 }
 
 std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
 {
     std::vector<Cause> causes;
-    const bool shared = c.options.flags & GLASS_SHARED_WINDOW;
-    for (int k = 0; k < (shared ? 1 : c.data.cameraCount); k++)
+    for (int k = 0; k < c.data.cameraCount; k++)
     {
         const GlassWindow window = c.fit.rig.cameras[k]->window();
-        const std::string whose = c.data.cameraCount == 1 ? "" : shared ? ", both cameras" : format(", camera %d", k + 1);
-        const int target = shared ? -1 : k;
-        if (window.thickness.empty())
+        if (window.thickness.empty() || !c.fit.rig.ownsWindow(k))
             continue;
+        const std::string whose = whoseWindow(c.fit.rig, k);
         const size_t layer = std::max_element(window.thickness.begin(), window.thickness.end()) - window.thickness.begin();
         const std::string which = window.thickness.size() == 1 ? "" : format(" of layer %zu", layer + 1);
         if (!(c.options.flags & GLASS_FREE_THICKNESS))
-            causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, target, [=](GlassWindow& w) {
+            causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, k, true, [=](GlassWindow& w) {
                 w.thickness[layer] += THICKNESS_MM*millimetre;
             }, {Vec3d()}});
         if (!(c.options.flags & GLASS_FREE_INDEX))
-            causes.push_back({"index" + which + " wrong by 0.001" + whose, target, [=](GlassWindow& w) {
+            causes.push_back({"index" + which + " wrong by 0.001" + whose, k, true, [=](GlassWindow& w) {
                 w.index[layer] += INDEX;
             }, {Vec3d()}});
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
-        causes.push_back({"wedge of 1 arc minute between the faces" + whose, target, nullptr,
+        causes.push_back({"wedge of 1 arc minute between the faces" + whose, k, true, nullptr,
                           {ARC_MINUTE*across, ARC_MINUTE*window.normal.cross(across)}});
     }
-    if (c.data.countPairs(0) + (c.data.cameraCount == 2 ? c.data.countPairs(1) : 0))
+    if (c.data.countPairs())
     {
         const double shift = NUDGE_MM*millimetre;
-        causes.push_back({"boards moved by 0.1 mm between direct and glass", -1, nullptr,
+        causes.push_back({"boards moved by 0.1 mm between direct and glass", 0, false, nullptr,
                           {Vec3d(shift, 0, 0), Vec3d(0, shift, 0), Vec3d(0, 0, shift)}, true});
     }
     const GlassWindow first = c.fit.rig.cameras[0]->window();
     if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))
-        causes.push_back({"index of the scene's medium wrong by 0.001", -1, [](GlassWindow& w) { w.outerIndex += INDEX; },
+        causes.push_back({"index of the scene's medium wrong by 0.001", 0, false, [](GlassWindow& w) { w.outerIndex += INDEX; },
                           {Vec3d()}});
-    for (const Cause& cause : causesOfBoard(millimetre))
+    for (const Cause& cause : causesOfTarget(c.square > 0, millimetre))
         causes.push_back(cause);
     return causes;
 }

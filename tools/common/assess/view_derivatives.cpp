@@ -3,7 +3,6 @@
 #include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 using namespace cv;
 using namespace cv::refract;
@@ -21,9 +20,9 @@ struct PoseInCamera
         if (camera == 0)
             return;
         Vec3d rigRvec;
-        Rodrigues(rig.R, rigRvec);
+        Rodrigues(rig.Rs[camera], rigRvec);
         Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
-        composeRT(rvec1, tvec1, rigRvec, rig.T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
+        composeRT(rvec1, tvec1, rigRvec, rig.Ts[camera], r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
         rvec = Vec3d(r.ptr<double>());
         tvec = Vec3d(t.ptr<double>());
         byPose << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
@@ -38,10 +37,10 @@ Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
     return glass ? rig.cameras[camera] : copyWithWindow(rig.cameras[camera], GlassWindow());
 }
 
-int parameterCount(const RigModel& rig)
+//! Where R and T of a camera stand, after the parameters of all cameras.
+int placeColumn(const RigModel& rig, int camera)
 {
-    const int cameras = (int)rig.cameras.size();
-    return columnsOf(rig, cameras - 1).end + (cameras == 2 ? 6 : 0);
+    return columnsOf(rig, (int)rig.cameras.size() - 1).end + 6*(camera - 1);
 }
 
 } // namespace
@@ -55,7 +54,7 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
     ViewDerivatives view;
     view.predicted.resize(rows);
     view.byPose.resize(rows, 6);
-    view.byParameters = MatrixXd::Zero(rows, parameterCount(rig));
+    view.byParameters = MatrixXd::Zero(rows, placeColumn(rig, (int)rig.cameras.size()));
     int row = 0;
     for (const ImageOfView& image : images)
     {
@@ -77,8 +76,8 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
         }
         view.byPose.middleRows(row, n) = J.leftCols(6)*pose.byPose;
         view.byParameters.block(row, at.lens, n, own) = J.middleCols(6, own);
-        if (image.camera == 1)
-            view.byParameters.block(row, at.end, n, 6) = J.leftCols(6)*pose.byRig;
+        if (image.camera > 0)
+            view.byParameters.block(row, placeColumn(rig, image.camera), n, 6) = J.leftCols(6)*pose.byRig;
         row += n;
     }
     return view;
@@ -99,12 +98,21 @@ ImageOfView pointsInImage(const RigModel& rig, const std::vector<Point3d>& objec
     return result;
 }
 
-MatrixXd basisWithoutPose(const MatrixXd& byPose)
+//! Columns of one length: rotations and translations are in different units.
+static MatrixXd scaled(const MatrixXd& byPose)
 {
     const Eigen::RowVectorXd scale = byPose.colwise().norm().cwiseMax(1e-300);
-    const Eigen::HouseholderQR<MatrixXd> qr(byPose.array().rowwise()/scale.array());
-    const MatrixXd Q = qr.householderQ();
-    return Q.rightCols(byPose.rows() - byPose.cols());
+    return byPose.array().rowwise()/scale.array();
+}
+
+WithoutPose::WithoutPose(const MatrixXd& byPose) : qr_(scaled(byPose)) {}
+
+MatrixXd WithoutPose::operator()(const MatrixXd& rows) const
+{
+    // Not as a product: Q has as many columns as the view has rows.
+    MatrixXd rotated = rows;
+    rotated.applyOnTheLeft(qr_.householderQ().adjoint());
+    return rotated.bottomRows(rows.rows() - qr_.cols());
 }
 
 MatrixXd covarianceWith(const MatrixXd& covariance, const MatrixXd& byParameters, double sigma)

@@ -2,7 +2,7 @@
 #define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 
 #include "calibrate/rig_model.hpp"
-#include <Eigen/Core>
+#include <Eigen/QR>
 
 /* What one view of the target, taken or only planned, tells about a calibrated rig, to first order:
 
@@ -34,8 +34,16 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<cv::Poi
 ImageOfView pointsInImage(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
                           const cv::Vec3d& tvec, int camera, bool glass);
 
-//! An orthonormal basis of what no change of the pose can do: columns; its transpose times the residuals is free of the pose.
-Eigen::MatrixXd basisWithoutPose(const Eigen::MatrixXd& byPose);
+//! Takes out of columns of a view's rows what a change of the pose can do: Q^T rows, Q an orthonormal basis of the rest.
+class WithoutPose
+{
+public:
+    explicit WithoutPose(const Eigen::MatrixXd& byPose);
+    Eigen::MatrixXd operator()(const Eigen::MatrixXd& rows) const;
+
+private:
+    Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+};
 
 /** The covariance of the parameters when a view has been added.
 @param byParameters free of the pose.

@@ -43,11 +43,10 @@ struct FreeNormal
 class CheckProblem
 {
 public:
-    CheckProblem(const CheckBasis& basis, const std::vector<Point3d>& object, const std::vector<Moment>& moments)
-        : basis_(basis), object_(object), rig_(basis.rig.clone())
+    CheckProblem(const CheckBasis& basis, const std::vector<Moment>& moments) : basis_(basis), rig_(basis.rig.clone())
     {
         for (const Moment& m : moments)
-            sights_.push_back(sightOf(basis.rig, object, m));
+            sights_.push_back(sightOf(basis.rig, m));
         for (int c = 0; c < (int)rig_.cameras.size(); c++)
             if (std::any_of(moments.begin(), moments.end(), [c](const Moment& m) { return m.hasGlass(c); }))
                 normals_.emplace_back(rig_, c);
@@ -121,9 +120,11 @@ private:
             rows += sight.pixels.size() - 6;
         for (const Sight& sight : sights_)
         {
-            views.push_back(differentiateView(rig_, object_, sight.rvec, sight.tvec, sight.images));
+            views.push_back(differentiateView(rig_, sight.objectPoints, sight.rvec, sight.tvec, sight.images));
             const ViewDerivatives& view = views.back();
-            const MatrixXd Q = basisWithoutPose(view.byPose).transpose();
+            const WithoutPose project(view.byPose);
+            const MatrixXd byParameters = project(view.byParameters);
+            const Eigen::Index count = byParameters.rows();
             if (A.size() == 0)
             {
                 A.resize(rows, view.byParameters.cols());
@@ -131,10 +132,10 @@ private:
                 r.resize(rows);
                 rows = 0;
             }
-            A.middleRows(rows, Q.rows()) = Q*view.byParameters;
-            B.middleRows(rows, Q.rows()) = Q*byTilts(view);
-            r.segment(rows, Q.rows()) = Q*(sight.pixels - view.predicted);
-            rows += Q.rows();
+            A.middleRows(rows, count) = byParameters;
+            B.middleRows(rows, count) = project(byTilts(view));
+            r.segment(rows, count) = project(sight.pixels - view.predicted);
+            rows += count;
         }
     }
 
@@ -150,7 +151,6 @@ private:
     }
 
     const CheckBasis& basis_;
-    const std::vector<Point3d>& object_;
     RigModel rig_;                   // the windows as they are now
     std::vector<Sight> sights_;
     std::vector<FreeNormal> normals_;
@@ -158,10 +158,9 @@ private:
 
 } // namespace
 
-CheckResult checkTilts(const CheckBasis& basis, const std::vector<Point3d>& objectPoints,
-                       const std::vector<Moment>& moments, double falseAlarm)
+CheckResult checkTilts(const CheckBasis& basis, const std::vector<Moment>& moments, double falseAlarm)
 {
-    CheckProblem problem(basis, objectPoints, moments);
+    CheckProblem problem(basis, moments);
     problem.solve();
     CheckResult result;
     const size_t count = problem.normals().size();

@@ -41,8 +41,7 @@ struct CheckResult
 };
 
 //! Throws Failure if no moment has an image through a window, or a target's pose cannot be found.
-CheckResult checkTilts(const CheckBasis& basis, const std::vector<cv::Point3d>& objectPoints,
-                       const std::vector<Moment>& moments, double falseAlarm);
+CheckResult checkTilts(const CheckBasis& basis, const std::vector<Moment>& moments, double falseAlarm);
 
 /** Probability that a tilt of this size, in the direction in which it shows least, is found.
 @param share of the covariance: 1/2 for twice as many images */

@@ -16,10 +16,12 @@ const double WHOLE_SQUARES = 0.25;      // of a shift remains if it is one by wh
 Point shiftOfPair(const Given& given, const Moment& m, int camera)
 {
     std::vector<Point2d> board, direct, glass;
-    for (size_t i = 0; i < given.data.objectPoints.size(); i++)
+    if (m.neighbours.empty())           // no board
+        return Point();
+    for (size_t i = 0; i < m.objectPoints.size(); i++)
         if (seen(m.direct[camera][i]) && seen(m.glass[camera][i]))
         {
-            board.emplace_back(given.data.objectPoints[i].x, given.data.objectPoints[i].y);
+            board.emplace_back(m.objectPoints[i].x, m.objectPoints[i].y);
             direct.push_back(m.direct[camera][i]);
             glass.push_back(m.glass[camera][i]);
         }

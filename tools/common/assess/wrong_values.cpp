@@ -49,6 +49,8 @@ Explanation wrongScale(const Given& given)
         best = px;
         ratio = rig.cameras[0]->window().thickness[0]/pane.thickness[0];
     }
+    if (!(given.square > 0))
+        return {format("lengths %.3g times as long%s", 1./ratio, isRatioOfUnits(ratio) ? " (a wrong unit?)" : ""), best};
     std::string sentence = format("--square=%.3g in place of %.4g%s", given.square/ratio, given.square,
                                   isRatioOfUnits(ratio) ? " (a wrong unit?)" : "");
     if (given.options.window.thickness.size() == 1)
@@ -84,7 +86,7 @@ Explanation otherMedium(const Given& given)
     {
         options.flags |= GLASS_FREE_DISTANCE;
         if (window.distance == 0.)
-            window.distance = given.square;
+            window.distance = startDistance(given.data, given.square);
     }
     if (window.thickness.empty() && window.outerIndex == window.innerIndex)
         return {"", NO_FIT};

@@ -128,10 +128,10 @@ double readNotNegative(const FileStorage& fs, const char* key, double otherwise,
     return node.empty() ? otherwise : number;
 }
 
-//! In the order of calibrateGlass: lens, normal, distance, thickness, index, innerIndex, outerIndex; of two cameras, R and T.
+//! In the order of calibrateGlassRig: lens, normal, distance, thickness, index, innerIndex, outerIndex of each; then R and T.
 void requireCovarianceOf(const Calibration& calibration, const std::string& filename)
 {
-    int count = calibration.stereo() ? 6 : 0;
+    int count = 6*((int)calibration.cameras.size() - 1);
     for (const CameraCalibration& c : calibration.cameras)
         count += (int)c.camera->parameterNames().size();
     const cv::Mat& C = calibration.covariance;
@@ -140,16 +140,62 @@ void requireCovarianceOf(const Calibration& calibration, const std::string& file
                              "again", filename.c_str(), C.rows, C.cols, count));
 }
 
-//! R and T of a file of two cameras.
-void readRigid(const FileStorage& fs, const std::string& filename, Calibration& calibration)
+std::string cameraName(size_t camera) { return "camera" + std::to_string(camera + 1); }
+
+//! What follows R and T of a camera after the first: nothing for the second, then its number.
+std::string placeSuffix(size_t camera) { return camera == 1 ? "" : std::to_string(camera + 1); }
+
+//! R and T of a camera after the first.
+void readPlace(const FileStorage& fs, const std::string& filename, size_t camera, cv::Matx33d& R, cv::Vec3d& T)
 {
-    const cv::Mat R = readMatrix(fs["R"]), T = readMatrix(fs["T"]);
-    if (R.total() != 9 || T.total() != 3)
-        throw Failure("'" + filename + "' has two cameras but no 3x3 R and no T of 3 numbers beside them");
-    calibration.R = cv::Matx33d(R.ptr<double>());
-    calibration.T = cv::Vec3d(T.ptr<double>());
-    if (cv::norm(calibration.R*calibration.R.t() - cv::Matx33d::eye()) > 1e-6)
-        throw Failure("'" + filename + "': R is not a rotation");
+    const std::string suffix = placeSuffix(camera);
+    const cv::Mat rotation = readMatrix(fs["R" + suffix]), translation = readMatrix(fs["T" + suffix]);
+    if (rotation.total() != 9 || translation.total() != 3)
+        throw Failure("'" + filename + "' has a " + cameraName(camera) + " but no 3x3 R" + suffix + " and no T" + suffix
+                      + " of 3 numbers beside it");
+    R = cv::Matx33d(rotation.ptr<double>());
+    T = cv::Vec3d(translation.ptr<double>());
+    if (cv::norm(R*R.t() - cv::Matx33d::eye()) > 1e-6)
+        throw Failure("'" + filename + "': R" + suffix + " is not a rotation");
+}
+
+//! Equal numbers share a window; empty where the file does not say.
+std::vector<int> readWindows(const FileNode& node, const std::string& filename, size_t cameras)
+{
+    std::vector<int> windows;
+    for (const FileNode& number : node.isSeq() ? node : FileNode())
+        if (number.isInt())
+            windows.push_back((int)number);
+    if (!node.empty() && (!node.isSeq() || node.size() != cameras || windows.size() != cameras))
+        throw Failure("'" + filename + format("': window_of_camera must have one whole number for each of %zu cameras", cameras));
+    return windows;
+}
+
+//! Cameras under keys of their own.
+void readCameras(const FileStorage& fs, const std::string& filename, Calibration& calibration)
+{
+    const size_t MOST = 16;
+    if (!fs[cameraName(MOST)].empty())
+        throw Failure("'" + filename + "' has more than 16 cameras");
+    for (size_t c = 0; c < 2 || (c < MOST && !fs[cameraName(c)].empty()); c++)
+    {
+        cv::Matx33d R = cv::Matx33d::eye();
+        cv::Vec3d T;
+        const CameraCalibration camera = readCamera(fs[cameraName(c)], filename, cameraName(c));
+        if (c > 0)
+            readPlace(fs, filename, c, R, T);
+        calibration.add(camera, R, T);
+    }
+    calibration.windows = readWindows(fs["window_of_camera"], filename, calibration.cameras.size());
+}
+
+//! Where a camera's parameters begin in the covariance of its file.
+int firstParameter(const std::string& filename, const std::string& name)
+{
+    int first = 0;
+    for (size_t c = 0; cameraName(c) != name && !name.empty(); c++)
+        first += (int)RefractiveCamera::read(filename, cameraName(c))->parameterNames().size();
+    return first;
 }
 
 std::time_t newestOf(const std::vector<std::string>& files)
@@ -187,6 +233,13 @@ void writeLabel(FileStorage& fs, const Label& label)
 
 } // namespace
 
+void Calibration::add(const CameraCalibration& camera, const cv::Matx33d& R, const cv::Vec3d& T)
+{
+    cameras.push_back(camera);
+    Rs.push_back(R);
+    Ts.push_back(T);
+}
+
 std::string timeOfFiles(const std::vector<std::string>& inputs)
 {
     const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
@@ -218,14 +271,12 @@ KnownLens readLens(const std::string& filename, const std::string& name)
         return lens;
     const FileStorage fs(filename, FileStorage::READ);
     FileNode node = fs.root();
-    int first = 0;
+    const int first = firstParameter(filename, name);
     if (!name.empty())
         node = node[name];
     else if (node["camera_matrix"].empty())
         node = node["camera1"];
     requireDistortion(node, filename);
-    if (name == "camera2")
-        first = (int)RefractiveCamera::read(filename, "camera1")->parameterNames().size();
     const cv::Mat covariance = readCovariance(fs, filename);
     const int count = lens.camera->lensParameters().rows;
     if (covariance.rows == covariance.cols && covariance.rows >= first + (int)lens.camera->parameterNames().size())
@@ -240,19 +291,15 @@ Calibration readCalibration(const std::string& filename)
     Calibration calibration;
     if (isCameraModel(filename))
     {
-        calibration.cameras.push_back({RefractiveCamera::read(filename), WindowStd(), -1., false});
+        calibration.add({RefractiveCamera::read(filename), WindowStd(), -1., false});
         return calibration;
     }
     RefractiveCamera::read(filename);       // refuses what is no such file, in any way
     const FileStorage fs(filename, FileStorage::READ);
     if (fs["camera1"].empty())
-        calibration.cameras.push_back(readCamera(fs.root(), filename, ""));
+        calibration.add(readCamera(fs.root(), filename, ""));
     else
-    {
-        for (const std::string name : {"camera1", "camera2"})
-            calibration.cameras.push_back(readCamera(fs[name], filename, name));
-        readRigid(fs, filename, calibration);
-    }
+        readCameras(fs, filename, calibration);
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.covariance = readCovariance(fs, filename);
     requireCovarianceOf(calibration, filename);
@@ -274,7 +321,7 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const CameraCalibration& camera = calibration.cameras[c];
-        const std::string which = calibration.stereo() ? format(" for camera %d", (int)c + 1) : "";
+        const std::string which = calibration.single() ? "" : format(" for camera %d", (int)c + 1);
         if (!camera.windowGiven && !noWindow)
             throw Failure("'" + filename + "' has no glass_window" + which + ": calibrate through the glass with refract_calib"
                           + (option.empty() ? "" : ", or say " + option + " if there is none"));
@@ -284,6 +331,27 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
             throw Failure("'" + filename + "': the normal" + which + format(" has the length %g in place of 1: was the file "
                           "edited? Calibrate again, or divide its three numbers by that", camera.normalLength));
     }
+}
+
+void writeRig(FileStorage& fs, const Calibration& calibration)
+{
+    if (calibration.single())
+    {
+        writeCamera(fs, calibration.cameras[0]);
+        return;
+    }
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+    {
+        fs << cameraName(c) << "{";
+        writeCamera(fs, calibration.cameras[c]);
+        fs << "}";
+    }
+    for (size_t c = 1; c < calibration.cameras.size(); c++)
+        fs << "R" + placeSuffix(c) << cv::Mat(calibration.Rs[c]) << "T" + placeSuffix(c) << cv::Mat(calibration.Ts[c]);
+    if (!calibration.windows.empty())
+        fs << "window_of_camera" << calibration.windows;
+    if (calibration.rms >= 0)
+        fs << "rms" << calibration.rms;
 }
 
 void writeCalibration(const std::string& filename, const Calibration& calibration)
@@ -297,20 +365,7 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
     writeLabel(fs, calibration.label);
     if (calibration.square > 0)
         fs << "unit" << calibration.unit << "target_square" << calibration.square;
-    if (calibration.stereo())
-    {
-        for (int i = 0; i < 2; i++)
-        {
-            fs << "camera" + std::to_string(i + 1) << "{";
-            writeCamera(fs, calibration.cameras[i]);
-            fs << "}";
-        }
-        fs << "R" << cv::Mat(calibration.R) << "T" << cv::Mat(calibration.T);
-        if (calibration.rms >= 0)
-            fs << "rms" << calibration.rms;
-    }
-    else
-        writeCamera(fs, calibration.cameras.at(0));
+    writeRig(fs, calibration);
     if (calibration.freedom > 0)
         fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;
     if (!calibration.covariance.empty())

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-/* calib.yml: one camera at top level, two under `camera1`, `camera2` with `R`, `T` beside them.
+/* calib.yml: one camera at top level; two under `camera1`, `camera2` with `R`, `T` beside them; more: `camera3` with `R3`, `T3`
+and so on; window_of_camera where some share a window: equal numbers look through the same one.
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
 thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
@@ -41,11 +42,12 @@ struct Label
 
 struct Calibration
 {
-    std::vector<CameraCalibration> cameras;     //!< one or two
-    cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
-    cv::Vec3d T;
+    std::vector<CameraCalibration> cameras;
+    std::vector<cv::Matx33d> Rs;                //!< camera 1 -> each camera; the first is the identity
+    std::vector<cv::Vec3d> Ts;
+    std::vector<int> windows;                   //!< which window each camera looks through; empty: each has its own
     double rms = -1.;                           //!< px, over all cameras; negative where unknown
-    cv::Mat covariance;     //!< of calibrateGlass or stereoCalibrateGlass, in their order; empty where unknown
+    cv::Mat covariance;     //!< of calibrateGlassRig, in its order; empty where unknown
     double sigma = -1.;     //!< standard deviation of a pixel coordinate, from the residuals; negative where unknown
     double freedom = 0.;    //!< degrees of freedom of those residuals; 0 where unknown
     std::string unit;       //!< of length; empty where unknown
@@ -54,7 +56,9 @@ struct Calibration
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()
 
-    bool stereo() const { return cameras.size() == 2; }
+    //! A camera at the end, where it is from camera 1.
+    void add(const CameraCalibration& camera, const cv::Matx33d& R = cv::Matx33d::eye(), const cv::Vec3d& T = cv::Vec3d());
+    bool single() const { return cameras.size() == 1; }
 };
 
 /** Throws cv::Exception or Failure that names the file; also if a lens comes without distortion_coefficients or the
@@ -78,6 +82,9 @@ struct KnownLens
 /** A lens as RefractiveCamera::read takes it, which is content without distortion_coefficients; this is not.
 @param name of the camera in the file, as there */
 KnownLens readLens(const std::string& filename, const std::string& name = "");
+
+//! The cameras, their windows and places, as all files of a rig have them.
+void writeRig(cv::FileStorage& fs, const Calibration& calibration);
 
 //! Complete or not at all. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);

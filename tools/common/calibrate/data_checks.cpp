@@ -48,6 +48,8 @@ std::string examples(const std::set<std::string>& stems)
 
 bool areOneImage(const DetectedView& a, const DetectedView& b)
 {
+    if (a.points.size() != b.points.size())
+        return false;
     for (size_t i = 0; i < a.points.size(); i++)
     {
         if (seen(a.points[i]) != seen(b.points[i]))
@@ -62,7 +64,7 @@ void noticeDuplicates(const RigViewSets& sets, std::vector<std::string>& notices
 {
     struct Named { const DetectedView* view; std::string name; };
     std::vector<Named> all;
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
             for (const DetectedView& view : (through ? sets.glass : sets.direct)[c].views)
                 all.push_back({&view, "'" + view.path + "'"});
@@ -76,14 +78,16 @@ void noticeDuplicates(const RigViewSets& sets, std::vector<std::string>& notices
             }
 }
 
-//! Unit normal of the board in the frame of the camera, roughly: for a usual lens, without its distortion.
-Vec3d boardNormal(const RigData& data, const std::vector<Point2d>& pixels, Size size)
+//! Unit normal of the board in the frame of the camera, roughly: for a usual lens, without its distortion. 0: it has none.
+Vec3d boardNormal(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, Size size)
 {
     std::vector<Point2d> board, directions;
     for (size_t i = 0; i < pixels.size(); i++)
         if (seen(pixels[i]))
         {
-            board.emplace_back(data.objectPoints[i].x, data.objectPoints[i].y);
+            if (object[i].z != object[0].z)
+                return Vec3d();
+            board.emplace_back(object[i].x, object[i].y);
             directions.push_back((pixels[i] - 0.5*Point2d(size))/(USUAL_FOCAL*size.width));
         }
     const Mat H = board.size() < 4 ? Mat() : findHomography(board, directions);
@@ -100,7 +104,7 @@ double tiltSpreadDeg(const RigData& data, int camera, bool through)
     Vec3d middle;
     for (const Moment& m : data.moments)
     {
-        const Vec3d normal = boardNormal(data, (through ? m.glass : m.direct)[camera], data.imageSize[camera]);
+        const Vec3d normal = boardNormal(m.objectPoints, (through ? m.glass : m.direct)[camera], data.imageSize[camera]);
         if (normal == Vec3d())
             continue;
         normals.push_back(normal[2] < 0 ? -normal : normal);
@@ -132,7 +136,7 @@ void noticeParallel(const RigData& data, std::vector<std::string>& notices)
 
 void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
 {
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
         {
             const ViewSet& set = (through ? sets.glass : sets.direct)[c];
@@ -140,7 +144,8 @@ void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
             if (2*found < count)
                 notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
                                          "inner corners or dots), light and focus", found, count,
-                                         through ? "images through the window" : "direct images", c ? " of camera 2" : ""));
+                                         through ? "images through the window" : "direct images",
+                                         c ? format(" of camera %d", c + 1).c_str() : ""));
         }
 }
 
@@ -148,12 +153,12 @@ void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
 
 void requirePairs(const RigViewSets& sets)
 {
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
     {
         const ViewSet &direct = sets.direct[c], &glass = sets.glass[c];
         if (direct.views.empty() || glass.views.empty() || !common(stemsOf(direct, true), stemsOf(glass, true)).empty())
             continue;
-        const std::string suffix = c ? "2" : "";
+        const std::string suffix = cameraSuffix(c);
         const std::set<std::string> directStems = stemsOf(direct, false), glassStems = stemsOf(glass, false);
         const std::vector<std::string> lost = common(directStems, glassStems);
         if (!lost.empty())

@@ -32,12 +32,13 @@ WindowStd windowStd(const Fit& fit, int camera)
     return result;
 }
 
-std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags)
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit)
 {
     std::vector<EstimatedParameter> list;
-    const bool shared = flags & GLASS_SHARED_WINDOW;
-    for (int c = 0; c < (shared ? 1 : (int)fit.rig.cameras.size()); c++)
+    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
     {
+        if (!fit.rig.ownsWindow(c))
+            continue;
         const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
         const GlassWindow window = fit.rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(fit.rig, c);
@@ -68,14 +69,15 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
             append(list, fit, prefix + at.names[i], at.lens + i, lens.at<double>(i));
         end = at.end;
     }
-    if (fit.rig.cameras.size() == 2)
+    for (int c = 1; c < (int)fit.rig.cameras.size(); c++, end += 6)
     {
+        const std::string number = c == 1 ? "" : std::to_string(c + 1);        // as in calib.yml
         Vec3d rvec;
-        Rodrigues(fit.rig.R, rvec);
+        Rodrigues(fit.rig.Rs[c], rvec);
         for (int i = 0; i < 3; i++)
-            append(list, fit, std::string("R rotation vector ") + "xyz"[i], end + i, rvec[i]);
+            append(list, fit, "R" + number + " rotation vector " + "xyz"[i], end + i, rvec[i]);
         for (int i = 0; i < 3; i++)
-            append(list, fit, std::string("T ") + "xyz"[i], end + 3 + i, fit.rig.T[i]);
+            append(list, fit, "T" + number + " " + "xyz"[i], end + 3 + i, fit.rig.Ts[c][i]);
     }
     return list;
 }

@@ -16,9 +16,9 @@ struct EstimatedParameter
 };
 
 //! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
-std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit, int flags);
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit);
 
-//! Lens parameters and R (rotation vector), T that were free.
+//! Lens parameters and R (rotation vector), T of each camera but the first that were free.
 std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit);
 
 //! One standard deviation of what was free in the window of a camera.

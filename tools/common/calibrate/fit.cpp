@@ -29,7 +29,7 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
                 if (pixels.empty())
                     continue;
                 std::vector<Point2d> modelled;
-                refractiveProjectPoints(data.objectPoints, rvec, tvec, glass ? through : bare, modelled);
+                refractiveProjectPoints(m.objectPoints, rvec, tvec, glass ? through : bare, modelled);
                 for (size_t i = 0; i < pixels.size(); i++)
                     if (seen(pixels[i]))
                         residuals.push_back({c, fit.moments[k], glass, pixels[i], pixels[i] - modelled[i]});

@@ -13,11 +13,11 @@ struct Fit
     std::vector<int> moments;                   //!< that took part, as indices into RigData::moments
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
     cv::Mat stdDeviations, covariance;
-    cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: direct 1, glass 1 (, direct 2, glass 2)
+    cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: direct 1, glass 1, direct 2, ...
     std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
     cv::Mat otherMinima;                        //!< a row each camera, see calibrateGlassRig
     double rms = 0.;
-    double freedom = 0.;                        //!< degrees of freedom: coordinates - free parameters - 6 for each board
+    double freedom = 0.;                        //!< degrees of freedom: coordinates - free parameters - 6 for each unknown pose
     double sigma = 0.;                          //!< of a pixel coordinate, from the residuals
 };
 

@@ -17,10 +17,9 @@ std::vector<int> usefulMoments(const RigData& data, int flags)
     for (int i = 0; i < (int)data.moments.size(); i++)
     {
         const Moment& m = data.moments[i];
-        // Without glass a moment says something about R and T if both cameras see it, and about free lenses always.
-        const bool bothDirect = data.cameraCount == 2 && m.hasDirect(0) && m.hasDirect(1);
-        const bool any = m.hasGlass() || m.hasDirect(0) || m.hasDirect(1);      // else all its images were left out
-        if (m.hasGlass() || bothDirect || (any && (flags & GLASS_FREE_INTRINSICS)))
+        // Without glass a moment says something about R and T if several cameras see it, and about free lenses always.
+        const bool any = m.hasGlass() || m.countDirect() > 0;      // else all its images were left out
+        if (m.hasGlass() || m.countDirect() > 1 || (any && (flags & GLASS_FREE_INTRINSICS)))
             useful.push_back(i);
     }
     return useful;
@@ -64,14 +63,14 @@ std::vector<Mat> covariancesOf(const RigModel& rig)
 }
 
 //! How many numbers are known with a covariance.
-int countPriors(const RigModel& rig, int flags)
+int countPriors(const RigModel& rig)
 {
     int count = 0;
     for (size_t c = 0; c < rig.known.size(); c++)
     {
         const Mat covariance = rig.known[c].covariance;
         const int lens = rig.known[c].lens.rows;
-        const bool ownsWindow = c == 0 || !(flags & GLASS_SHARED_WINDOW);
+        const bool ownsWindow = rig.ownsWindow((int)c);
         for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
             count += covariance.at<double>(i, i) > 0;
     }
@@ -86,35 +85,42 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     fit.rig = start.clone();
     startAtKnown(fit.rig);
     fit.moments = moments;
-    const bool stereo = data.cameraCount == 2;
-    std::vector<int> windows = {0};
-    std::vector<Mat> Rs = {Mat::eye(3, 3, CV_64F)}, Ts = {Mat::zeros(3, 1, CV_64F)};
-    int rigFlags = flags & ~GLASS_SHARED_WINDOW;
-    if (stereo)
+    std::vector<std::vector<Point3d>> objectPoints;
+    std::vector<Mat> poseCovariances;
+    for (int i : moments)
     {
-        windows.push_back(flags & GLASS_SHARED_WINDOW ? 0 : 1);
-        Rs.push_back(Mat(fit.rig.R, true));
-        Ts.push_back(Mat(fit.rig.T, true));
-        rigFlags |= GLASS_FREE_EXTRINSICS;
+        const Moment& m = data.moments[i];
+        objectPoints.push_back(m.objectPoints);
+        if (!(flags & GLASS_USE_POSES))
+            continue;
+        fit.rvecs.push_back(m.pose->rvec);
+        fit.tvecs.push_back(m.pose->tvec);
+        poseCovariances.push_back(m.pose->covariance);
     }
-    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(moments.size(), data.objectPoints),
-                                imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras, windows, Rs, Ts,
-                                fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus,
-                                fit.inliers, fit.otherMinima, rigFlags, noArray(),
-                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS,
-                                             flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations,
-                                             1e-12),
-                                covariancesOf(fit.rig));
-    if (stereo)
+    std::vector<Mat> Rs, Ts;
+    for (int c = 0; c < data.cameraCount; c++)
     {
-        fit.rig.R = Rs[1];
-        fit.rig.T = Ts[1];
+        Rs.push_back(Mat(fit.rig.Rs[c], true));
+        Ts.push_back(Mat(fit.rig.Ts[c], true));
+    }
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS,
+                                flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
+    fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras,
+                                fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
+                                fit.imageStatus, fit.inliers, fit.otherMinima,
+                                data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
+                                covariancesOf(fit.rig));
+    for (int c = 1; c < data.cameraCount; c++)
+    {
+        fit.rig.Rs[c] = Rs[c];
+        fit.rig.Ts[c] = Ts[c];
     }
     int points = 0;
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);
-    const size_t free = estimatedWindowParameters(fit, flags).size() + estimatedRigParameters(fit).size();
-    fit.freedom = 2.*points + countPriors(fit.rig, flags) - (double)free - 6.*(double)moments.size();
+    const size_t free = estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size();
+    const size_t poses = flags & GLASS_USE_POSES ? 0 : moments.size();      // known ones bring as many numbers as they have
+    fit.freedom = 2.*points + countPriors(fit.rig) - (double)free - 6.*(double)poses;
     fit.sigma = fit.rms*std::sqrt(points/fit.freedom);
     return fit;
 }

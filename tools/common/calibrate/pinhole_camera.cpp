@@ -2,6 +2,7 @@
 #include "target/target.hpp"
 #include <opencv2/calib3d.hpp>
 #include <cmath>
+#include <limits>
 
 using namespace cv;
 using namespace cv::refract;
@@ -43,27 +44,68 @@ int calibrateCameraFlags(int coefficients)
     }
 }
 
-} // namespace
-
-Ptr<RefractiveCamera> calibratePinhole(const std::vector<Point3d>& objectPoints,
-                                       const std::vector<std::vector<Point2d>>& views, Size imageSize,
-                                       int coefficients, double& rms)
+struct PinholeViews
 {
     std::vector<std::vector<Point3f>> object;
     std::vector<std::vector<Point2f>> image;
-    for (const std::vector<Point2d>& view : views)
+    bool onBoards = true;               // all of them z = 0, which is all that calibrateCamera can start from
+};
+
+PinholeViews seenViews(const std::vector<TargetView>& views)
+{
+    PinholeViews result;
+    for (const TargetView& view : views)
     {
         std::vector<Point3f> o;
         std::vector<Point2f> i;
-        seenPoints(objectPoints, view, o, i);
+        seenPoints(view.objectPoints, view.pixels, o, i);
         if ((int)o.size() < MIN_POINTS)
             continue;
-        object.push_back(o);
-        image.push_back(i);
+        for (const Point3f& X : o)
+            result.onBoards = result.onBoards && X.z == 0;
+        result.object.push_back(o);
+        result.image.push_back(i);
     }
+    return result;
+}
+
+//! The best of several starts; infinite if there is none.
+double calibrateFromFocalLengths(const PinholeViews& views, Size imageSize, int flags, const TermCriteria& criteria, Mat& K, Mat& D)
+{
+    double best = std::numeric_limits<double>::infinity();
+    for (double focal : {0.7, 1.2, 2., 3.5, 6.})                // in image widths
+        try
+        {
+            Mat cameraMatrix = (Mat_<double>(3, 3) << focal*imageSize.width, 0, 0.5*(imageSize.width - 1),
+                                0, focal*imageSize.width, 0.5*(imageSize.height - 1), 0, 0, 1);
+            Mat distCoeffs, rvecs, tvecs;
+            const double rms = calibrateCamera(views.object, views.image, imageSize, cameraMatrix, distCoeffs, rvecs, tvecs,
+                                               flags | CALIB_USE_INTRINSIC_GUESS, criteria);
+            if (rms < best && cameraMatrix.at<double>(0, 0) > 0)
+            {
+                best = rms;
+                K = cameraMatrix;
+                D = distCoeffs;
+            }
+        }
+        catch (const cv::Exception&) {}         // from there it finds nothing
+    return best;
+}
+
+} // namespace
+
+Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, double& rms)
+{
+    const PinholeViews views = seenViews(targetViews);
+    const int flags = calibrateCameraFlags(coefficients);
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13);
     Mat cameraMatrix, distCoeffs, rvecs, tvecs;
-    rms = calibrateCamera(object, image, imageSize, cameraMatrix, distCoeffs, rvecs, tvecs,
-                          calibrateCameraFlags(coefficients), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13));
+    if (views.onBoards)
+        rms = calibrateCamera(views.object, views.image, imageSize, cameraMatrix, distCoeffs, rvecs, tvecs, flags, criteria);
+    else
+        rms = calibrateFromFocalLengths(views, imageSize, flags, criteria, cameraMatrix, distCoeffs);
+    if (cameraMatrix.empty())
+        CV_Error(Error::StsNoConv, "cv::calibrateCamera finds no pinhole camera for these points");
     distCoeffs = distCoeffs.reshape(1, 1).colRange(0, coefficients).clone();
     // LAPACK need not sum in the same order twice; its last digits, far below what images tell, would show in all that follows.
     roundTo(1e-5, cameraMatrix);
@@ -71,6 +113,18 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<Point3d>& objectPoints,
     Ptr<RefractiveCamera> camera = RefractiveCamera::create(cameraMatrix, distCoeffs);
     camera->setImageSize(imageSize);
     return camera;
+}
+
+bool isSolid(const std::vector<Point3d>& objectPoints)
+{
+    const double FLAT = 0.02;           // thickness over width
+    if (objectPoints.size() < 6)
+        return false;
+    Mat points = Mat(objectPoints).reshape(1).clone(), mean, spread;
+    reduce(points, mean, 0, REDUCE_AVG);
+    points -= repeat(mean, points.rows, 1);
+    SVD::compute(points, spread, SVD::NO_UV);
+    return spread.at<double>(2) > FLAT*spread.at<double>(0);
 }
 
 } // namespace tools

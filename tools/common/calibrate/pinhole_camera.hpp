@@ -5,9 +5,20 @@
 
 namespace tools {
 
-//! cv::calibrateCamera on the seen points of all views that are not empty.
-cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<cv::Point3d>& objectPoints,
-        const std::vector<std::vector<cv::Point2d>>& views, cv::Size imageSize, int coefficients, double& rms);
+//! What one camera saw of one target.
+struct TargetView
+{
+    std::vector<cv::Point3d> objectPoints;
+    std::vector<cv::Point2d> pixels;            //!< NaN where a point was not seen; empty: no view
+};
+
+/** cv::calibrateCamera on the seen points of all views that are not empty; where a target is not flat, from several focal
+lengths. Throws cv::Exception where it finds nothing. */
+cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
+                                                     int coefficients, double& rms);
+
+//! Whether a target has depth of its own, so that one view of it tells the focal length.
+bool isSolid(const std::vector<cv::Point3d>& objectPoints);
 
 } // namespace tools
 

@@ -2,6 +2,7 @@
 #include "calibrate/pinhole_camera.hpp"
 #include "console/cli.hpp"
 #include <opencv2/calib3d.hpp>
+#include <cmath>
 
 using namespace cv;
 
@@ -10,28 +11,49 @@ namespace tools {
 namespace {
 
 const size_t MIN_VIEWS = 3;         // of a flat board, to determine a lens
+const size_t MIN_POINTS = 4;        // in common, of a view
 
-//! Corners that both cameras saw through their windows, moment by moment.
-void commonCorners(const RigData& data, const std::vector<int>& moments, std::vector<std::vector<Point3f>>& object,
-                   std::vector<std::vector<Point2f>> image[2])
+//! Points that both cameras saw through their windows, moment by moment.
+void commonPoints(const RigData& data, const std::vector<int>& moments, int camera1, int camera2,
+                  std::vector<std::vector<Point3f>>& object, std::vector<std::vector<Point2f>>& image1,
+                  std::vector<std::vector<Point2f>>& image2)
 {
     for (int moment : moments)
     {
         const Moment& m = data.moments[moment];
-        if (!m.hasGlass(0) || !m.hasGlass(1))
+        if (!m.hasGlass(camera1) || !m.hasGlass(camera2))
             continue;
-        object.emplace_back();
-        for (int c = 0; c < 2; c++)
-            image[c].emplace_back();
-        for (size_t i = 0; i < data.objectPoints.size(); i++)
-        {
-            if (std::isnan(m.glass[0][i].x) || std::isnan(m.glass[1][i].x))
-                continue;
-            object.back().emplace_back(data.objectPoints[i]);
-            for (int c = 0; c < 2; c++)
-                image[c].back().emplace_back(m.glass[c][i]);
-        }
+        std::vector<Point3f> points;
+        std::vector<Point2f> pixels1, pixels2;
+        for (size_t i = 0; i < m.objectPoints.size(); i++)
+            if (seen(m.glass[camera1][i]) && seen(m.glass[camera2][i]))
+            {
+                points.emplace_back(m.objectPoints[i]);
+                pixels1.emplace_back(m.glass[camera1][i]);
+                pixels2.emplace_back(m.glass[camera2][i]);
+            }
+        if (points.size() < MIN_POINTS)
+            continue;
+        object.push_back(points);
+        image1.push_back(pixels1);
+        image2.push_back(pixels2);
     }
+}
+
+//! R and T of camera 2 from camera 1; returns cv::stereoCalibrate's RMS.
+double placeBeside(const RigData& data, const std::vector<int>& moments, const Calibration& rig, int camera1, int camera2,
+                   Matx33d& R, Vec3d& T)
+{
+    std::vector<std::vector<Point3f>> object;
+    std::vector<std::vector<Point2f>> image1, image2;
+    commonPoints(data, moments, camera1, camera2, object, image1, image2);
+    if (object.empty())
+        throw Failure(format("--pinhole-out needs a moment that camera %d and camera %d see through their windows", camera1 + 1,
+                             camera2 + 1));
+    const auto lens = [&](int c) { return rig.cameras[c].camera; };
+    Mat K1 = lens(camera1)->cameraMatrix(), D1 = lens(camera1)->distCoeffs(), K2 = lens(camera2)->cameraMatrix(),
+        D2 = lens(camera2)->distCoeffs(), E, F;
+    return stereoCalibrate(object, image1, image2, K1, D1, K2, D2, data.imageSize[camera1], R, T, E, F, CALIB_FIX_INTRINSIC);
 }
 
 } // namespace
@@ -47,14 +69,18 @@ int pinholeCoefficients(const refract::RefractiveCamera& camera)
 CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
                                                int coefficients)
 {
-    std::vector<std::vector<Point2d>> views;
+    std::vector<TargetView> views;
+    bool solid = false;
     for (int i : moments)
         if (data.moments[i].hasGlass(camera))
-            views.push_back(data.moments[i].glass[camera]);
-    if (views.size() < MIN_VIEWS)
+        {
+            views.push_back({data.moments[i].objectPoints, data.moments[i].glass[camera]});
+            solid = solid || isSolid(data.moments[i].objectPoints);
+        }
+    if (views.size() < MIN_VIEWS && !solid)
         throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
     CameraCalibration result;
-    result.camera = calibratePinhole(data.objectPoints, views, data.imageSize[camera], coefficients, result.rms);
+    result.camera = calibratePinhole(views, data.imageSize[camera], coefficients, result.rms);
     return result;
 }
 
@@ -62,24 +88,20 @@ Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& mom
 {
     Calibration rig;
     for (int c = 0; c < data.cameraCount; c++)
-        rig.cameras.push_back(calibratePinholeThroughGlass(data, c, moments, coefficients));
+        rig.add(calibratePinholeThroughGlass(data, c, moments, coefficients));
     rig.rms = rig.cameras[0].rms;
-    if (!rig.stereo())
+    if (rig.single())
         return rig;
-
-    std::vector<std::vector<Point3f>> object;
-    std::vector<std::vector<Point2f>> image[2];
-    commonCorners(data, moments, object, image);
-    if (object.empty())
-        throw Failure("--pinhole-out needs a moment that both cameras see through their windows");
-    Mat K[2], D[2], E, F;
-    for (int c = 0; c < 2; c++)
+    double squares = 0;
+    for (const auto& link : cameraLinks(data, true))
     {
-        K[c] = rig.cameras[c].camera->cameraMatrix();
-        D[c] = rig.cameras[c].camera->distCoeffs();
+        Matx33d R;
+        Vec3d T;
+        squares += std::pow(placeBeside(data, moments, rig, link.first, link.second, R, T), 2);
+        rig.Rs[link.second] = R*rig.Rs[link.first];
+        rig.Ts[link.second] = R*rig.Ts[link.first] + T;
     }
-    rig.rms = stereoCalibrate(object, image[0], image[1], K[0], D[0], K[1], D[1], data.imageSize[0], rig.R, rig.T, E, F,
-                              CALIB_FIX_INTRINSIC);
+    rig.rms = std::sqrt(squares/(data.cameraCount - 1));
     return rig;
 }
 

@@ -13,7 +13,7 @@ cv::stereoCalibrate as if there were none. They throw Failure (or cv::Exception)
 CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
                                                int coefficients);
 
-//! One or two cameras.
+//! All cameras, each placed beside the one with most moments in common; rms is that of cv::stereoCalibrate, root mean square.
 Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients);
 
 //! Number of coefficients of a lens as cv::calibrateCamera would find it; throws Failure if it is none of its models.

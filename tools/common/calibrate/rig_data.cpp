@@ -3,16 +3,115 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 using namespace cv;
 
 namespace tools {
 
-static const int MIN_POINTS = 4;        // of a view that is to have a pose
+void RigSources::addTo(CLI::App& app, const std::string& aboutGlass, const std::string& aboutDirect)
+{
+    for (int c = 0; c < MAX_CAMERAS; c++)
+    {
+        const std::string suffix = cameraSuffix(c), same = "the same of camera " + suffix;
+        CLI::Option* ofDirect = app.add_option("--direct" + suffix, direct[c], c ? same : aboutDirect);
+        CLI::Option* ofGlass = app.add_option("--glass" + suffix, glass[c], c ? same : aboutGlass);
+        if (c)
+            ofDirect->needs(ofGlass);
+        else
+            ofGlass->required();
+        for (CLI::Option* option : {ofDirect, ofGlass})
+            if (c > 1)
+                option->group("");          // told in the manual: help of one screen
+    }
+}
+
+std::vector<std::string> RigSources::all() const
+{
+    std::vector<std::string> given;
+    for (const PerCamera<std::string>* sources : {&direct, &glass})
+        std::copy_if(sources->begin(), sources->end(), std::back_inserter(given), [](const auto& s) { return !s.empty(); });
+    return given;
+}
+
+int RigSources::cameraCount() const
+{
+    int count = 0;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        if (!glass[c].empty() || !direct[c].empty())
+            count = c + 1;
+    return count;
+}
+
+bool RigSources::anyDirect() const
+{
+    return std::any_of(direct.begin(), direct.end(), [](const std::string& source) { return !source.empty(); });
+}
+
+std::vector<const ViewSet*> RigViewSets::all() const
+{
+    std::vector<const ViewSet*> sets;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        sets.insert(sets.end(), {&direct[c], &glass[c]});
+    return sets;
+}
+
+static int countTaken(const PerCamera<std::vector<Point2d>>& images)
+{
+    return (int)std::count_if(images.begin(), images.end(), [](const std::vector<Point2d>& pixels) { return !pixels.empty(); });
+}
+
+int Moment::countDirect() const { return countTaken(direct); }
+
+int Moment::countGlass() const { return countTaken(glass); }
 
 int RigData::countPairs(int camera) const
 {
     return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.isPair(camera); });
+}
+
+int RigData::countPairs() const
+{
+    int count = 0;
+    for (int c = 0; c < cameraCount; c++)
+        count += countPairs(c);
+    return count;
+}
+
+std::vector<std::pair<int, int>> cameraLinks(const RigData& data, bool throughOnly)
+{
+    const auto common = [&](int a, int b) {
+        return std::count_if(data.moments.begin(), data.moments.end(), [&](const Moment& m) {
+            return (m.hasGlass(a) && m.hasGlass(b)) || (!throughOnly && m.hasDirect(a) && m.hasDirect(b));
+        });
+    };
+    std::vector<std::pair<int, int>> links;
+    std::vector<int> placed = {0};
+    while ((int)placed.size() < data.cameraCount)
+    {
+        std::pair<int, int> best;
+        std::ptrdiff_t most = 0;
+        for (int from : placed)
+            for (int to = 0; to < data.cameraCount; to++)
+                if (std::find(placed.begin(), placed.end(), to) == placed.end() && common(from, to) > most)
+                {
+                    best = {from, to};
+                    most = common(from, to);
+                }
+        if (!most)
+        {
+            std::string alone;
+            for (int c = 0; c < data.cameraCount; c++)
+                if (std::find(placed.begin(), placed.end(), c) == placed.end())
+                    alone += (alone.empty() ? "" : ", ") + std::to_string(c + 1);
+            throw Failure("no moment is seen by " + (data.cameraCount == 2 ? "both cameras, so their places to each other cannot"
+                              : "camera " + alone + " and another one, so its place in the rig cannot")
+                          + " be found: images of one moment must have equal names in the folders of all cameras");
+        }
+        links.push_back(best);
+        placed.push_back(best.second);
+    }
+    return links;
 }
 
 std::vector<int> allMoments(const RigData& data)
@@ -22,10 +121,10 @@ std::vector<int> allMoments(const RigData& data)
     return all;
 }
 
-RigViewSets readViewSets(const RigSources& sources, const Target& target, const Size imageSize[2], bool quiet)
+RigViewSets readViewSets(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
 {
     RigViewSets sets;
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
         {
             const std::string& source = (through ? sources.glass : sources.direct)[c];
@@ -35,47 +134,105 @@ RigViewSets readViewSets(const RigSources& sources, const Target& target, const 
     return sets;
 }
 
-RigData pairViews(const Target& target, const RigViewSets& sets, bool unpaired)
+namespace {
+
+int countCameras(const RigViewSets& sets)
+{
+    int count = 1;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        if (!sets.glass[c].views.empty())
+            count = c + 1;
+    return count;
+}
+
+void setImageSize(RigData& data, const RigViewSets& sets, int camera)
+{
+    const ViewSet &direct = sets.direct[camera], &glass = sets.glass[camera];
+    if (!direct.views.empty() && !glass.views.empty() && direct.imageSize != glass.imageSize)
+        throw Failure(format("camera %d: direct images ('%s') are %dx%d, glass images ('%s') %dx%d: they must come from the "
+                             "same camera at the same resolution", camera + 1, direct.files[0].c_str(), direct.imageSize.width,
+                             direct.imageSize.height, glass.files[0].c_str(), glass.imageSize.width, glass.imageSize.height));
+    data.imageSize[camera] = direct.views.empty() ? glass.imageSize : direct.imageSize;
+}
+
+std::vector<std::vector<Point2d>*> imagesOf(Moment& m)
+{
+    std::vector<std::vector<Point2d>*> images;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        for (std::vector<Point2d>* pixels : {&m.direct[c], &m.glass[c]})
+            if (!pixels->empty())
+                images.push_back(pixels);
+    return images;
+}
+
+void alignImages(const Target& target, Moment& m)
+{
+    const std::vector<std::vector<Point2d>*> images = imagesOf(m);
+    for (size_t i = 1; i < images.size(); i++)
+        *images[i] = target.alignWith(*images[0], *images[i]);
+}
+
+//! Puts points with coordinates of their own where the moment has these, or at its end.
+std::vector<Point2d> matched(const DetectedView& view, Moment& m)
+{
+    using Coordinates = std::tuple<double, double, double>;
+    std::map<Coordinates, size_t> indexOf;
+    for (size_t i = 0; i < m.objectPoints.size(); i++)
+        indexOf.emplace(Coordinates(m.objectPoints[i].x, m.objectPoints[i].y, m.objectPoints[i].z), i);
+    std::vector<Point2d> pixels(m.objectPoints.size(), Point2d(NAN, NAN));
+    for (size_t i = 0; i < view.points.size(); i++)
+    {
+        const Point3d& X = view.objectPoints[i];
+        const auto place = indexOf.emplace(Coordinates(X.x, X.y, X.z), m.objectPoints.size());
+        if (place.second)
+        {
+            m.objectPoints.push_back(X);
+            pixels.emplace_back();
+        }
+        pixels[place.first->second] = view.points[i];
+    }
+    return pixels;
+}
+
+} // namespace
+
+RigData pairViews(const Target* target, const RigViewSets& sets, bool unpaired, int fewest)
 {
     RigData data;
-    data.cameraCount = sets.glass[1].views.empty() ? 1 : 2;
-    data.objectPoints = target.objectPoints();
-    data.neighbours = target.neighbours();
+    data.cameraCount = countCameras(sets);
     std::map<std::pair<std::string, bool>, Moment> moments;
-    for (int c = 0; c < data.cameraCount; c++)
-        for (bool through : {false, true})
-        {
-            const ViewSet& set = (through ? sets.glass : sets.direct)[c];
-            if (set.views.empty())
-                continue;
-            if (!data.imageSize[c].empty() && set.imageSize != data.imageSize[c])
-                throw Failure(format("camera %d: direct images ('%s') are %dx%d, glass images ('%s') %dx%d: they must come from the "
-                                     "same camera at the same resolution", c + 1, sets.direct[c].files[0].c_str(),
-                                     data.imageSize[c].width, data.imageSize[c].height, set.files[0].c_str(), set.imageSize.width,
-                                     set.imageSize.height));
-            data.imageSize[c] = set.imageSize;
-            for (const DetectedView& view : set.views)
+    // Boards first: their points, and where each is, must stand before others are matched with them.
+    for (bool board : {true, false})
+    {
+        for (int c = 0; c < data.cameraCount; c++)
+            for (bool through : {false, true})
             {
-                if (view.seenCount() < MIN_POINTS)
-                    continue;
-                Moment& m = moments[{view.stem, unpaired && through}];
-                m.stem = view.stem;
-                (through ? m.glass : m.direct)[c] = view.points;
+                const ViewSet& set = (through ? sets.glass : sets.direct)[c];
+                for (const DetectedView& view : set.views)
+                {
+                    if (view.seenCount() < fewest || view.objectPoints.empty() != board)
+                        continue;
+                    Moment& m = moments[{view.stem, unpaired && through}];
+                    m.stem = view.stem;
+                    if (board)
+                    {
+                        m.objectPoints = target->objectPoints();
+                        m.neighbours = target->neighbours();
+                    }
+                    (through ? m.glass : m.direct)[c] = board ? view.points : matched(view, m);
+                }
             }
-        }
+        if (board)
+            for (auto& entry : moments)
+                alignImages(*target, entry.second);
+    }
+    for (int c = 0; c < data.cameraCount; c++)
+        setImageSize(data, sets, c);
     for (auto& entry : moments)
     {
-        Moment& m = entry.second;
-        std::vector<Point2d>* first = nullptr;
-        for (std::vector<Point2d>* points : {&m.direct[0], &m.glass[0], &m.direct[1], &m.glass[1]})
-            if (!points->empty())
-            {
-                if (first)
-                    *points = target.alignWith(*first, *points);
-                else
-                    first = points;
-            }
-        data.moments.push_back(m);
+        for (std::vector<Point2d>* pixels : imagesOf(entry.second))
+            pixels->resize(entry.second.objectPoints.size(), Point2d(NAN, NAN));
+        data.moments.push_back(entry.second);
     }
     return data;
 }

@@ -1,5 +1,6 @@
 #include "calibrate/rig_model.hpp"
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
 
 using namespace cv;
 using namespace cv::refract;
@@ -12,6 +13,34 @@ RigModel RigModel::clone() const
     for (Ptr<RefractiveCamera>& camera : copy.cameras)
         camera = camera->clone();
     return copy;
+}
+
+void RigModel::add(const Ptr<RefractiveCamera>& camera, const Matx33d& R, const Vec3d& T)
+{
+    cameras.push_back(camera);
+    Rs.push_back(R);
+    Ts.push_back(T);
+}
+
+bool RigModel::ownsWindow(int camera) const
+{
+    for (int other = 0; other < camera; other++)
+        if (sharesWindow(camera, other))
+            return false;
+    return true;
+}
+
+bool RigModel::sharesWindow(int camera, int other) const
+{
+    return camera == other || (!windows.empty() && windows[camera] == windows[other]);
+}
+
+int countWindows(const RigModel& rig)
+{
+    int count = 0;
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        count += rig.ownsWindow(c);
+    return count;
 }
 
 Ptr<RefractiveCamera> copyWithWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)
@@ -27,8 +56,38 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
         return;
     Matx33d R;
     Rodrigues(rvec, R);
-    Rodrigues(rig.R*R, rvec);
-    tvec = rig.R*tvec + rig.T;
+    Rodrigues(rig.Rs[camera]*R, rvec);
+    tvec = rig.Rs[camera]*tvec + rig.Ts[camera];
+}
+
+RigModel modelOf(const Calibration& calibration)
+{
+    RigModel rig;
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        rig.add(calibration.cameras[c].camera, calibration.Rs[c], calibration.Ts[c]);
+    return rig;
+}
+
+Calibration firstPair(const Calibration& rig)
+{
+    Calibration pair = rig;
+    pair.cameras.resize(2);
+    pair.Rs.resize(2);
+    pair.Ts.resize(2);
+    pair.windows.resize(std::min(rig.windows.size(), (size_t)2));
+    if (rig.covariance.empty())
+        return pair;
+    int ofPair = 0, ofAll = 0;
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+        (c < 2 ? ofPair : ofAll) += (int)rig.cameras[c].camera->parameterNames().size();
+    ofAll += ofPair;
+    // The parameters of both, and the second one's place, which stands after the parameters of all.
+    const Range here[] = {Range(0, ofPair), Range(ofPair, ofPair + 6)}, there[] = {Range(0, ofPair), Range(ofAll, ofAll + 6)};
+    pair.covariance = Mat::zeros(ofPair + 6, ofPair + 6, CV_64F);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            rig.covariance(there[i], there[j]).copyTo(pair.covariance(here[i], here[j]));
+    return pair;
 }
 
 Calibration calibrationOf(const RigModel& rig)
@@ -36,8 +95,9 @@ Calibration calibrationOf(const RigModel& rig)
     Calibration calibration;
     for (const Ptr<RefractiveCamera>& camera : rig.cameras)
         calibration.cameras.push_back({camera, WindowStd(), -1.});
-    calibration.R = rig.R;
-    calibration.T = rig.T;
+    calibration.windows = rig.windows;
+    calibration.Rs = rig.Rs;
+    calibration.Ts = rig.Ts;
     return calibration;
 }
 

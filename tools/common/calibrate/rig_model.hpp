@@ -3,7 +3,7 @@
 
 #include "calibrate/calib_file.hpp"
 
-/* One or two cameras behind their windows, and where they are to each other. */
+/* Cameras behind their windows, and where they are to each other. */
 namespace tools {
 
 //! What is known of a camera before its images are looked at: from a file, from a data sheet.
@@ -18,12 +18,21 @@ struct KnownCamera
 struct RigModel
 {
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
-    cv::Matx33d R = cv::Matx33d::eye();         //!< camera 1 -> camera 2
-    cv::Vec3d T;
+    std::vector<cv::Matx33d> Rs = {};           //!< camera 1 -> each camera; the first is the identity
+    std::vector<cv::Vec3d> Ts = {};
+    std::vector<int> windows = {};              //!< which window each camera looks through; empty: each has its own
     std::vector<KnownCamera> known = {};        //!< one per camera, or empty
 
     RigModel clone() const;
+    //! A camera at the end, where it is from camera 1.
+    void add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Matx33d& R = cv::Matx33d::eye(),
+             const cv::Vec3d& T = cv::Vec3d());
+    //! The first of those that look through a window: its parameters are the window's.
+    bool ownsWindow(int camera) const;
+    bool sharesWindow(int camera, int other) const;
 };
+
+int countWindows(const RigModel& rig);
 
 //! Same lens, other window.
 cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
@@ -31,6 +40,12 @@ cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract:
 
 //! Board -> a camera of the rig, from board -> camera 1.
 void poseInCamera(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
+
+//! What a file says of them; each window by itself, as one that moved no longer is where the others are.
+RigModel modelOf(const Calibration& calibration);
+
+//! Cameras 1 and 2 alone, with what the covariance says of them.
+Calibration firstPair(const Calibration& rig);
 
 //! As a file of it would be, without what the estimate is worth.
 Calibration calibrationOf(const RigModel& rig);

@@ -14,49 +14,37 @@ namespace tools {
 
 namespace {
 
-using Views = std::vector<std::vector<Point2d>>;
-
-Views directViews(const RigData& data, int camera)
+//! Of the moments that have one.
+std::vector<TargetView> viewsOf(const RigData& data, int camera, bool glass)
 {
-    Views views;
+    std::vector<TargetView> views;
     for (const Moment& m : data.moments)
-        views.push_back(m.direct[camera]);
+        if (!(glass ? m.glass : m.direct)[camera].empty())
+            views.push_back({m.objectPoints, (glass ? m.glass : m.direct)[camera]});
     return views;
-}
-
-Views glassViews(const RigData& data, int camera)
-{
-    Views views;
-    for (const Moment& m : data.moments)
-        views.push_back(m.glass[camera]);
-    return views;
-}
-
-int countTaken(const Views& views)
-{
-    return (int)std::count_if(views.begin(), views.end(), [](const std::vector<Point2d>& v) { return !v.empty(); });
 }
 
 Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, int camera, LensSource& source)
 {
     if (options.known[camera])
         return options.known[camera];
-    const std::string suffix = camera ? "2" : "";
-    Views views = directViews(data, camera);
+    const std::string suffix = cameraSuffix(camera);
+    std::vector<TargetView> views = viewsOf(data, camera, false);
     source.kind = LensSource::FROM_DIRECT;
-    if (countTaken(views) == 0)
+    if (views.empty())
     {
         if (!(options.flags & GLASS_FREE_INTRINSICS))
             throw Failure("there is nothing to take the lens from: give --direct" + suffix + " images or --camera" + suffix
                           + ", or --free=intrinsics to find the lens through the window");
-        views = glassViews(data, camera);   // a pinhole through the glass is a good start
+        views = viewsOf(data, camera, true);    // a pinhole through the glass is a good start
         source.kind = LensSource::FROM_GLASS;
     }
-    source.views = countTaken(views);
-    if (source.views < 3)
+    source.views = (int)views.size();
+    const bool solid = std::any_of(views.begin(), views.end(), [](const TargetView& v) { return isSolid(v.objectPoints); });
+    if (source.views < 3 && !solid)
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
-    return calibratePinhole(data.objectPoints, views, data.imageSize[camera], options.lensCoefficients, source.rms);
+    return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, source.rms);
 }
 
 /** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
@@ -94,12 +82,12 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
 void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camera, const LensSource& source)
 {
     int outside = 0;
-    for (const Views& views : {directViews(data, camera), glassViews(data, camera)})
-        for (const std::vector<Point2d>& view : views)
+    for (bool glass : {false, true})
+        for (const TargetView& view : viewsOf(data, camera, glass))
         {
             Mat origins, directions;
             std::vector<uchar> status;
-            refractiveUnprojectPoints(view, origins, directions, lens, status);
+            refractiveUnprojectPoints(view.pixels, origins, directions, lens, status);
             outside += (int)std::count(status.begin(), status.end(), (uchar)REFRACT_OUTSIDE_LENS_MODEL);
         }
     if (outside)
@@ -109,30 +97,33 @@ void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camer
                            "or show the target in the image's corners too"));
 }
 
-//! Board -> camera of one view, and the sum of squared errors; false if there is none.
-bool solveView(const RigData& data, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels,
-               Matx33d& R, Vec3d& t)
+//! Object -> camera of one image of a moment; false if there is none.
+bool solveView(const Moment& m, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, Matx33d& R, Vec3d& t)
 {
     if (pixels.empty())
         return false;
     Vec3d rvec;
-    if (!refractiveSolvePnP(data.objectPoints, pixels, camera, rvec, t))
+    if (!refractiveSolvePnP(m.objectPoints, pixels, camera, rvec, t))
         return false;
     Rodrigues(rvec, R);
     return true;
 }
 
-struct BoardInBoth { Matx33d R1, R2; Vec3d t1, t2; };
+struct BoardInBoth
+{
+    const std::vector<Point3d>* object;
+    Matx33d R1, R2;
+    Vec3d t1, t2;
+};
 
-double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const std::vector<Point3d>& object,
-                          const Matx33d& R, const Vec3d& T)
+double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const Matx33d& R, const Vec3d& T)
 {
     // The median over the boards, as single-view poses of a flat board may be mirrored.
     std::vector<double> misfits;
     for (const BoardInBoth& b : boards)
     {
         double sum = 0.;
-        for (const Point3d& X : object)
+        for (const Point3d& X : *b.object)
         {
             const Vec3d p(X);
             const Vec3d there = R*(b.R1*p + b.t1) + T, here = b.R2*p + b.t2;
@@ -144,40 +135,108 @@ double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const std::vec
     return misfits[misfits.size()/2];
 }
 
-//! R, T from single boards seen by both cameras (direct images first, any lens): the one that fits the others best.
-void startExtrinsics(const RigData& data, RigModel& rig)
+//! R, T of camera 2 from camera 1: of the boards, the one that fits the others best.
+void placeByBest(const std::vector<BoardInBoth>& boards, Matx33d& bestR, Vec3d& bestT)
 {
-    const RigModel bare{{copyWithWindow(rig.cameras[0], GlassWindow()), copyWithWindow(rig.cameras[1], GlassWindow())},
-                        rig.R, rig.T};
-    std::vector<BoardInBoth> boards;
-    for (int through = 0; through < 2 && boards.empty(); through++)
-        for (const Moment& m : data.moments)
-        {
-            const RigModel& r = through ? rig : bare;
-            BoardInBoth b;
-            if (solveView(data, r.cameras[0], through ? m.glass[0] : m.direct[0], b.R1, b.t1) &&
-                solveView(data, r.cameras[1], through ? m.glass[1] : m.direct[1], b.R2, b.t2))
-                boards.push_back(b);
-        }
-    if (boards.empty())
-        throw Failure("no moment is seen by both cameras, so their places to each other cannot be found: images of one "
-                      "moment must have equal names in the folders of camera 1 and camera 2");
     double best = std::numeric_limits<double>::infinity();
     for (const BoardInBoth& b : boards)
     {
         const Matx33d R = b.R2*b.R1.t();
         const Vec3d T = b.t2 - R*b.t1;
-        const double misfit = relativePoseMisfit(boards, data.objectPoints, R, T);
+        const double misfit = relativePoseMisfit(boards, R, T);
         if (misfit < best)
         {
             best = misfit;
-            rig.R = R;
-            rig.T = T;
+            bestR = R;
+            bestT = T;
         }
     }
 }
 
+//! Without the windows, for direct images.
+RigModel bareOf(const RigModel& rig)
+{
+    RigModel bare = rig;
+    for (Ptr<RefractiveCamera>& camera : bare.cameras)
+        camera = copyWithWindow(camera, GlassWindow());
+    return bare;
+}
+
+//! Boards seen by both cameras, in one state.
+std::vector<BoardInBoth> boardsInBoth(const RigData& data, const RigModel& rig, int camera1, int camera2, bool glass)
+{
+    std::vector<BoardInBoth> boards;
+    for (const Moment& m : data.moments)
+    {
+        const PerCamera<std::vector<Point2d>>& images = glass ? m.glass : m.direct;
+        BoardInBoth b;
+        b.object = &m.objectPoints;
+        if (solveView(m, rig.cameras[camera1], images[camera1], b.R1, b.t1) &&
+            solveView(m, rig.cameras[camera2], images[camera2], b.R2, b.t2))
+            boards.push_back(b);
+    }
+    return boards;
+}
+
+//! The same where the boards' poses to camera 1 are known.
+std::vector<BoardInBoth> boardsAtKnownPoses(const RigData& data, const RigModel& rig, int camera, bool glass)
+{
+    std::vector<BoardInBoth> boards;
+    for (const Moment& m : data.moments)
+    {
+        BoardInBoth b;
+        b.object = &m.objectPoints;
+        Rodrigues(m.pose->rvec, b.R1);
+        b.t1 = m.pose->tvec;
+        if (solveView(m, rig.cameras[camera], (glass ? m.glass : m.direct)[camera], b.R2, b.t2))
+            boards.push_back(b);
+    }
+    return boards;
+}
+
+//! R, T of each camera from single boards (direct images first, any lens).
+void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
+{
+    const RigModel bare = bareOf(rig);
+    std::vector<std::pair<int, int>> links;
+    for (int c = 1; posesKnown && c < data.cameraCount; c++)
+        links.push_back({0, c});
+    if (!posesKnown)
+        links = cameraLinks(data, false);
+    for (const auto& link : links)
+    {
+        std::vector<BoardInBoth> boards;
+        for (bool glass : {false, true})
+            if (boards.empty())
+            {
+                const RigModel& seenBy = glass ? rig : bare;
+                boards = posesKnown ? boardsAtKnownPoses(data, seenBy, link.second, glass)
+                                    : boardsInBoth(data, seenBy, link.first, link.second, glass);
+            }
+        if (boards.empty())
+            throw Failure(format("no view of the target gives camera %d a pose: check the points, --size and --square",
+                                 link.second + 1));
+        Matx33d R;
+        Vec3d T;
+        placeByBest(boards, R, T);
+        rig.Rs[link.second] = R*rig.Rs[link.first];
+        rig.Ts[link.second] = R*rig.Ts[link.first] + T;
+    }
+}
+
 } // namespace
+
+double startDistance(const RigData& data, double square)
+{
+    if (square > 0)
+        return square;
+    const double SHARE = 0.1;           // of the target
+    double width = 0.;
+    for (const Moment& m : data.moments)
+        for (const Point3d& X : m.objectPoints)
+            width = std::max(width, norm(X - m.objectPoints[0]));
+    return SHARE*width;
+}
 
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources)
 {
@@ -188,14 +247,14 @@ RigModel startModel(const RigData& data, const RigOptions& options, std::vector<
         Ptr<RefractiveCamera> lens = startLens(data, options, c, lensSources[c]);
         const Size known = lens->imageSize();
         if (!known.empty() && known != data.imageSize[c])
-            throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", c ? "2" : "",
+            throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", cameraSuffix(c).c_str(),
                                  known.width, known.height, data.imageSize[c].width, data.imageSize[c].height));
         checkLens(data, copyWithWindow(lens, GlassWindow()), c, lensSources[c]);
-        rig.cameras.push_back(copyWithWindow(lens, options.window));
+        rig.add(copyWithWindow(lens, options.window));
         rig.cameras.back()->setImageSize(data.imageSize[c]);
     }
-    if (data.cameraCount == 2)
-        startExtrinsics(data, rig);
+    rig.windows = options.windows;
+    startExtrinsics(data, options.flags & GLASS_USE_POSES, rig);
     for (int c = 0; c < data.cameraCount; c++)
         rig.known.push_back(knownOf(*rig.cameras[c], options, c));
     return rig;

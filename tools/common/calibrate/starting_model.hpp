@@ -4,7 +4,7 @@
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
 
-/* Where a fit starts: the lens from a file or from the direct images, the windows as given, R and T from single boards. */
+/* Where a fit starts: the lens from a file or from the direct images, the windows as given, R and T from single views. */
 namespace tools {
 
 struct RigOptions
@@ -12,8 +12,9 @@ struct RigOptions
     cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
     int flags = 0;                                          //!< GlassCalibrationFlags
     int lensCoefficients = 5;                               //!< of the lens that the images determine
-    cv::Ptr<cv::refract::RefractiveCamera> known[2];        //!< lens from a file; null: from the images
-    cv::Mat knownCovariance[2];                             //!< of its lens parameters; empty where the file has none
+    std::vector<int> windows = {};                          //!< which window each camera looks through; empty: each has its own
+    PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
+    PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none
     double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
 };
 
@@ -24,6 +25,9 @@ struct LensSource
     int views = 0;
     double rms = 0.;            //!< cv::calibrateCamera's
 };
+
+//! A window's distance to start from, where nothing is known of it; away from its bound, 0. @param square of a board; 0: there is none
+double startDistance(const RigData& data, double square);
 
 //! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);

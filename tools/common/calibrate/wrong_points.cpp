@@ -118,6 +118,33 @@ WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags)
     return wrong;
 }
 
+//! Points that are left out because their whole image is.
+static int lostWithImages(const WrongPoints& wrong)
+{
+    int points = 0;
+    for (const Dropped& dropped : wrong.dropped)
+        points += dropped.image ? dropped.points : 0;
+    return points;
+}
+
+WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources)
+{
+    RigData held = data, freed = data;
+    WrongPoints byHeld = dropWrongPoints(held, start, flags);
+    const bool mayBeLens = fromImages(lensSources) && !(flags & GLASS_FREE_INTRINSICS);
+    if (mayBeLens && (!byHeld.fault.empty() || lostWithImages(byHeld) > 0))
+    {
+        WrongPoints byFreed = dropWrongPoints(freed, start, flags | GLASS_FREE_INTRINSICS);
+        if (!byHeld.fault.empty() || (byFreed.fault.empty() && lostWithImages(byFreed) < lostWithImages(byHeld)))
+        {
+            data = freed;
+            return byFreed;
+        }
+    }
+    data = held;
+    return byHeld;
+}
+
 WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, RigModel& start,
                                     std::vector<LensSource>& lensSources)
 {
@@ -129,9 +156,7 @@ WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, Ri
     for (int round = 0; round < MOST_ROUNDS && !settled; round++)
     {
         RigData rest = all;
-        WrongPoints found = dropWrongPoints(rest, start, options.flags);
-        if (!found.fault.empty() && fromImages(lensSources))        // so wrong a lens that nothing fits it
-            found = dropWrongPoints(rest, start, options.flags | GLASS_FREE_INTRINSICS);
+        const WrongPoints found = dropWrongPoints(rest, start, options.flags, lensSources);
         if (!found.fault.empty() && round > 0)
             break;
         settled = areSame(found.dropped, wrong.dropped);

@@ -29,6 +29,10 @@ struct WrongPoints
 //! Takes wrong points and images out of the data. Leaves all of them where the robust fit is not possible.
 WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags);
 
+/** A lens from a few images of its own is not as sharp as corners are, and good images may contradict it: where it costs whole
+images, or fits nothing at all, the fit with a free lens, which is what the calibration itself is, says what is wrong. */
+WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources);
+
 /** The same where the start comes from the data too: wrong points are in its lens, and so in what seems wrong. They are looked
 for again in all the data, from the start that the others give, until the same ones are wrong.
 @param start, lensSources result: as of startModel from what is left */

@@ -3,6 +3,7 @@
 #include "report/figures.hpp"
 #include "report/plot.hpp"
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -75,11 +76,10 @@ public:
             poseInCamera(c_.fit, k, camera_, rvec, tvec);
             Matx33d R;
             Rodrigues(rvec, R);
-            const Rect2d box = boundingBox();
-            std::vector<Vec3d> corners;
-            for (const Point2d& p : {box.tl(), Point2d(box.br().x, box.y), box.br(), Point2d(box.x, box.br().y), box.tl()})
-                corners.push_back(R*Vec3d(p.x, p.y, 0) + tvec);
-            outlines.push_back(onPaper(corners));
+            std::vector<Vec3d> points;
+            for (const Point3d& X : c_.data.moments[c_.fit.moments[k]].objectPoints)
+                points.push_back(R*Vec3d(X) + tvec);
+            outlines.push_back(outlineOf(onPaper(points)));
         }
         return outlines;
     }
@@ -118,15 +118,13 @@ public:
     double farthest() const { return farthest_; }
 
 private:
-    Rect2d boundingBox() const
+    static Path outlineOf(const Path& points)
     {
-        Point2d low(c_.data.objectPoints[0].x, c_.data.objectPoints[0].y), high = low;
-        for (const Point3d& X : c_.data.objectPoints)
-        {
-            low = Point2d(std::min(low.x, X.x), std::min(low.y, X.y));
-            high = Point2d(std::max(high.x, X.x), std::max(high.y, X.y));
-        }
-        return Rect2d(low, high);
+        std::vector<Point2f> all(points.begin(), points.end()), hull;
+        convexHull(all, hull);
+        Path outline(hull.begin(), hull.end());
+        outline.push_back(outline[0]);
+        return outline;
     }
 
     const RigCalibration& c_;

@@ -48,6 +48,8 @@ double typicalLength(const std::vector<Residual>& residuals)
     std::vector<double> lengths;
     for (const Residual& r : residuals)
         lengths.push_back(norm(r.error));
+    if (lengths.empty())
+        return 0.;
     std::nth_element(lengths.begin(), lengths.begin() + lengths.size()/2, lengths.end());
     return lengths[lengths.size()/2];
 }

@@ -15,6 +15,9 @@ struct Figure
 //! Section through camera, window and boards: axis 0 = seen from above (x-z), 1 = from the side (y-z). To scale.
 Figure drawSideView(const RigCalibration& calibration, int camera, int axis);
 
+//! All cameras, windows and points from one side, obliquely from above. @param azimuthDeg 0: from behind the cameras, 90: from the right
+Figure drawRig(const RigCalibration& calibration, double azimuthDeg);
+
 //! Where the window moves the image of points at the middle working depth.
 Figure drawDisplacement(const RigCalibration& calibration, int camera);
 

@@ -7,6 +7,7 @@
 #include "report/summary.hpp"
 #include "report/thumbnails.hpp"
 #include <kainjow/mustache.hpp>
+#include <algorithm>
 #include <cmath>
 
 using namespace cv;
@@ -63,9 +64,12 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
     page.set("verdict", f.verdict());
     page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || (f.weak.empty() && f.notChecked.empty()) ? "good"
                               : "weak");
+    const int FEW = 2;                  // of more cameras a window is told once
     std::string windows;
     for (int k = 0; k < c.data.cameraCount; k++)
     {
+        if (c.data.cameraCount > FEW && !c.fit.rig.ownsWindow(k))
+            continue;
         const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2]))*180./CV_PI;
         windows += c.data.cameraCount == 1 ? "The window" : format("%sThe window of camera %d", k ? " " : "", k + 1);
         windows += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
@@ -135,9 +139,9 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
 }
 
 //! Parameters with their standard deviations, and their correlations as coloured cells.
-void setParameters(data& page, const Fit& fit, int flags)
+void setParameters(data& page, const Fit& fit)
 {
-    const std::vector<EstimatedParameter> window = estimatedWindowParameters(fit, flags);
+    const std::vector<EstimatedParameter> window = estimatedWindowParameters(fit);
     std::vector<EstimatedParameter> all = window;
     const std::vector<EstimatedParameter> rig = estimatedRigParameters(fit);
     all.insert(all.end(), rig.begin(), rig.end());
@@ -189,13 +193,70 @@ data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progre
     {
         if (map.seen())
             list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
-                           c.data.cameraCount == 2 ? "Over the image of camera 1; white parts are not seen by both cameras, "
-                                                     "each picture has its own colour scale"
-                                                   : "Over the image, for points on a plane square to the camera; each picture "
+                           c.data.cameraCount > 1 ? std::string("Over the image of camera 1; white parts are not seen by ")
+                                                    + (c.data.cameraCount == 2 ? "both cameras" : "any other camera")
+                                                    + ", each picture has its own colour scale"
+                                                  : "Over the image, for points on a plane square to the camera; each picture "
                                                      "has its own colour scale");
         progress.step();
     }
     return list;
+}
+
+//! The rig from two sides.
+data rigFigures(const RigCalibration& c, Progress& progress)
+{
+    const char* reading = "To scale, obliquely from above: the cameras with their numbers, the part of each window that they look "
+                          "through, their middle rays bending at it, and the points that were seen; a camera that is not where you "
+                          "mounted it shows here";
+    data list{data::type::list};
+    list << figure(drawRig(c, 35.), "The rig from behind", reading);
+    progress.step();
+    list << figure(drawRig(c, -60.), "The rig from the other side", reading);
+    progress.step();
+    return list;
+}
+
+//! Views by cameras: how many points each saw through its window, coloured by their share.
+void setSightings(data& page, const RigCalibration& c)
+{
+    data rows{data::type::list};
+    std::vector<int> pointsSeenBy(c.data.cameraCount + 1);
+    for (int i : c.fit.moments)
+    {
+        const Moment& m = c.data.moments[i];
+        std::vector<int> seenBy(m.objectPoints.size());
+        data cells{data::type::list};
+        for (int k = 0; k < c.data.cameraCount; k++)
+        {
+            int count = 0;
+            for (size_t p = 0; p < m.glass[k].size(); p++)
+                if (seen(m.glass[k][p]))
+                {
+                    count++;
+                    seenBy[p]++;
+                }
+            const int direct = (int)std::count_if(m.direct[k].begin(), m.direct[k].end(), seen);
+            data cell;
+            cell.set("value", (count ? std::to_string(count) : std::string(direct ? "" : "-"))
+                              + (direct ? format("%s%d direct", count ? " + " : "", direct) : ""));
+            cell.set("colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)m.objectPoints.size()));
+            cells << cell;
+        }
+        for (int count : seenBy)
+            pointsSeenBy[count]++;
+        data row;
+        row.set("name", m.stem);
+        row.set("cells", cells);
+        rows << row;
+    }
+    std::string note;
+    for (int count = 1; count <= c.data.cameraCount; count++)
+        if (pointsSeenBy[count])
+            note += (note.empty() ? "Points seen through the windows by " : "; by ") + format("%d camera%s: %d", count,
+                    count == 1 ? "" : "s", pointsSeenBy[count]);
+    page.set("sightings", rows);
+    page.set("sightings_note", note + ".");
 }
 
 data thumbnailsOf(const RigCalibration& c, Progress& progress)
@@ -236,7 +297,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         dropped.push_back(d.sentence());
     page.set("dropped", listOf(dropped));
     page.set("has_dropped", !dropped.empty());
-    page.set("stereo", c.data.cameraCount == 2);
+    page.set("stereo", c.data.cameraCount > 1);
+    page.set("fold_cameras", c.data.cameraCount > 2);
+    page.set("few_cameras", c.data.cameraCount <= 2);
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
     setTable(page, "held_out", heldOutRows(c));
@@ -245,11 +308,17 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     setTable(page, "advice", assessment.advice.pairs.empty() ? std::vector<SummaryRow>() : adviceRows(assessment.advice));
     page.set("point_error_note", pointErrorNote(c, assessment));
     page.set("unit", c.unit);
-    setParameters(page, c.fit, c.options.flags);
+    setParameters(page, c.fit);
 
-    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount
+    const bool isRig = c.data.cameraCount > 1;
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
     page.set("error_figures", errorFigures(c, assessment, progress));
+    if (isRig)
+    {
+        page.set("rig_figures", rigFigures(c, progress));
+        setSightings(page, c);
+    }
     data cameras{data::type::list}, heads{data::type::list};
     for (int k = 0; k < c.data.cameraCount; k++)
     {

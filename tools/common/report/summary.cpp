@@ -13,6 +13,7 @@ namespace tools {
 
 namespace {
 
+const int CAMERAS_ABREAST = 2;      // as many as a terminal of 100 columns takes
 const double FAR_WORSE = 5.;        // the worst point against 95 % of all
 
 std::string estimateOr(double value, double std, const char* otherwise)
@@ -81,6 +82,24 @@ void printRows(std::ostream& out, const std::string& title, const std::vector<st
         table.add(cells);
     }
     table.print(out);
+}
+
+//! The heading of as many cameras as stand side by side.
+std::vector<std::string> camerasFrom(const RigCalibration& c, int first)
+{
+    std::vector<std::string> heading = {""};
+    for (int k = first; k < std::min(first + CAMERAS_ABREAST, c.data.cameraCount); k++)
+        heading.push_back(c.data.cameraCount == 1 ? "camera" : format("camera %d", k + 1));
+    return heading;
+}
+
+std::vector<SummaryRow> columnsFrom(const std::vector<SummaryRow>& rows, int first)
+{
+    std::vector<SummaryRow> part;
+    for (const SummaryRow& row : rows)
+        part.push_back({row.name, std::vector<std::string>(row.cells.begin() + first,
+                        row.cells.begin() + std::min(row.cells.size(), (size_t)(first + CAMERAS_ABREAST)))});
+    return part;
 }
 
 } // namespace
@@ -183,11 +202,13 @@ std::vector<SummaryRow> pointErrorRows(const RigCalibration& c, const Assessment
 
 std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
 {
-    const bool stereo = c.data.cameraCount == 2;
-    std::string note = stereo ? "Seen: the share of camera 1's image that camera 2 sees too at that z."
-                              : "Seen: the share of the image whose rays meet the plane at that z.";
+    const int cameras = c.data.cameraCount;
+    std::string note = cameras == 1 ? "Seen: the share of the image whose rays meet the plane at that z."
+                                    : std::string("Seen: the share of camera 1's image that ")
+                                      + (cameras == 2 ? "camera 2" : "another camera") + " sees too at that z.";
     if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return !map.seen(); }))
-        note += stereo ? " 0 %: no point there is in both images." : " 0 %: that z lies within or before the window.";
+        note += cameras == 1 ? " 0 %: that z lies within or before the window."
+                : cameras == 2 ? " 0 %: no point there is in both images." : " 0 %: no point there is in two images.";
     if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE*map.most(); }))
         note += " Where the worst is far above the rest it is a few points at the border of what is seen: leave them out.";
     return note;
@@ -228,12 +249,14 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     out << findings.verdict() << '\n';
     printSentences(out, "Limits:", limits);
     out << '\n';
-    const std::vector<std::string> cameras = c.data.cameraCount == 1 ? std::vector<std::string>{"", "camera"}
-                                                                     : std::vector<std::string>{"", "camera 1", "camera 2"};
     std::vector<SummaryRow> rows = windowRows(c);
     const std::vector<SummaryRow> fit = fitRows(c);
     rows.insert(rows.end(), fit.begin(), fit.end());
-    printRows(out, "", cameras, rows);
+    for (int first = 0; first < c.data.cameraCount; first += CAMERAS_ABREAST)
+    {
+        out << (first ? "\n" : "");
+        printRows(out, "", camerasFrom(c, first), columnsFrom(rows, first));
+    }
     printRows(out, "On boards that took no part (held out in turn):", {"", "lens and window", "pinhole through glass"},
               heldOutRows(c));
     printRows(out, "Expected error of a measured point, " + c.unit + " (one standard deviation, 3-D):",

@@ -48,11 +48,11 @@ std::vector<Point2d> usedPoints(const RigCalibration& c, const Photo& photo)
 std::vector<Photo> photosOf(const RigViewSets& sets)
 {
     std::vector<Photo> photos;
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool glass : {false, true})
         {
             const ViewSet& set = (glass ? sets.glass : sets.direct)[c];
-            if (set.files.size() == 1 && std::filesystem::path(set.files[0]).extension() == ".vnl")
+            if (set.files.size() == 1 && isPointFile(set.files[0]))
                 continue;
             for (const DetectedView& view : set.views)
                 photos.push_back({view.path, view.stem, c, glass, view.points});

@@ -137,7 +137,7 @@ Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refrac
     return expose(levels, exposure, seed);
 }
 
-BoardPose inSecondCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)
+BoardPose inOtherCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)
 {
     Matx33d board;
     cv::Rodrigues(pose.rvec, board);

@@ -21,7 +21,7 @@ cv::Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::re
                const Exposure& exposure, uint64_t seed);
 
 //! Camera 2's pose of a target whose pose in camera 1 is known.
-BoardPose inSecondCamera(const BoardPose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
+BoardPose inOtherCamera(const BoardPose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
 
 } // namespace tools
 

@@ -46,7 +46,8 @@ public:
     PoseLottery(const Keys& keys, const Target& target, const Calibration& rig, uint64_t seed)
         : target_(target), rig_(rig), rng_(seed), distance_(keys.numbers("distance", 2)),
           tilt_(keys.numbers("tilt_deg", 2)), roll_(keys.number("roll_deg", 0, 180, 0)),
-          margin_(keys.number("margin", 0, 1e5, 20))
+          margin_(keys.number("margin", 0, 1e5, 20)),
+          seenBy_((int)keys.number("seen_by", 1, (double)rig.cameras.size(), (double)rig.cameras.size()))
     {
         if (!(distance_[0] > 0 && distance_[1] >= distance_[0] && tilt_[0] >= 0 && tilt_[1] >= tilt_[0] && tilt_[1] < 90))
             throw Failure(keys.name() + ": distance must be [near, far] with 0 < near <= far, tilt_deg [least, most] "
@@ -61,7 +62,7 @@ public:
             if (isSeen(pose))
                 return pose;
         }
-        throw Failure(stem + ": no pose found in which all cameras see the whole target; move the cameras, take a "
+        throw Failure(stem + ": no pose found in which enough cameras see the whole target; move the cameras, take a "
                       "smaller target or another distance");
     }
 
@@ -96,16 +97,20 @@ private:
 
     bool areSeen(const std::vector<cv::Point3d>& points, const BoardPose& pose) const
     {
-        for (size_t i = 0; i < rig_.cameras.size(); i++)
-        {
-            const BoardPose here = i ? inSecondCamera(pose, rig_.R, rig_.T) : pose;
-            const auto& camera = rig_.cameras[i].camera;
-            for (const GlassWindow& window : {camera->window(), GlassWindow()})
-                for (const Point2d& p : projectPoints(points, here, copyWithWindow(camera, window)))
-                    if (!(p.x >= margin_ && p.y >= margin_ && p.x <= camera->imageSize().width - 1 - margin_
-                          && p.y <= camera->imageSize().height - 1 - margin_))
-                        return false;
-        }
+        int seeing = 0;
+        for (size_t c = 0; c < rig_.cameras.size(); c++)
+            seeing += areSeenBy(rig_.cameras[c].camera, points, inOtherCamera(pose, rig_.Rs[c], rig_.Ts[c]));
+        return seeing >= seenBy_;
+    }
+
+    bool areSeenBy(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const std::vector<cv::Point3d>& points,
+                   const BoardPose& pose) const
+    {
+        for (const GlassWindow& window : {camera->window(), GlassWindow()})
+            for (const Point2d& p : projectPoints(points, pose, copyWithWindow(camera, window)))
+                if (!(p.x >= margin_ && p.y >= margin_ && p.x <= camera->imageSize().width - 1 - margin_
+                      && p.y <= camera->imageSize().height - 1 - margin_))
+                    return false;
         return true;
     }
 
@@ -114,6 +119,7 @@ private:
     cv::RNG rng_;
     std::vector<double> distance_, tilt_;
     double roll_, margin_;
+    int seenBy_;
 };
 
 using PosesByName = std::map<std::string, std::vector<NamedPose>>;

@@ -7,25 +7,25 @@
 
 /* RIG.yml, what refract_simulate renders (cv::FileStorage):
 
-    target: { pattern: chessboard, size: 6x5, square: 39. }
+    target: { pattern: chessboard, size: "6x5", square: 39. }
     camera1: { ... as in calib.yml ... }     # one camera: its keys at top level instead
     camera2: { ... }
-    R: ...                                   # camera 1 -> camera 2
+    R: ...                                   # camera 1 -> camera 2; of camera 3 they are R3 and T3, and so on
     T: ...
     exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
     seed: 1
     poses:                                   # of the target in camera 1, by name
       board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] }, ... ]                     # given, or
       pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }   # drawn
-    sets:                                    # folder <name> (two cameras: <name>1, <name>2)
+    sets:                                    # folder <name> (several cameras: <name>1, <name>2, ...)
       direct: { window: 0, poses: [ pair ] }
       glass: { window: 1, poses: [ pair ] }
       room: { window: 1, scene: 1 }          # the textured scene, which surfaces_file.hpp tells, in place of the target
     scene: ...
     texture: ...
 
-There is a target, a scene, or both. Drawn poses keep every point of the target `margin` pixels inside all images, with and
-without window. */
+There is a target, a scene, or both. Drawn poses keep every point of the target `margin` pixels inside all images, or those of
+`seen_by` cameras, with and without window. */
 namespace tools {
 
 struct NamedPose

@@ -25,7 +25,7 @@ RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& i
     for (int c = 0; c < 2; c++)
     {
         const int64 start = cv::getTickCount();
-        const Mat T = c ? Mat(rig.calibration().T) : Mat();
+        const Mat T = c ? Mat(rig.calibration().Ts[c]) : Mat();
         cv::refract::initRefractiveStereoRectifyMap(rig.calibration().cameras[c].camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1,
                                                     scaled(c ? rig.P2 : rig.P1, scale), T, size, CV_32FC2, result.map[c],
                                                     cv::noArray());

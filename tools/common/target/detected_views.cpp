@@ -1,6 +1,7 @@
 #include "target/detected_views.hpp"
 #include "console/progress.hpp"
 #include "target/corners_vnl.hpp"
+#include "target/points_csv.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -33,7 +34,7 @@ void addView(ViewSet& set, const std::string& path, const std::vector<cv::Point2
     if (points.empty())
         set.withoutTarget.push_back(path);
     else
-        set.views.push_back({stemOf(path), path, points});
+        set.views.push_back({stemOf(path), path, points, {}});
 }
 
 //! What came of one image.
@@ -131,29 +132,33 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
 }
 
 //! A corner found at the border may lie a little beyond it; one of another image size lies far.
-void requireInside(const std::string& path, const std::pair<std::string, std::vector<cv::Point2d>>& image, cv::Size size)
+void requireInside(const std::string& path, const std::string& image, const std::vector<cv::Point2d>& points, cv::Size size)
 {
     const double BEYOND = 1.;
     const cv::Rect2d allowed(-BEYOND, -BEYOND, size.width + 2*BEYOND, size.height + 2*BEYOND);
-    for (const cv::Point2d& p : image.second)
+    for (const cv::Point2d& p : points)
         if (seen(p) && !allowed.contains(p))
-            throw Failure("'" + path + "': a point of '" + image.first + "' is at " + cv::format("(%g, %g)", p.x, p.y)
+            throw Failure("'" + path + "': a point of '" + image + "' is at " + cv::format("(%g, %g)", p.x, p.y)
                           + ", outside of an image of " + sizeText(size) + ": check --image-size, or the size that the "
                           "calibration says");
 }
 
-ViewSet viewsOfVnl(const std::string& path, const Target& target, cv::Size imageSize)
+std::string extensionOf(const std::string& path) { return std::filesystem::path(path).extension().string(); }
+
+ViewSet viewsOfPointFile(const std::string& path, const Target* target, cv::Size imageSize)
 {
     if (imageSize.empty())
         throw Failure("'" + path + "' does not say how large the images are: add --image-size=WIDTHxHEIGHT");
     ViewSet set;
     set.files = {path};
     set.imageSize = imageSize;
-    for (const auto& image : readCornersVnl(path, target.count()))
-    {
-        requireInside(path, image, imageSize);
-        addView(set, image.first, image.second);
-    }
+    if (extensionOf(path) == ".csv")
+        set.views = readPointsCsv(path);
+    else
+        for (const auto& image : readCornersVnl(path, target->count()))
+            addView(set, image.first, image.second);
+    for (const DetectedView& view : set.views)
+        requireInside(path, extensionOf(path) == ".csv" ? view.stem : view.path, view.points, imageSize);
     return set;
 }
 
@@ -168,14 +173,21 @@ void requireDistinctStems(const ViewSet& set, const std::string& source)
 
 } // namespace
 
-ViewSet readViews(const std::string& source, const Target& target, cv::Size imageSize, bool quiet)
+bool isPointFile(const std::string& source)
 {
-    const bool vnl = std::filesystem::path(source).extension() == ".vnl";
-    const ViewSet set = vnl ? viewsOfVnl(source, target, imageSize)
-                            : detectViews(expandGlob(source), target, imageSize, quiet);
+    return extensionOf(source) == ".vnl" || extensionOf(source) == ".csv";
+}
+
+ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet)
+{
+    if (!target && extensionOf(source) != ".csv")
+        throw Failure("'" + source + "' shows a target that must be known: give --size and --square (only a points.csv brings its "
+                      "own coordinates)");
+    const ViewSet set = isPointFile(source) ? viewsOfPointFile(source, target, imageSize)
+                                            : detectViews(expandGlob(source), *target, imageSize, quiet);
     if (set.views.empty())
         throw Failure("the target was not found in any image of '" + source + "': check --pattern and --size="
-                      + sizeText(target.size()) + " (inner corners or dots), light and focus");
+                      + sizeText(target->size()) + " (inner corners or dots), light and focus");
     requireDistinctStems(set, source);
     return set;
 }

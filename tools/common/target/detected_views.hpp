@@ -11,7 +11,8 @@ struct DetectedView
 {
     std::string stem;                   //!< file name without folder and extension: pairs views of one moment
     std::string path;
-    std::vector<cv::Point2d> points;    //!< Target::count() pixels, NaN where a point was not seen
+    std::vector<cv::Point2d> points;    //!< a pixel of each point of the target, NaN where it was not seen
+    std::vector<cv::Point3d> objectPoints = {};     //!< of points.csv; empty: those of the Target
     int seenCount() const;
 };
 
@@ -26,12 +27,16 @@ struct ViewSet
     const DetectedView* find(const std::string& stem) const;    //!< null if there is none
 };
 
-/** Finds the target in all images of a glob, or reads an mrcal corners.vnl (recognised by its extension .vnl).
+/** Finds the target in all images of a glob, or reads an mrcal corners.vnl or a points.csv (recognised by their extensions).
 @param source glob ('data/direct-*.png') or file name.
-@param imageSize needed for a .vnl, which does not say it; otherwise checked if not empty.
+@param target null: there is none, and only a points.csv can be read.
+@param imageSize needed for a .vnl and a .csv, which do not say it; otherwise checked if not empty.
 @param quiet no progress.
 Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
-ViewSet readViews(const std::string& source, const Target& target, cv::Size imageSize, bool quiet);
+ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet);
+
+//! A file of points in place of images: there is nothing to look at.
+bool isPointFile(const std::string& source);
 
 //! "the chessboard in WHERE looks like one of 9x6 inner corners, not --size=10x7: ..."
 std::string otherTargetText(const std::string& where, const Target& target, cv::Size other);

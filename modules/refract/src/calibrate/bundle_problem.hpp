@@ -82,9 +82,8 @@ public:
 
 private:
     void PrepareForEvaluation(bool wantsDerivatives, bool isNewPoint) override;
-    bool solveInside(ceres::TrustRegionStrategyType strategy, double cauchy, double change, int& iterations, double& radius);
+    ceres::TerminationType solveInside(TrustRegion& region, double cauchy);
     bool isAtMinimum();
-    void addPoses(ceres::Problem& problem);
 
     RigProblem rig_;
     const int pointCount_;

@@ -3,16 +3,14 @@
 // of this distribution and at http://opencv.org/license.html.
 
 /* The joint problem without a target on Ceres' trust region. Ceres eliminates the clusters of points; all images are
-linearised side by side before it asks for their points' residuals one by one. Steps, bounds and the test for a minimum are
+linearised side by side before it asks for their points' residuals one by one. Bounds and the test for a minimum are
 rig_solve.cpp's. */
 
 #include "calibrate/bundle_problem.hpp"
 #include "calibrate/bundle_information.hpp"
+#include "calibrate/trust_region.hpp"
 #include <ceres/loss_function.h>
-#include <ceres/normal_prior.h>
-#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 
 namespace cv { namespace refract {
 
@@ -102,43 +100,15 @@ bool BundleProblem::isAtMinimum()
 
 bool BundleProblem::solve(const TermCriteria& criteria, double cauchy)
 {
-    const int ITERATIONS_BETWEEN = 20;
-    const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
-    const ceres::TrustRegionStrategyType strategies[] = { ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG };
-    const double firstRadius = ceres::Solver::Options().initial_trust_region_radius;
-    double radius[] = { firstRadius, firstRadius };
-    int left = criteria.maxCount;
-    for (int turn = 0; left > 0; turn = 1 - turn)
-    {
-        int iterations = std::min(left, ITERATIONS_BETWEEN);
-        const bool converged = solveInside(strategies[turn], cauchy, stopsByChange ? criteria.epsilon : 0., iterations,
-                                           radius[turn]);
-        left -= iterations;
+    return takeTurns(criteria, [this, cauchy](TrustRegion& region) {
+        const ceres::TerminationType outcome = solveInside(region, cauchy);
         evaluate(true);
-        if (!(rig_.isOnBound() && rig_.holdAtBounds()) && converged && (cauchy > 0 || isAtMinimum()))
-            return true;
-    }
-    // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
-    return !stopsByChange;
+        return outcome != ceres::FAILURE && !(rig_.isOnBound() && rig_.holdAtBounds()) && outcome == ceres::CONVERGENCE
+               && (cauchy > 0 || isAtMinimum());
+    });
 }
 
-void BundleProblem::addPoses(ceres::Problem& problem)
-{
-    for (int view = 0; view < rig_.viewCount(); view++)
-    {
-        double* const values = rig_.poseValues(view);
-        problem.AddParameterBlock(values, 6);
-        if (!rig_.isAdjusted(view))
-            problem.SetParameterBlockConstant(values);
-        else if (rig_.isUncertain(view))
-            problem.AddResidualBlock(new ceres::NormalPrior(rig_.priorByPose(view),
-                                                            Eigen::Map<const Vector6>(rig_.knownPoseValues(view))),
-                                     nullptr, values);
-    }
-}
-
-bool BundleProblem::solveInside(ceres::TrustRegionStrategyType strategy, double cauchy, double change, int& iterations,
-                                double& radius)
+ceres::TerminationType BundleProblem::solveInside(TrustRegion& region, double cauchy)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
@@ -153,9 +123,11 @@ bool BundleProblem::solveInside(ceres::TrustRegionStrategyType strategy, double 
         addToProblem(problem, block);
         ordering->AddElementToGroup(block.values.data(), group++);
     }
-    addPoses(problem);
     for (int view = 0; view < rig_.viewCount(); view++)
+    {
+        rig_.addPose(problem, view);
         ordering->AddElementToGroup(rig_.poseValues(view), group++);
+    }
     for (Cluster& cluster : clusters_)
     {
         double* const values = cluster.values.data();
@@ -172,23 +144,7 @@ bool BundleProblem::solveInside(ceres::TrustRegionStrategyType strategy, double 
         ordering->AddElementToGroup(values, 0);     // by address in it: as they are kept, one after the other
     }
 
-    ceres::Solver::Options options;
-    options.trust_region_strategy_type = strategy;
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = ordering;
-    options.max_num_iterations = iterations;
-    options.initial_trust_region_radius = radius;
-    options.function_tolerance = change;
-    options.gradient_tolerance = options.parameter_tolerance = 1e-14;
-    options.max_num_consecutive_invalid_steps = 20;     // a step that takes a point's image away is shortened
-    options.num_threads = 1;        // sums in one order: the same result every time
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    iterations = std::max(1, (int)summary.iterations.size() - 1);
-    const bool isUsable = summary.IsSolutionUsable();
-    radius = isUsable ? summary.iterations.back().trust_region_radius : ceres::Solver::Options().initial_trust_region_radius;
-    return isUsable && summary.termination_type == ceres::CONVERGENCE;
+    return region.solve(problem, ordering);
 }
 
 }} // namespace

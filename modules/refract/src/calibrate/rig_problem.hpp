@@ -14,6 +14,8 @@ namespace ceres { class Problem; }
 
 namespace cv { namespace refract {
 
+struct TrustRegion;
+
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
 typedef Eigen::Matrix<double, 6, 1> Vector6;
 
@@ -122,7 +124,8 @@ public:
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     double* poseValues(int view) { return poses_[view].data(); }
-    const double* knownPoseValues(int view) const { return knownPoses_[view].data(); }
+    //! With what is known of it.
+    void addPose(ceres::Problem& problem, int view);
     bool isAdjusted(int view) const { return isSeen_[view] && knowledgeOf(view) != PoseKnowledge::EXACT; }
     bool isUncertain(int view) const { return isSeen_[view] && knowledgeOf(view) == PoseKnowledge::UNCERTAIN; }
     //! The scene that each view's target is, where it is not known: one for all views. NaN: that point has no weight.
@@ -180,8 +183,7 @@ private:
 
     void PrepareForEvaluation(bool, bool isNewPoint) override { if (isNewPoint) updateCameras(); }
 
-    //! A ceres::TerminationType. iterations: in the limit, out how many were made.
-    int solveInside(ceres::TrustRegionStrategyType strategy, double change, int& iterations, double& radius);
+    ceres::TerminationType solveInside(TrustRegion& region);
     bool isAtMinimum() const;
     String startFault() const;      //!< empty, or which point has no image at the start
 

@@ -8,16 +8,14 @@ Ceres keeps bounds by projecting each step, and creeps where a step's other coor
 So every few iterations a coordinate that lies on its bound, with the cost falling beyond it, is held there, and is let go
 when the cost falls towards the inside.
 
-Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
-domain those of the dogleg do: they take turns. A small change of the cost is no proof of a minimum: the step that is left
-to that of the linearised problem must be far below what the noise does. */
+A small change of the cost is no proof of a minimum: the step that is left to that of the linearised problem must be far
+below what the noise does. */
 
 #include "calibrate/information.hpp"
+#include "calibrate/trust_region.hpp"
 #include <ceres/manifold.h>
 #include <ceres/normal_prior.h>
-#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <ceres/sphere_manifold.h>
 
 namespace cv { namespace refract {
@@ -50,14 +48,12 @@ String RigProblem::startFault() const
             this->camera(image.camera);         // throws
         const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
         const Extrinsics toCamera1(poses_[image.view].data());
-        const Matx33d R = toCamera.rotation.R*toCamera1.rotation.R;
-        const Vec3d t = toCamera.apply(toCamera1.T);
         for (size_t i = 0; i < image.points.object.size(); i++)
         {
             if (image.rootWeights[i] == 0)
                 continue;
             const Point3d& point = image.points.object[i];
-            const Vec3d X = R*Vec3d(point) + t;
+            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(point)));
             double u, v;
             uchar status = REFRACT_OK;
             camera->project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
@@ -85,24 +81,10 @@ bool RigProblem::solve(const TermCriteria& criteria)
     const String fault = startFault();
     if (!fault.empty())
         CV_Error(Error::StsBadArg, fault);
-    const int ITERATIONS_BETWEEN = 20;
-    const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
-    const ceres::TrustRegionStrategyType strategies[] = { ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG };
-    const double firstRadius = ceres::Solver::Options().initial_trust_region_radius;
-    double radius[] = { firstRadius, firstRadius };
-    int left = criteria.maxCount;
-    for (int turn = 0; left > 0; turn = 1 - turn)
-    {
-        int iterations = std::min(left, ITERATIONS_BETWEEN);
-        const int outcome = solveInside(strategies[turn], stopsByChange ? criteria.epsilon : 0., iterations, radius[turn]);
-        left -= iterations;
-        if (outcome == ceres::FAILURE)
-            radius[turn] = firstRadius;
-        else if (!(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE && isAtMinimum())
-            return true;
-    }
-    // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
-    return !stopsByChange;
+    return takeTurns(criteria, [this](TrustRegion& region) {
+        const ceres::TerminationType outcome = solveInside(region);
+        return outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE && isAtMinimum();
+    });
 }
 
 bool RigProblem::isOnBound() const
@@ -139,7 +121,18 @@ bool RigProblem::holdAtBounds()
     return changed;
 }
 
-int RigProblem::solveInside(ceres::TrustRegionStrategyType strategy, double change, int& iterations, double& radius)
+void RigProblem::addPose(ceres::Problem& problem, int view)
+{
+    double* const values = poses_[view].data();
+    problem.AddParameterBlock(values, 6);
+    if (!isAdjusted(view))
+        problem.SetParameterBlockConstant(values);
+    else if (isUncertain(view))
+        problem.AddResidualBlock(new ceres::NormalPrior(priorByPose(view), Eigen::Map<const Vector6>(knownPoses_[view].data())),
+                                 nullptr, values);
+}
+
+ceres::TerminationType RigProblem::solveInside(TrustRegion& region)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
@@ -168,32 +161,11 @@ int RigProblem::solveInside(ceres::TrustRegionStrategyType strategy, double chan
         if (!isSeen_[view])
             continue;
         ordering->AddElementToGroup(poses_[view].data(), 0);
-        if (!isAdjusted(view))
-            problem.SetParameterBlockConstant(poses_[view].data());
-        else if (isUncertain(view))
-            problem.AddResidualBlock(new ceres::NormalPrior(priorByPose(view), Eigen::Map<const Vector6>(knownPoses_[view].data())),
-                                     nullptr, poses_[view].data());
+        addPose(problem, view);
     }
-
-    ceres::Solver::Options options;
-    options.trust_region_strategy_type = strategy;
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = ordering;
-    options.max_num_iterations = iterations;
-    options.initial_trust_region_radius = radius;
-    options.function_tolerance = change;
-    options.gradient_tolerance = options.parameter_tolerance = 1e-14;
-    options.max_num_consecutive_invalid_steps = 20;     // a step that takes a point's image away is shortened
-    options.num_threads = 1;        // sums in one order: the same result every time
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    const ceres::TerminationType outcome = region.solve(problem, ordering);
     updateCameras();
-    iterations = std::max(1, (int)summary.iterations.size() - 1);
-    if (!summary.IsSolutionUsable())
-        return ceres::FAILURE;
-    radius = summary.iterations.back().trust_region_radius;
-    return summary.termination_type;
+    return outcome;
 }
 
 }} // namespace

@@ -1,0 +1,141 @@
+// What belongs together: points of files by their coordinates, views by their names, cameras by what they see in common.
+#include "calibrate/rig_data.hpp"
+#include "target/points_csv.hpp"
+#include "temporary_folder.hpp"
+#include <catch2/catch.hpp>
+#include <fstream>
+
+using namespace cv;
+using namespace tools;
+
+namespace {
+
+std::vector<DetectedView> readText(const std::string& text)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "points.csv") << text;
+    return readPointsCsv(folder / "points.csv");
+}
+
+DetectedView viewOf(const std::string& name, const std::vector<Point3d>& object, double u)
+{
+    DetectedView view{name, "points.csv", {}, object};
+    for (size_t i = 0; i < object.size(); i++)
+        view.points.emplace_back(u + object[i].x, 10. + object[i].y);
+    return view;
+}
+
+ViewSet setOf(const std::vector<DetectedView>& views)
+{
+    ViewSet set;
+    set.views = views;
+    set.files = {"points.csv"};
+    set.imageSize = Size(640, 480);
+    return set;
+}
+
+const std::vector<Point3d> CUBE = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+
+} // namespace
+
+TEST_CASE("A file of observed points is read as spreadsheets write it", "[points_csv]")
+{
+    const std::vector<DetectedView> views = readText("\xEF\xBB\xBFview,x,y,z,u,v\r\n# a comment\r\n\r\nb,1,2,3,10.5,20\r\n"
+                                                     "\"a, first\",-1e1,0,0.5,,\r\nb,4,5,6,nan,NaN\r\n");
+    REQUIRE(views.size() == 2);
+    CHECK(views[0].stem == "a, first");
+    CHECK(!seen(views[0].points.at(0)));
+    CHECK(views[0].objectPoints.at(0) == Point3d(-10, 0, 0.5));
+    CHECK(views[1].stem == "b");
+    REQUIRE(views[1].points.size() == 2);
+    CHECK(views[1].points[0] == Point2d(10.5, 20));
+    CHECK(views[1].objectPoints[1] == Point3d(4, 5, 6));
+    CHECK(!seen(views[1].points[1]));
+
+    const std::vector<DetectedView> other = readText("v;u;z;y;x;view\n2;1;5;4;3;name\n");    // any order, semicolons
+    CHECK(other.at(0).objectPoints.at(0) == Point3d(3, 4, 5));
+    CHECK(other[0].points[0] == Point2d(1, 2));
+}
+
+TEST_CASE("A file of observed points that is none is refused with its line", "[points_csv]")
+{
+    const std::string heading = "view,x,y,z,u,v\n";
+    using Catch::Contains;
+    CHECK_THROWS_WITH(readText(""), Contains("has no rows") && Contains("view,x,y,z,u,v"));
+    CHECK_THROWS_WITH(readText(heading), Contains("has no rows"));
+    CHECK_THROWS_WITH(readText("view,x,y,u,v\na,1,2,3,4\n"), Contains("line 1") && Contains("column 'z'"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,3,4,5\na,1,2,3,4\n"), Contains("line 3") && Contains("6 cells"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,x,4,5\n"), Contains("line 2") && Contains("z must be a number, not 'x'"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,inf,4,5\n"), Contains("line 2") && Contains("z must be a number"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,,4,5\n"), Contains("line 2") && Contains("z is empty"));
+    CHECK_THROWS_WITH(readText(heading + ",1,2,3,4,5\n"), Contains("line 2") && Contains("view is empty"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,3,4,5\nb,1,2,3,4,5\na,1,2,3,6,7\n"), Contains("line 4") && Contains("already"));
+    CHECK_THROWS_WITH(readPointsCsv("/nowhere/points.csv"), Contains("/nowhere/points.csv"));
+}
+
+TEST_CASE("Points that several cameras see are matched by their coordinates, whatever their order", "[rig_data]")
+{
+    std::vector<Point3d> reversed(CUBE.rbegin(), CUBE.rend() - 2);      // without the first two
+    reversed.push_back({7, 7, 7});                                      // that nobody else sees
+    RigViewSets sets;
+    sets.glass[0] = setOf({viewOf("a", CUBE, 100), viewOf("b", CUBE, 100)});
+    sets.glass[2] = setOf({viewOf("a", reversed, 300)});
+    sets.direct[2] = setOf({viewOf("a", CUBE, 500)});
+    const RigData data = pairViews(nullptr, sets, false);
+    CHECK(data.cameraCount == 3);
+    REQUIRE(data.moments.size() == 2);
+    const Moment& m = data.moments[0];
+    CHECK(m.stem == "a");
+    CHECK(m.countGlass() == 2);
+    CHECK(m.countDirect() == 1);
+    REQUIRE(m.objectPoints.size() == 9);
+    REQUIRE(m.glass[2].size() == 9);
+    REQUIRE(m.glass[0].size() == 9);
+    for (size_t i = 0; i < 9; i++)
+    {
+        CHECK(seen(m.glass[0][i]) == (i < 8));
+        CHECK(seen(m.glass[2][i]) == (i >= 2));
+        for (const std::vector<Point2d>* pixels : {&m.glass[0], &m.glass[2], &m.direct[2]})
+            if (seen((*pixels)[i]))
+                CHECK((*pixels)[i].y == 10. + m.objectPoints[i].y);
+    }
+    CHECK(m.isPair(2));
+    CHECK(data.countPairs() == 1);
+    CHECK(data.moments[1].glass[2].empty());
+    CHECK(pairViews(nullptr, sets, true).moments.size() == 3);          // no pair
+}
+
+TEST_CASE("Points of a file beside a board have the board's numbers where they are its corners", "[rig_data]")
+{
+    TargetOptions options;
+    options.size = "4x3";
+    options.square = 10.;
+    const Target target(options);
+    std::vector<Point3d> some(target.objectPoints().begin() + 2, target.objectPoints().end());
+    some.push_back({5, 5, 20});
+    RigViewSets sets;
+    sets.glass[0] = setOf({viewOf("a", some, 100)});
+    DetectedView board = viewOf("a", target.objectPoints(), 200);
+    board.objectPoints.clear();
+    sets.glass[1] = setOf({board});
+    const Moment m = pairViews(&target, sets, false).moments.at(0);
+    REQUIRE(m.objectPoints.size() == 13);
+    CHECK(m.objectPoints[2] == target.objectPoints()[2]);
+    CHECK(!seen(m.glass[0][1]));
+    CHECK(m.glass[0][2] == Point2d(100 + m.objectPoints[2].x, 10 + m.objectPoints[2].y));
+    CHECK(seen(m.glass[0][12]));
+    CHECK(!seen(m.glass[1][12]));
+    CHECK(m.neighbours.size() == target.neighbours().size());
+}
+
+TEST_CASE("Cameras are placed one beside another, and one that shares nothing is named", "[rig_data]")
+{
+    RigViewSets sets;
+    sets.glass[0] = setOf({viewOf("a", CUBE, 1), viewOf("b", CUBE, 1)});
+    sets.glass[1] = setOf({viewOf("c", CUBE, 1), viewOf("d", CUBE, 1)});
+    sets.glass[2] = setOf({viewOf("b", CUBE, 1), viewOf("c", CUBE, 1)});
+    const std::vector<std::pair<int, int>> chain = {{0, 2}, {2, 1}};
+    CHECK(cameraLinks(pairViews(nullptr, sets, false), true) == chain);
+    sets.glass[3] = setOf({viewOf("e", CUBE, 1)});
+    CHECK_THROWS_WITH(cameraLinks(pairViews(nullptr, sets, false), true), Catch::Contains("camera 4"));
+}

@@ -1,0 +1,115 @@
+#include "console/csv.hpp"
+#include "console/cli.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace tools {
+
+namespace {
+
+std::string trimmed(const std::string& text)
+{
+    const char* blanks = " \t\r";
+    const size_t first = text.find_first_not_of(blanks);
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+//! A quote in a quoted cell is doubled.
+std::vector<std::string> cellsOf(const std::string& line, char separator)
+{
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (size_t i = 0; i < line.size(); i++)
+        if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+            cells.back() += line[i++];
+        else if (line[i] == '"')
+            quoted = !quoted;
+        else if (line[i] == separator && !quoted)
+            cells.emplace_back();
+        else
+            cells.back() += line[i];
+    for (std::string& cell : cells)
+        cell = trimmed(cell);
+    return cells;
+}
+
+std::string joined(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ",") + name;
+    return text;
+}
+
+} // namespace
+
+CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what) : path_(path)
+{
+    std::ifstream in(path);
+    if (!in)
+        throw Failure("there is no file '" + path + "' that can be read");
+    char separator = ',';
+    std::string line;
+    for (int number = 1; std::getline(in, line); number++)
+    {
+        if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+            line.erase(0, 3);
+        if (trimmed(line).empty() || trimmed(line)[0] == '#')
+            continue;
+        if (!names_.empty())
+        {
+            rows_.push_back({number, cellsOf(line, separator)});
+            if (rows_.back().cells.size() != names_.size())
+                throw Failure(where(rows_.back()) + ": " + std::to_string(names_.size()) + " cells expected, as the heading has "
+                              "names; is the file cut short?");
+            continue;
+        }
+        separator = line.find(',') == std::string::npos && line.find(';') != std::string::npos ? ';' : ',';
+        names_ = cellsOf(line, separator);
+        for (const std::string& name : required)
+            if (find(name) < 0)
+                throw Failure("'" + path + "' line " + std::to_string(number) + ": there is no column '" + name + "': " + what
+                              + " begins with the line " + joined(required));
+    }
+    if (rows_.empty())
+        throw Failure("'" + path + "' has no rows: " + what + " begins with the line " + joined(required)
+                      + ", and one row a line follows");
+}
+
+int CsvTable::find(const std::string& name) const
+{
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    return found == names_.end() ? -1 : (int)(found - names_.begin());
+}
+
+std::string CsvTable::where(const Row& row) const
+{
+    return "'" + path_ + "' line " + std::to_string(row.line);
+}
+
+const std::string& CsvTable::text(const Row& row, const std::string& name) const
+{
+    const std::string& cell = row.cells.at(find(name));
+    if (cell.empty())
+        throw Failure(where(row) + ": " + name + " is empty");
+    return cell;
+}
+
+double CsvTable::number(const Row& row, const std::string& name) const
+{
+    double value;
+    if (!parseNumber(text(row, name), value) || !std::isfinite(value))
+        throw Failure(where(row) + ": " + name + " must be a number, not '" + text(row, name) + "'");
+    return value;
+}
+
+double CsvTable::numberOrNone(const Row& row, const std::string& name) const
+{
+    const std::string& cell = row.cells.at(find(name));
+    return cell.empty() || cell == "nan" || cell == "NaN" ? std::numeric_limits<double>::quiet_NaN() : number(row, name);
+}
+
+} // namespace tools

@@ -1,0 +1,41 @@
+#ifndef REFRACT_TOOLS_CSV_HPP
+#define REFRACT_TOOLS_CSV_HPP
+
+#include <string>
+#include <vector>
+
+namespace tools {
+
+/** A table from a text file with commas between the cells: a line of column names, then one row a line. Quotes as spreadsheets
+write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, these separate.
+Everything throws Failure that names file and line. */
+class CsvTable
+{
+public:
+    struct Row
+    {
+        int line;
+        std::vector<std::string> cells;
+    };
+
+    /** @param required columns; @param what the file is, for the text where one is missing */
+    CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what);
+
+    const std::vector<Row>& rows() const { return rows_; }
+    const std::vector<std::string>& names() const { return names_; }
+    int find(const std::string& name) const;            //!< column; -1: there is none
+    std::string where(const Row& row) const;            //!< "'file' line 12"
+
+    const std::string& text(const Row& row, const std::string& name) const;
+    double number(const Row& row, const std::string& name) const;               //!< finite
+    double numberOrNone(const Row& row, const std::string& name) const;         //!< NaN where the cell is empty or nan
+
+private:
+    std::string path_;
+    std::vector<std::string> names_;
+    std::vector<Row> rows_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CSV_HPP

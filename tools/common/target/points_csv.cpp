@@ -1,0 +1,34 @@
+#include "target/points_csv.hpp"
+#include "console/csv.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace tools {
+
+std::vector<DetectedView> readPointsCsv(const std::string& path)
+{
+    const CsvTable table(path, {"view", "x", "y", "z", "u", "v"}, "a file of observed points");
+    std::vector<DetectedView> views;
+    std::map<std::string, size_t> viewOf;
+    std::set<std::tuple<std::string, double, double, double>> known;
+    for (const CsvTable::Row& row : table.rows())
+    {
+        const std::string& name = table.text(row, "view");
+        const cv::Point3d X(table.number(row, "x"), table.number(row, "y"), table.number(row, "z"));
+        const cv::Point2d pixel(table.numberOrNone(row, "u"), table.numberOrNone(row, "v"));
+        if (!known.insert({name, X.x, X.y, X.z}).second)
+            throw Failure(table.where(row) + cv::format(": view '%s' has the point (%g, %g, %g) already: each point of a view is "
+                          "seen once in a camera", name.c_str(), X.x, X.y, X.z));
+        if (viewOf.emplace(name, views.size()).second)
+            views.push_back({name, path, {}, {}});
+        views[viewOf[name]].objectPoints.push_back(X);
+        views[viewOf[name]].points.push_back(seen(pixel) ? pixel : cv::Point2d(NAN, NAN));
+    }
+    std::sort(views.begin(), views.end(), [](const DetectedView& a, const DetectedView& b) { return a.stem < b.stem; });
+    return views;
+}
+
+} // namespace tools
