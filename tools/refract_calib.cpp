@@ -23,6 +23,10 @@ Judge the result by the held-out boards (calibrated on the others in turn), not 
 --summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
 values would do, and what the next images should show.
 
+Where an index stands, a material may stand: N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate,
+of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=101325,RH=50 (C, Pa, %). The result then says which
+index it took; the wrong value that it tries is what the colours of light and the kinds of the material change it by.
+
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
 --max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
 carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
@@ -60,9 +64,11 @@ struct Options
     RigSources images;
     PerCamera<std::string> camera;
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
-    double innerIndex = 1., outerIndex = 1., distance = 0., thicknessStd = 0., indexStd = 0.;
+    std::string innerIndex = "1", outerIndex = "1";
+    double wavelength = 550., distance = 0., thicknessStd = 0., indexStd = 0.;
     std::vector<std::string> free;
-    bool distanceGiven = false, unpaired = false, sharedWindow = false, crossValidation = true, robust = true;
+    bool distanceGiven = false, wavelengthGiven = false, unpaired = false, sharedWindow = false;
+    bool crossValidation = true, robust = true;
     Limits limits;
     Label label;
     std::string unit = "mm";
@@ -113,12 +119,17 @@ Options parseOptions(Command& command)
     app.add_option("--lens", o.lens, "lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
-    app.add_option("--index", o.index, "index of refraction of each layer: N[,N...]");
+    app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
+        "or N-BK7,PMMA,N-BK7");
     app.add_option("--thickness-std", o.thicknessStd, "how well the thickness of each layer is known, one standard deviation; "
         "it is then estimated within it")->check(moreThanZero());
     app.add_option("--index-std", o.indexStd, "the same of each index")->check(moreThanZero());
-    app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera")->capture_default_str();
-    app.add_option("--outer-index", o.outerIndex, "index of the scene's medium (1.333 water)")->capture_default_str();
+    app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera, or its name")
+        ->capture_default_str();
+    app.add_option("--outer-index", o.outerIndex, "index of the scene's medium, or its name: 1.333, water, "
+        "seawater:T=12,S=35")->capture_default_str();
+    CLI::Option* wavelength = app.add_option("--wavelength", o.wavelength, "of the light, nm, for materials that are named")
+        ->check(moreThanZero())->capture_default_str();
     CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
         "where it is needed and not given, it is estimated");
     app.add_option("--free", o.free, "what to estimate beside the normal")->delimiter(',')
@@ -157,6 +168,7 @@ Options parseOptions(Command& command)
     for (const std::string& text : notes)
         o.label.notes.push_back(parseNote(text));
     o.distanceGiven = distance->count() > 0;
+    o.wavelengthGiven = wavelength->count() > 0;
     for (int c = 0; c < o.images.cameraCount(); c++)
         if (o.images.glass[c].empty())
             throw Failure(format("--glass%d is given, but no --glass%d: number the cameras 1, 2, 3, ... without a gap",
@@ -184,7 +196,7 @@ void requireMaterials(const Options& o, const GlassWindow& window)
     }
     if (!window.index.empty() && most == 1)
         throw Failure("--index=" + o.index + ": that is air; glass has an index of 1.4 to 2, the data sheet says which");
-    const std::pair<const char*, double> media[] = {{"--inner-index", o.innerIndex}, {"--outer-index", o.outerIndex}};
+    const std::pair<const char*, double> media[] = {{"--inner-index", window.innerIndex}, {"--outer-index", window.outerIndex}};
     for (const auto& medium : media)
         if (!(medium.second >= 1) || medium.second > MOST_INDEX)
             throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
@@ -211,23 +223,57 @@ std::vector<int> readWindowsOfCameras(const Options& o)
     return windows;
 }
 
+/** Only ratios of indices count, and the module takes none below 1: where a medium is air that is thinner than that which
+indices are relative to, all become relative to the thinner one. */
+void makeRelativeToThinnest(RigOptions& rig)
+{
+    const GivenIndex unit = rig.inner.value < rig.outer.value ? rig.inner : rig.outer;
+    if (!unit.isNamed() || unit.value >= 1.)
+        return;
+    std::vector<GivenIndex*> indices = {&rig.inner, &rig.outer};
+    for (GivenIndex& layer : rig.layers)
+        indices.push_back(&layer);
+    for (GivenIndex* index : indices)
+    {
+        if (index->isNamed())
+            index->name += index->value == unit.value ? ", which all are relative to," : ", relative to " + unit.name + ",";
+        index->value /= unit.value;
+    }
+}
+
+//! Numbers, or by the materials' names.
+void takeIndices(const Options& o, RigOptions& rig)
+{
+    if (!o.index.empty())
+        rig.layers = readIndices(o.index, o.wavelength, "--index");
+    rig.inner = readIndex(o.innerIndex, o.wavelength, "--inner-index");
+    rig.outer = readIndex(o.outerIndex, o.wavelength, "--outer-index");
+    bool named = rig.inner.isNamed() || rig.outer.isNamed();
+    for (const GivenIndex& layer : rig.layers)
+        named = named || layer.isNamed();
+    if (o.wavelengthGiven && !named)
+        throw Failure("--wavelength: no material is named, and indices that are numbers do not depend on it; leave it out");
+    makeRelativeToThinnest(rig);
+    for (const GivenIndex& layer : rig.layers)
+        rig.window.index.push_back(layer.value);
+    rig.window.innerIndex = rig.inner.value;
+    rig.window.outerIndex = rig.outer.value;
+}
+
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
 void readWindow(const Options& o, RigOptions& rig)
 {
     GlassWindow& window = rig.window;
     if (!o.thickness.empty())
         window.thickness = parseNumbers(o.thickness, "--thickness");
-    if (!o.index.empty())
-        window.index = parseNumbers(o.index, "--index");
-    window.innerIndex = o.innerIndex;
-    window.outerIndex = o.outerIndex;
+    takeIndices(o, rig);
     for (const std::string& name : o.free)
         rig.flags |= FREE.at(name);
     rig.windows = readWindowsOfCameras(o);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
 
-    const bool equalMedia = o.innerIndex == o.outerIndex;
+    const bool equalMedia = window.innerIndex == window.outerIndex;
     if (window.thickness.size() != window.index.size())
         throw Failure("--thickness and --index must have one number for each layer: give both");
     requireMaterials(o, window);

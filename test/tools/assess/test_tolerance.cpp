@@ -125,3 +125,17 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     CHECK(worst > 0.5*bow.rms);
     CHECK(worst < 1.2*bow.worst);
 }
+
+TEST_CASE("An index of a named material is wrong by what its name leaves open", "[tolerance]")
+{
+    RigCalibration c = calibrated(paperRig(1), Vec3d());
+    const Tolerance number = analyseTolerances(c, 1., true)[1];
+    REQUIRE((number.done && number.what == "index wrong by 0.001"));
+    GivenIndex given{1.5437, "N-BK7", 550.};
+    given.deviation = 0.0054;
+    c.options.layers = {given};
+    const Tolerance name = analyseTolerances(c, 1., true)[1];
+    CHECK(name.what == "index wrong by 0.0054 (N-BK7, light of 450 to 650 nm)");
+    REQUIRE(name.done);
+    CHECK(name.rms == Approx(5.4*number.rms).epsilon(0.02));
+}

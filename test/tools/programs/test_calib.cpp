@@ -189,6 +189,45 @@ static double focalLengthOf(SceneOptions options, unsigned salt, const std::stri
     return camera->cameraMatrix().at<double>(0, 0);
 }
 
+static GlassWindow windowOf(const TemporaryFolder& f)
+{
+    return RefractiveCamera::read(f / "calib.yml")->window();
+}
+
+TEST_CASE("refract_calib takes the name of a material where an index stands, and says which it took", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    const double index = refractiveIndex("N-BK7", 600.);
+    options.window = [=](int) { return GlassWindow(PaperRig().normal[0], 20., index, 50.); };
+    writeScene(f, options, 118);
+    const std::string pane = lens(f) + " --no-cross-validation --thickness=20 --index=";
+    const ToolResult byNumber = runTool(inputs(f, pane + format("%.17g", index)));
+    REQUIRE(byNumber.code == 0);
+    const GlassWindow given = windowOf(f);
+    CHECK_FALSE(mentions(byNumber.out, "N-BK7"));
+
+    const ToolResult byName = runTool(inputs(f, pane + "N-BK7 --wavelength=600"));
+    INFO(byName.out << byName.err);
+    REQUIRE(byName.code == 0);
+    CHECK(windowOf(f).index == given.index);
+    CHECK(windowOf(f).normal == given.normal);
+    CHECK(mentions(byName.out, format("the index of N-BK7 at 600 nm: %.5f", index)));
+    CHECK(mentions(byName.out, "index wrong by 0.0054 (N-BK7, light of 450 to 650 nm)"));
+
+    // Only ratios count: in thinner air the pane's index is higher.
+    const std::string hot = "air:T=40,P=90000";
+    const ToolResult inHotAir = runTool(inputs(f, pane + "N-BK7 --wavelength=600 --inner-index=" + hot + " --outer-index=" + hot));
+    INFO(inHotAir.out << inHotAir.err);
+    REQUIRE(inHotAir.code == 0);
+    CHECK(mentions(inHotAir.out, "the index of N-BK7, relative to " + hot + ", at 600 nm: 1.51"));
+    CHECK(mentions(inHotAir.out, "the index of " + hot + ", which all are relative to, at 600 nm: 1.00000"));
+    CHECK(windowOf(f).innerIndex == 1.);
+    CHECK(windowOf(f).outerIndex == 1.);
+    CHECK(windowOf(f).index[0] == Approx(index/refractiveIndex(hot, 600.)).epsilon(1e-15));
+    CHECK(windowOf(f).index[0] > index + 5e-5);
+}
+
 TEST_CASE("refract_calib takes the lens from the direct images and lives with missing corners", "[calib_tool]")
 {
     SceneOptions options;
@@ -486,6 +525,13 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, lens(f) + " --thickness=20 --index=15.4"), "no material has the index 15.4"},
         {inputs(f, lens(f) + PANE + " --outer-index=13.3"), "--outer-index=13.3: no medium"},
         {inputs(f, lens(f) + PANE + " --outer-index=0.9"), "--outer-index=0.9: no medium"},
+        {inputs(f, lens(f) + " --thickness=20 --index=N-BK8"), "--index=N-BK8: material is 'N-BK8', which is not known; "
+            "nearest is 'N-BK7', of N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water"},
+        {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "from 300 to 2500 nm"},
+        {inputs(f, lens(f) + " --thickness=20 --index=water:T=12"), "without parameters"},
+        {inputs(f, lens(f) + PANE + " --outer-index=seawater:T=99"), "T of seawater must be from 0 to 30"},
+        {inputs(f, lens(f) + PANE + " --outer-index=1.3,1.4"), "give one number"},
+        {inputs(f, lens(f) + PANE + " --wavelength=550"), "no material is named"},
         {inputs(f, lens(f) + PANE + " --free=colour"), "--free"},
         {inputs(f, lens(f) + " --outer-index=1.333 --free=thickness"), "--free=thickness"},
         {inputs(f, std::string(PANE), false), "--direct"},

@@ -251,6 +251,11 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
                             "the distance, as the media on its two sides differ)"));
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.indexStd == 0.)
         f.assumed.push_back("the index");
+    std::vector<GivenIndex> indices = c.options.layers;
+    indices.insert(indices.end(), {c.options.inner, c.options.outer});
+    for (const GivenIndex& index : indices)
+        if (index.isNamed() && std::find(f.assumed.begin(), f.assumed.end(), index.sentence()) == f.assumed.end())
+            f.assumed.push_back(index.sentence());
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
         f.assumed.push_back("the distance");
     for (int k = 0; k < c.data.cameraCount; k++)

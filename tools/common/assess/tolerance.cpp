@@ -18,7 +18,7 @@ namespace tools {
 namespace {
 
 const double THICKNESS_MM = 0.1;
-const double INDEX = 0.001;
+const double INDEX = 0.001;            // of a given number
 const double ARC_MINUTE = CV_PI/180./60.;
 const double NUDGE_MM = 0.1;
 const double SQUARE = 0.001;            // share of it
@@ -278,6 +278,16 @@ std::string whoseWindow(const RigModel& rig, int camera)
     return (count == 1 ? ", camera " : ", cameras ") + list;
 }
 
+double deviationOf(const GivenIndex& given)
+{
+    return given.isNamed() ? given.deviation : INDEX;
+}
+
+std::string wrongIndexBy(const GivenIndex& given)
+{
+    return format(" wrong by %.2g", deviationOf(given)) + (given.isNamed() ? " (" + given.light() + ")" : "");
+}
+
 std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
 {
     std::vector<Cause> causes;
@@ -294,9 +304,12 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
                 w.thickness[layer] += THICKNESS_MM*millimetre;
             }, {Vec3d()}});
         if (!(c.options.flags & GLASS_FREE_INDEX))
-            causes.push_back({"index" + which + " wrong by 0.001" + whose, k, true, [=](GlassWindow& w) {
-                w.index[layer] += INDEX;
+        {
+            const GivenIndex given = layer < c.options.layers.size() ? c.options.layers[layer] : GivenIndex();
+            causes.push_back({"index" + which + wrongIndexBy(given) + whose, k, true, [=](GlassWindow& w) {
+                w.index[layer] += deviationOf(given);
             }, {Vec3d()}});
+        }
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
         causes.push_back({"wedge of 1 arc minute between the faces" + whose, k, true, nullptr,
                           {ARC_MINUTE*across, ARC_MINUTE*window.normal.cross(across)}});
@@ -309,8 +322,9 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
     }
     const GlassWindow first = c.fit.rig.cameras[0]->window();
     if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))
-        causes.push_back({"index of the scene's medium wrong by 0.001", 0, false, [](GlassWindow& w) { w.outerIndex += INDEX; },
-                          {Vec3d()}});
+        causes.push_back({"index of the scene's medium" + wrongIndexBy(c.options.outer), 0, false, [&](GlassWindow& w) {
+            w.outerIndex += deviationOf(c.options.outer);
+        }, {Vec3d()}});
     for (const Cause& cause : causesOfTarget(c.square > 0, millimetre))
         causes.push_back(cause);
     return causes;

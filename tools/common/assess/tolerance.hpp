@@ -17,7 +17,8 @@ struct Tolerance
 
 /** Thickness, index and wedge of the thickest layer of each window, the index of the scene's medium where it differs, and with
 pairs a shift of all boards between their direct and their glass images (putting the window in moves camera or board); the
-side of the board's squares, and a bow of the board. What the images themselves determined is left out.
+side of the board's squares, and a bow of the board. An index that was given by a material's name is wrong by what light and
+kind may change it by, others by 0.001. What the images themselves determined is left out.
 @param millimetre in the unit of length */
 std::vector<Tolerance> analyseTolerances(const RigCalibration& calibration, double millimetre, bool quiet);
 

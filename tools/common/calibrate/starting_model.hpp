@@ -1,6 +1,7 @@
 #ifndef REFRACT_TOOLS_STARTING_MODEL_HPP
 #define REFRACT_TOOLS_STARTING_MODEL_HPP
 
+#include "calibrate/given_index.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
 
@@ -16,6 +17,8 @@ struct RigOptions
     PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
     PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none
     double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
+    std::vector<GivenIndex> layers = {};                    //!< where the window's indices come from; empty: numbers
+    GivenIndex inner = {}, outer = {};                      //!< the same of the media
 };
 
 //! Where the lens of a camera came from.

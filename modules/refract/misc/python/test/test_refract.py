@@ -84,6 +84,12 @@ class refract_test(NewOpenCVTests):
         window = cv.refract.GlassWindow(normal=(0, 0, 2), thickness=10, index=1.5)
         self.assertEqual(((0, 0, 1), 0, 1), (window.normal, window.distance, window.outerIndex))
 
+    def test_refractive_index(self):
+        self.assertAlmostEqual(1.51680, cv.refract.refractiveIndex('N-BK7', 587.5618), delta=1e-5)
+        self.assertEqual(cv.refract.refractiveIndex('water', 550), cv.refract.refractiveIndex('water:T=20'))
+        self.assertEqual(0.0005, cv.refract.refractiveIndexTolerance('N-BK7'))
+        self.assertRaisesRegex(cv.error, "nearest is 'N-BK7'", cv.refract.refractiveIndex, 'N-BK8')
+
     def test_camera(self):
         self.assertClose(K, self.camera1.cameraMatrix(), 0)
         self.assertClose(D, self.camera1.distCoeffs(), 0)
