@@ -101,7 +101,7 @@ struct LensKind
     cv::Matx33d K;
     std::vector<double> coefficients;
     double halfField;           //!< degrees from the axis within which the model is one-to-one
-    std::string mrcal;          //!< its name if it is one of mrcal's, else empty
+    std::string mrcal = "";     //!< its name if it is one of mrcal's, else empty
 
     bool isSplined() const { return mrcal.find("SPLINED") != std::string::npos; }
     //! What lensModel() says.
@@ -157,7 +157,7 @@ inline const std::vector<LensKind>& allLenses()
         { "latlon", false, K, {}, 85, "LENSMODEL_LATLON" },
         { "CAHVOR", false, K, { 0.01, -0.02, 0.003, -0.2, 0.05 }, 40, "LENSMODEL_CAHVOR" },
         { "CAHVORE, sine", false, K, { -0.02, 0.01, 0.01, -0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=-0.7" },
-        { "CAHVORE, tangent", false, K, { 0.01, 0.02, -0.01, 0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=0.37" },
+        { "CAHVORE, tangent", false, K, { 0.01, 0.02, -0.01, 0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=0.6" },
         { "CAHVORE, linear", false, K, { 0, 0, 0.01, -0.02, 0.001, 0, 0, 0 }, 80, "LENSMODEL_CAHVORE_linearity=0" },
         splinedLens("quadratic splines", 2, 12, 10, 120, 45),
         splinedLens("cubic splines", 3, 11, 9, 120, 42) };

@@ -14,7 +14,8 @@ the angle to the optical axis o = (sin(alpha) cos(beta), sin(beta), cos(alpha) c
 
 With E, the centre moves with the angle: then points, not directions, have images, and there is no such Lens.
 
-Domain: theta below the first maximum (or pole) of t, at most pi; Z' > 0. */
+Domain: theta below the first maximum (or pole) of t, Z' > 0; theta below 179.8 degrees and t below 1000, whose images tell
+nothing of the side and of theta. */
 
 namespace cv { namespace refract {
 
@@ -48,6 +49,7 @@ private:
     double chi(double theta, double& slope) const;
     double thetaOf(double chi) const;
     double radial(double theta, double& slope) const;       //!< theta -> t
+    double invert(double t) const;                          //!< t -> theta, NaN beyond thetaMax_
 
     const double linearity_;
     double thetaMax_;
@@ -63,7 +65,11 @@ CahvorLens::CahvorLens(const String& model, const std::vector<double>& intrinsic
     dAxis_[0] = Vec3d(cA*cB, 0, -sA*cB);
     dAxis_[1] = Vec3d(-sA*sB, cB, -cA*sB);
     const double slopeTerms[] = { 1 + p[R0], 3*p[R1], 5*p[R2] };
-    thetaMax_ = slopeTerms[0] > 0 ? std::min(CV_PI, thetaOf(std::sqrt(firstPositiveRoot(slopeTerms, 3)))) : 0;
+    const double FARTHEST = 0.999*CV_PI, STEEPEST = 1000;
+    thetaMax_ = slopeTerms[0] > 0 ? std::min(FARTHEST, thetaOf(std::sqrt(firstPositiveRoot(slopeTerms, 3)))) : 0;
+    const double steepest = invert(STEEPEST);
+    if (steepest < thetaMax_)
+        thetaMax_ = steepest;
 }
 
 double CahvorLens::chi(double theta, double& slope) const
@@ -86,6 +92,11 @@ double CahvorLens::radial(double theta, double& slope) const
     const double x = chi(theta, slope), s = x*x;
     slope *= 1 + p[R0] + s*(3*p[R1] + s*5*p[R2]);
     return x*(1 + p[R0] + s*(p[R1] + s*p[R2]));
+}
+
+double CahvorLens::invert(double t) const
+{
+    return invertMonotone([this](double theta, double& slope) { return radial(theta, slope); }, t, thetaMax_);
 }
 
 FromAxis CahvorLens::fromAxis(const Vec3d& d, double length) const
@@ -148,8 +159,7 @@ uchar CahvorLens::unbend(const Vec2d& plane, Vec3d& d) const
     const double along = bent.dot(axis_);
     const Vec3d across = bent - along*axis_;
     const double side = norm(across);
-    const double theta = along > 0 ? invertMonotone([this](double angle, double& slope) { return radial(angle, slope); },
-                                                    side/along, thetaMax_) : NAN;
+    const double theta = along > 0 ? invert(side/along) : NAN;
     d = std::cos(theta)*axis_;
     if (side > 0)
         d += across*(std::sin(theta)/side);
