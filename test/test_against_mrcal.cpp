@@ -1,5 +1,6 @@
 // Against mrcal, which this project did not write. Skipped where mrcal or its data are missing.
 #include "scenes.hpp"
+#include "temporary_file.hpp"
 
 #ifdef HAVE_MRCAL
 extern "C" {        // mrcal 2.2 does not say so itself
@@ -168,6 +169,37 @@ TEST_CASE("mrcal's own camera models", "[against_mrcal]")
         const double worst = largestDifference(again, pixels);
         CHECK(worst < 1e-7);
         printNumber(std::string(file) + " against mrcal_unproject over the image, worst", worst, "px");
+    }
+}
+
+TEST_CASE("mrcal reads what we save", "[against_mrcal]")
+{
+    using Catch::Matchers::Contains;
+    for (const LensKind& kind : allLenses())
+    {
+        CAPTURE(kind.name);
+        const TemporaryFile file(".cameramodel");
+        const Ptr<RefractiveCamera> camera = makeCamera(kind, GlassWindow());
+        CHECK_THAT(thrown([&] { camera->save(file.path); }), Contains(file.path) && Contains("setImageSize"));
+        camera->setImageSize(Size(1280, 1024));
+        if (kind.fisheye || kind.coefficients.size() == 14)
+        {
+            CHECK_THAT(thrown([&] { camera->save(file.path); }), Contains(file.path) && Contains("mrcal knows no lens"));
+            continue;
+        }
+        camera->save(file.path);
+        mrcal_cameramodel_t* theirs = mrcal_read_cameramodel_file(file.path.c_str());
+        REQUIRE(theirs);
+        CHECK(Size((int)theirs->imagersize[0], (int)theirs->imagersize[1]) == camera->imageSize());
+        CHECK(norm(Vec6d(theirs->rt_cam_ref)) == 0);
+        REQUIRE(mrcal_lensmodel_num_params(&theirs->lensmodel) == (int)kind.intrinsics().size());
+        CHECK(std::equal(theirs->intrinsics, theirs->intrinsics + kind.intrinsics().size(), kind.intrinsics().begin()));
+        mrcal_free_cameramodel(&theirs);
+        const Ptr<RefractiveCamera> back = RefractiveCamera::read(file.path);
+        CHECK(largestDifference(back->distCoeffs(), camera->distCoeffs()) == 0);
+        CHECK(largestDifference(back->lensParameters(), camera->lensParameters()) == 0);
+        camera->setWindow(GlassWindow(Vec3d(0, 0, 1), 10, 1.5, 50));
+        CHECK_THAT(thrown([&] { camera->save(file.path); }), Contains("cannot state a window"));
     }
 }
 
