@@ -108,7 +108,41 @@ struct LensKind
     cv::Matx33d K;
     std::vector<double> coefficients;
     double halfField;           //!< degrees from the axis within which the model is one-to-one
+    std::string mrcal = "";     //!< its name if it is one of mrcal's, else empty
+
+    bool isSplined() const { return mrcal.find("SPLINED") != std::string::npos; }
+    //! What lensModel() says.
+    std::string model() const { return !mrcal.empty() ? mrcal : fisheye ? "fisheye" : "opencv"; }
+    //! As mrcal and RefractiveCamera::lensParameters order them, splined ones' control points included.
+    std::vector<double> intrinsics() const
+    {
+        std::vector<double> all = { K(0, 0), K(1, 1), K(0, 2), K(1, 2) };
+        all.insert(all.end(), coefficients.begin(), coefficients.end());
+        return all;
+    }
+    //! lensParameters(): of a splined lens without the control points.
+    std::vector<double> parameters() const
+    {
+        const std::vector<double> all = intrinsics();
+        return isSplined() ? std::vector<double>(all.begin(), all.begin() + 4) : all;
+    }
 };
+
+//! A barrel with bumps, different in x and y.
+inline LensKind splinedLens(const char* name, int order, int nx, int ny, int fovX, double halfField)
+{
+    LensKind kind = { name, false, { 1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1 }, {}, halfField,
+                      cv::format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=%d", order, nx, ny, fovX) };
+    const double perUnit = (nx - order)/(4*std::tan(fovX*CV_PI/720));
+    for (int j = 0; j < ny; j++)
+        for (int i = 0; i < nx; i++)
+        {
+            const double x = (i - 0.5*(nx - 1))/perUnit, y = (j - 0.5*(ny - 1))/perUnit, barrel = -0.08*(x*x + y*y);
+            kind.coefficients.push_back(barrel*x + 0.03/perUnit*std::sin(2.3*i + 1.1*j));
+            kind.coefficients.push_back(barrel*y + 0.03/perUnit*std::cos(1.7*i - 2.9*j));
+        }
+    return kind;
+}
 
 //! Every lens model with every number of coefficients; the battery of test_lens.cpp runs over all of them.
 inline const std::vector<LensKind>& allLenses()
@@ -124,13 +158,23 @@ inline const std::vector<LensKind>& allLenses()
         { "14 coefficients", false, K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4,
                                          0.03, -0.02 }, 40 },
         { "fisheye", true, { 400, 0, 640, 0, 410, 512, 0, 0, 1 }, { -0.02, 0.004, -0.001, 0.0001 }, 89.95 },
-        { "fisheye with skew", true, { 400, 4, 640, 0, 410, 512, 0, 0, 1 }, { 0.01, -0.003, 0.0005, 0 }, 80 } };
+        { "fisheye with skew", true, { 400, 4, 640, 0, 410, 512, 0, 0, 1 }, { 0.01, -0.003, 0.0005, 0 }, 80 },
+        { "stereographic", false, K, {}, 89, "LENSMODEL_STEREOGRAPHIC" },
+        { "lonlat", false, K, {}, 85, "LENSMODEL_LONLAT" },
+        { "latlon", false, K, {}, 85, "LENSMODEL_LATLON" },
+        { "CAHVOR", false, K, { 0.01, -0.02, 0.003, -0.2, 0.05 }, 40, "LENSMODEL_CAHVOR" },
+        { "CAHVORE, sine", false, K, { -0.02, 0.01, 0.01, -0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=-0.7" },
+        { "CAHVORE, tangent", false, K, { 0.01, 0.02, -0.01, 0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=0.6" },
+        { "CAHVORE, linear", false, K, { 0, 0, 0.01, -0.02, 0.001, 0, 0, 0 }, 80, "LENSMODEL_CAHVORE_linearity=0" },
+        splinedLens("quadratic splines", 2, 12, 10, 120, 45),
+        splinedLens("cubic splines", 3, 11, 9, 120, 42) };
     return lenses;
 }
 
 inline cv::Ptr<RefractiveCamera> makeCamera(const LensKind& lens, const GlassWindow& window)
 {
-    return lens.fisheye ? RefractiveCamera::createFisheye(lens.K, lens.coefficients, window)
+    return !lens.mrcal.empty() ? RefractiveCamera::createMrcal(lens.mrcal, lens.intrinsics(), window)
+         : lens.fisheye ? RefractiveCamera::createFisheye(lens.K, lens.coefficients, window)
                         : RefractiveCamera::create(lens.K, lens.coefficients, window);
 }
 

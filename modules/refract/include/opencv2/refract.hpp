@@ -226,9 +226,9 @@ public:
     CV_WRAP static Ptr<RefractiveCamera> createFisheye(InputArray cameraMatrix, InputArray distCoeffs,
                                                        const GlassWindow& window = GlassWindow());
 
-    /** @brief A lens of mrcal behind a window.
-    @param lensModel LENSMODEL_PINHOLE, LENSMODEL_OPENCV4, _OPENCV5, _OPENCV8 or _OPENCV12.
-    @param intrinsics fx, fy, cx, cy and the model's coefficients, as in a .cameramodel file.
+    /** @brief A lens of mrcal, of any of its models (of CAHVORE without a moving centre, E = 0), behind a window.
+    @param lensModel its name, such as LENSMODEL_OPENCV8 or LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=30_Ny=20_fov_x_deg=170.
+    @param intrinsics fx, fy, cx, cy and the model's coefficients or control points, as in a .cameramodel file.
     @param window see GlassWindow.
     */
     CV_WRAP static Ptr<RefractiveCamera> createMrcal(const String& lensModel, InputArray intrinsics,
@@ -262,7 +262,7 @@ public:
 
     /** @brief Writes a file that read() reads: the whole of it or, if that fails (which throws), nothing. A file of that name
     is replaced.
-    @param filename path; its extension chooses the format: .xml, .json, else YAML.
+    @param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (without a window), else YAML.
     */
     CV_WRAP void save(const String& filename) const;
 
@@ -274,7 +274,7 @@ public:
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
     //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
     CV_WRAP virtual std::vector<String> parameterNames() const = 0;
-    //! Lens parameters fx, fy, cx, cy and coefficients in the order of the jacobian's columns, Nx1 CV_64F.
+    //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs()) as the jacobian's columns, Nx1 CV_64F.
     CV_WRAP virtual Mat lensParameters() const = 0;
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown

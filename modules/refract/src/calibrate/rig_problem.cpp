@@ -49,7 +49,8 @@ std::vector<bool> freeLens(const Camera& camera, int flags)
     for (int i = 0; i < camera.lensCount(); i++)
     {
         const auto fixed = FIXED_BY.find(names[i]);
-        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !(fixed != FIXED_BY.end() && (flags & fixed->second)));
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !camera.lens().isFixed(i)
+                         && !(fixed != FIXED_BY.end() && (flags & fixed->second)));
     }
     return isFree;
 }

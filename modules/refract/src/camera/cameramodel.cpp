@@ -176,4 +176,18 @@ CameraModel readCameraModel(const String& filename)
     return Parser(text.str(), filename).parse();
 }
 
+std::string cameraModelText(const CameraModel& model)
+{
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(17);
+    text << "{\n    'lensmodel':  '" << model.lensModel << "',\n\n"
+         << "    # intrinsics are fx,fy,cx,cy,distortion0,distortion1,....\n    'intrinsics': [ ";
+    for (double value : model.intrinsics)
+        text << value << ", ";
+    text << "],\n\n    # extrinsics are rt_fromref\n    'extrinsics': [ 0, 0, 0, 0, 0, 0 ],\n\n"
+         << "    'imagersize': [ " << model.imageSize.width << ", " << model.imageSize.height << " ]\n}\n";
+    return text.str();
+}
+
 }} // namespace

@@ -24,6 +24,9 @@ bool isCameraModel(const String& filename);
 optimization inputs) are passed over. Throws with the file's name. */
 CameraModel readCameraModel(const String& filename);
 
+//! The text of such a file, of a camera that is the reference frame; each number is read back as it was.
+std::string cameraModelText(const CameraModel& model);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_CAMERAMODEL_HPP

@@ -145,7 +145,7 @@ static void askWhatIsThere(const String& filename, bool& special, bool& readOnly
 #endif
 }
 
-void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write)
+void saveWhole(const String& filename, const std::function<bool(const String& path)>& write)
 {
     bool special, readOnly;
     askWhatIsThere(filename, special, readOnly);
@@ -153,16 +153,22 @@ void saveStorage(const String& filename, const std::function<void(FileStorage&)>
     // FileStorage would log a line of its own. A pipe is opened once: closed, it would end for its reader.
     if (readOnly || (!special && !std::ofstream(part.c_str())))
         CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    FileStorage fs(part, FileStorage::WRITE);
-    if (!fs.isOpened())
-        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    write(fs);
-    fs.release();
-    if (!special && !moveOver(part, target))
-    {
+    if (write(part) && (special || moveOver(part, target)))
+        return;
+    if (!special)
         std::remove(part.c_str());
-        CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
-    }
+    CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
+}
+
+void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write)
+{
+    saveWhole(filename, [&](const String& path)
+    {
+        FileStorage fs(path, FileStorage::WRITE);
+        if (fs.isOpened())
+            write(fs);
+        return fs.isOpened();
+    });
 }
 
 }} // namespace

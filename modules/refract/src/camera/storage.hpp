@@ -18,6 +18,10 @@ FileStorage openStorage(const String& filename);
 //! The matrix of one channel called `key`, CV_64F, a plain list is a column; empty if there is none. Throws StsParseError.
 Mat readStoredMatrix(const FileNode& map, const char* key, const String& filename);
 
+/** Writes a file as saveStorage does.
+@param write to that path; false if it cannot */
+void saveWhole(const String& filename, const std::function<bool(const String& path)>& write);
+
 //! A new file of what `write` writes, complete, or as it was before; its extension chooses the format. Throws StsError.
 void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write);
 

@@ -53,6 +53,8 @@ public:
     virtual std::vector<double> parameters() const = 0;
     //! What they are called, as in OpenCV's documentation; GLASS_FIX_K1 and so on go by it.
     virtual std::vector<String> parameterNames() const = 0;
+    //! True for those that no calibration estimates.
+    virtual bool isFixed(int /*parameter*/) const { return false; }
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };
@@ -64,6 +66,21 @@ Ptr<Lens> makeOpenCVLens(const Matx33d& cameraMatrix, const std::vector<double>&
 Ptr<Lens> makeFisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs);
 //! mrcal's models by name.
 Ptr<Lens> makeMrcalLens(const String& model, const std::vector<double>& intrinsics);
+
+//! What makeMrcalLens makes of a name, its arguments checked: STEREOGRAPHIC, LONLAT, LATLON.
+Ptr<Lens> makePanoramicLens(const String& model, const std::vector<double>& intrinsics);
+//! CAHVOR (linearity 1) and CAHVORE, whose last three coefficients must be 0.
+Ptr<Lens> makeCahvorLens(const String& model, const std::vector<double>& intrinsics, double linearity);
+
+//! Control points of a spline surface over the stereographic plane, and the degrees across that it is for.
+struct SplineGrid
+{
+    int order, nx, ny;
+    double fovX;
+};
+
+//! SPLINED_STEREOGRAPHIC.
+Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
 
 }} // namespace
 

@@ -1,0 +1,230 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "lens/one_to_one.hpp"
+#include "lens/plane_lens.hpp"
+#include "lens/stereographic.hpp"
+#include <array>
+
+/* mrcal's LENSMODEL_SPLINED_STEREOGRAPHIC_order=O_Nx=N_Ny=M_fov_x_deg=F: the stereographic projection and, added to it, a
+uniform B-spline surface of degree O (2 or 3) over its plane, for a and b each:
+
+    (a, b) = p + sum_ij B(gx - i) B(gy - j) c_ij,  p = stereographic(d)
+    g = k p + ((N, M) - 1)/2,  k = (N - O)/(4 tan(F/4)) control points per unit
+
+Control points come row by row, that of a and that of b together.
+
+Domain: where all (O + 1)^2 control points around g exist and the surface does not fold back: all around, its Jacobian's
+determinant is positive. Where mrcal saw no targets, surfaces do fold, and pixels there have several directions: the domain
+ends before the second of them. The control points are the model, as the number of coefficients is for others: only fx, fy,
+cx, cy are parameters. */
+
+namespace cv { namespace refract {
+
+namespace {
+
+const int MOST_ORDER = 3;
+//! Cells to a control point's distance in which the surface is looked at for folds; searches begin at every STARTS-th.
+const int CELLS = 8, STARTS = 2;
+
+//! The control points that a coordinate needs, and what they weigh.
+struct Weights
+{
+    int first;
+    double value[MOST_ORDER + 1], slope[MOST_ORDER + 1];        //!< slope: by g
+};
+
+Weights weightsAt(double g, int order, int count)
+{
+    const double shift = order == 3 ? 0 : 0.5;
+    const int cell = std::max(1, std::min((int)std::floor(g + shift), count - order));
+    const double t = g - cell;
+    if (order == 3)
+    {
+        const double r = 1 - t;
+        return { cell - 1, { r*r*r/6, (4 + t*t*(3*t - 6))/6, (4 + r*r*(3*r - 6))/6, t*t*t/6 },
+                 { -0.5*r*r, t*(1.5*t - 2), -r*(1.5*r - 2), 0.5*t*t } };
+    }
+    return { cell - 1, { 0.5*(0.5 - t)*(0.5 - t), 0.75 - t*t, 0.5*(0.5 + t)*(0.5 + t), 0 }, { t - 0.5, -2*t, t + 0.5, 0 } };
+}
+
+class SplinedLens : public PlaneLens
+{
+public:
+    SplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
+    Mat distCoeffs() const CV_OVERRIDE { return Mat(controls_, true); }
+    bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
+    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE;
+
+private:
+    //! Where the search for a direction may begin: a point of the stereographic plane and where it is seen.
+    struct Start { Vec2d at, seen; };
+
+    uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const CV_OVERRIDE;
+    uchar unbend(const Vec2d& plane, Vec3d& d) const CV_OVERRIDE;
+    Vec2d surface(const Vec2d& p, Matx22d& slope) const;
+    bool inRectangle(const Vec2d& p) const { return std::abs(p[0]) <= edge_[0] && std::abs(p[1]) <= edge_[1]; }
+    Vec2d intoRectangle(const Vec2d& p) const;
+    Point cellAt(const Vec2d& p) const;
+    bool inDomain(const Vec2d& p, const Matx22d& slope) const;
+    void findDomain();
+    bool search(const Vec2d& target, Vec2d& p) const;
+
+    const SplineGrid grid_;
+    const std::vector<double> controls_;
+    double perUnit_;
+    Vec2d edge_;                //!< the rectangle in the stereographic plane, about 0
+    Mat1b domain_;              //!< not 0 for its cells in the domain
+    std::vector<Start> starts_;
+};
+
+SplinedLens::SplinedLens(const String& model, const std::vector<double>& p, const SplineGrid& grid)
+    : PlaneLens(model, std::vector<double>(p.begin(), p.begin() + 4)), grid_(grid), controls_(p.begin() + 4, p.end())
+{
+    perUnit_ = (grid.nx - grid.order)/(4*std::tan(grid.fovX*CV_PI/720));
+    edge_ = Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_);
+    findDomain();
+}
+
+Point SplinedLens::cellAt(const Vec2d& p) const
+{
+    return Point(std::min((int)(0.5*(p[0]/edge_[0] + 1)*domain_.cols), domain_.cols - 1),
+                 std::min((int)(0.5*(p[1]/edge_[1] + 1)*domain_.rows), domain_.rows - 1));
+}
+
+bool SplinedLens::inDomain(const Vec2d& p, const Matx22d& slope) const
+{
+    return domain_(cellAt(p)) && determinant(slope) > 0;
+}
+
+void SplinedLens::findDomain()
+{
+    const int nx = CELLS*(grid_.nx - grid_.order), ny = CELLS*(grid_.ny - grid_.order);
+    const auto corner = [&](int i, int j) { return Vec2d((2.*i/nx - 1)*edge_[0], (2.*j/ny - 1)*edge_[1]); };
+    Mat1b isRegular(ny + 1, nx + 1);
+    Mat2d seen(ny + 1, nx + 1);
+    Matx22d slope;
+    for (int j = 0; j <= ny; j++)
+        for (int i = 0; i <= nx; i++)
+        {
+            seen(j, i) = surface(corner(i, j), slope);
+            isRegular(j, i) = determinant(slope) > 0;
+        }
+    domain_ = oneToOneCells(seen, isRegular);
+    for (int j = STARTS/2; j < ny; j += STARTS)
+        for (int i = STARTS/2; i < nx; i += STARTS)
+            if (domain_(j, i))
+                starts_.push_back({ corner(i, j), seen(j, i) });
+}
+
+Vec2d SplinedLens::surface(const Vec2d& p, Matx22d& slope) const
+{
+    const int n = grid_.order + 1;
+    const Weights x = weightsAt(p[0]*perUnit_ + 0.5*(grid_.nx - 1), grid_.order, grid_.nx);
+    const Weights y = weightsAt(p[1]*perUnit_ + 0.5*(grid_.ny - 1), grid_.order, grid_.ny);
+    Vec2d sum, byX, byY;
+    for (int j = 0; j < n; j++)
+    {
+        const double* c = &controls_[2*((size_t)(y.first + j)*grid_.nx + x.first)];
+        Vec2d row, rowByX;
+        for (int i = 0; i < n; i++, c += 2)
+        {
+            row += x.value[i]*Vec2d(c);
+            rowByX += x.slope[i]*Vec2d(c);
+        }
+        sum += y.value[j]*row;
+        byX += y.value[j]*rowByX;
+        byY += y.slope[j]*row;
+    }
+    slope = Matx22d(1 + perUnit_*byX[0], perUnit_*byY[0], perUnit_*byX[1], 1 + perUnit_*byY[1]);
+    return p + sum;
+}
+
+uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const
+{
+    Vec2d p;
+    Matx22d slope;
+    const uchar status = stereographic(d, p, byDirection);
+    if (status != REFRACT_OK || !inRectangle(p))
+        return REFRACT_OUTSIDE_LENS_MODEL;
+    plane = surface(p, slope);
+    if (byDirection)
+        *byDirection = slope**byDirection;
+    return inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
+}
+
+Vec2d SplinedLens::intoRectangle(const Vec2d& p) const
+{
+    return Vec2d(std::max(-edge_[0], std::min(p[0], edge_[0])), std::max(-edge_[1], std::min(p[1], edge_[1])));
+}
+
+//! Newton from p, along the edge of the rectangle where a step leads out of it; each step comes nearer and stays in the domain.
+bool SplinedLens::search(const Vec2d& target, Vec2d& p) const
+{
+    const double floor = 4*DBL_EPSILON*(1 + norm(target));
+    Matx22d slope, slopeNext;
+    Vec2d error = surface(p, slope) - target;
+    if (!inDomain(p, slope))
+        return false;
+    for (int i = 0; i < 100; i++)
+    {
+        const double size = norm(error), determinant = cv::determinant(slope);
+        const Vec2d step(-(slope(1, 1)*error[0] - slope(0, 1)*error[1])/determinant,
+                         -(slope(0, 0)*error[1] - slope(1, 0)*error[0])/determinant);
+        Vec2d next, errorNext;
+        bool isNearer = false;
+        for (double part = 1; part > 1e-6 && !isNearer; part *= 0.5)
+        {
+            next = intoRectangle(p + part*step);
+            errorNext = surface(next, slopeNext) - target;
+            isNearer = norm(errorNext) < size && inDomain(next, slopeNext);
+        }
+        if (!isNearer)
+            return size <= 1e3*floor;       // rounding has taken over, or there is nothing here
+        p = next;
+        error = errorNext;
+        slope = slopeNext;
+        if (norm(error) == 0)
+            return true;
+    }
+    return norm(error) <= 1e3*floor;
+}
+
+//! From the stereographic projection's answer, else from what is seen nearest.
+uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const
+{
+    const int TRIALS = 4;
+    Vec2d p = intoRectangle(plane);
+    if (search(plane, p))
+    {
+        d = stereographicDirection(p);
+        return REFRACT_OK;
+    }
+    std::array<Start, TRIALS> nearest;
+    const auto end = std::partial_sort_copy(starts_.begin(), starts_.end(), nearest.begin(), nearest.end(),
+        [&](const Start& one, const Start& other) { return norm(one.seen - plane) < norm(other.seen - plane); });
+    for (auto start = nearest.begin(); start != end; start++)
+        if (search(plane, p = start->at))
+        {
+            d = stereographicDirection(p);
+            return REFRACT_OK;
+        }
+    return REFRACT_OUTSIDE_LENS_MODEL;
+}
+
+Ptr<Lens> SplinedLens::withParameters(const std::vector<double>& p) const
+{
+    std::vector<double> intrinsics = p;
+    intrinsics.insert(intrinsics.end(), controls_.begin(), controls_.end());
+    return makeSplinedLens(model_, intrinsics, grid_);
+}
+
+} // namespace
+
+Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid)
+{
+    return makePtr<SplinedLens>(model, intrinsics, grid);
+}
+
+}} // namespace
