@@ -78,7 +78,7 @@ private:
         Matx33d R;
         for (int i = 0; i < 9; i++)
             R.val[i] = table_.number(row, format("r%d%d", i/3 + 1, i % 3 + 1));
-        if (norm(R*R.t() - Matx33d::eye()) > ORTHONORMAL || determinant(R) < 0)
+        if (!(norm(R*R.t() - Matx33d::eye()) <= ORTHONORMAL && determinant(R) > 0))     // also where that is NaN
             throw Failure(table_.where(row) + ": r11 to r33 are no rotation");
         Rodrigues(R, rvec);
         return rvec;

@@ -1,0 +1,15 @@
+#include "file_harness.hpp"
+#include "target/points_csv.hpp"
+
+// Observed points of any target, for all tools that take images of one.
+
+const char fuzz::EXTENSION[] = ".csv";
+
+void fuzz::tryFile(const std::string& path)
+{
+    for (const tools::DetectedView& view : tools::readPointsCsv(path))
+    {
+        promise(!view.stem.empty() && view.points.size() == view.objectPoints.size(), "each view has a name, each point a pixel");
+        promise(cv::checkRange(view.objectPoints), "the target's points are finite");
+    }
+}
