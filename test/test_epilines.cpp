@@ -79,6 +79,10 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                 const LensKind &lens = allLenses()[l], &other = allLenses()[(l + 1)%allLenses().size()];
                 const Rig rig(lens, other, makeWindow(kind, random, 15), makeWindow(kind, random, 15), random);
                 CAPTURE(name(kind), lens.name, which);
+                // A segment's middle is what is measured. Where the curvature jumps, as between the cells of quadratic splines,
+                // another of its points may lie farther off.
+                const std::string seenBy = which == 1 ? other.name : lens.name;
+                const double share = seenBy == "quadratic splines" ? 1.5 : 1.05;
                 const std::vector<Vec2d> pixels = pixelsOf(which == 1 ? lens : other, rig.camera(which), 10, random);
                 const Vec2d range(400, random.below(2) ? INF : 3000);
                 std::vector<Mat> lines, fine;
@@ -102,8 +106,8 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                         CAPTURE(i, z, pixels[i], truth[i]);
                         REQUIRE(status[i] == REFRACT_OK);
                         const double distance = distanceTo(lines[i], truth[i]);
-                        REQUIRE(distance <= 0.0105);
-                        REQUIRE(distanceTo(fine[i], truth[i]) <= 1.05e-4);
+                        REQUIRE(distance <= share*0.01);
+                        REQUIRE(distanceTo(fine[i], truth[i]) <= share*1e-4);
                         worst = std::max(worst, distance);
                         worstFine = std::max(worstFine, distanceTo(fine[i], truth[i]));
                         partners++;
