@@ -32,7 +32,7 @@ TEST_CASE("The window is found behind lenses of mrcal", "[calibrate_lenses]")
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations;
     const double rms = calibrateGlass(scene.object, std::vector<Mat>(), scene.refracted, camera, rvecs, tvecs, deviations, noArray(),
-                                      noArray(), noArray(), 0);
+                                      noArray(), noArray(), GLASS_FREE_DISTANCE);
     const std::vector<String> names = camera->parameterNames();
     const int normal = (int)(std::find(names.begin(), names.end(), "normal[0]") - names.begin());
     const Vec3d n = camera->window().normal, expected = truth.normal*(1/norm(truth.normal));
