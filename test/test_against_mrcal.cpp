@@ -196,7 +196,7 @@ TEST_CASE("mrcal reads what we save", "[against_mrcal]")
         CHECK(std::equal(theirs->intrinsics, theirs->intrinsics + kind.intrinsics().size(), kind.intrinsics().begin()));
         mrcal_free_cameramodel(&theirs);
         const Ptr<RefractiveCamera> back = RefractiveCamera::read(file.path);
-        CHECK(largestDifference(back->distCoeffs(), camera->distCoeffs()) == 0);
+        CHECK(std::vector<double>(back->distCoeffs()) == kind.coefficients);
         CHECK(largestDifference(back->lensParameters(), camera->lensParameters()) == 0);
         camera->setWindow(GlassWindow(Vec3d(0, 0, 1), 10, 1.5, 50));
         CHECK_THAT(thrown([&] { camera->save(file.path); }), Contains("cannot state a window"));

@@ -82,4 +82,6 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
     return list;
 }
 
+bool isSplined(const RefractiveCamera& lens) { return lens.lensModel().find("LENSMODEL_SPLINED") == 0; }
+
 } // namespace tools

@@ -24,6 +24,9 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit);
 //! One standard deviation of what was free in the window of a camera.
 WindowStd windowStd(const Fit& fit, int camera);
 
+//! Of splined lenses nothing is estimated, --free=intrinsics or not.
+bool isSplined(const cv::refract::RefractiveCamera& lens);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_ESTIMATED_PARAMETERS_HPP

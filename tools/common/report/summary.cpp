@@ -28,10 +28,12 @@ std::string viewsAndCorners(const Rms& rms) { return format("%d / %d", rms.views
 std::string lensOf(const RigCalibration& c, int camera)
 {
     const LensSource& source = c.lensSources[camera];
-    std::string text = format("%s, %d coefficients, ", c.fit.rig.cameras[camera]->lensModel().c_str(),
-                              c.fit.rig.cameras[camera]->lensParameters().rows - 4);
+    const RefractiveCamera& lens = *c.fit.rig.cameras[camera];
+    std::string text = format("%s, %d coefficients, ", lens.lensModel().c_str(), (int)lens.distCoeffs().total());
     text += source.kind == LensSource::FROM_FILE ? std::string("given") : format("%d views, %.3f px", source.views, source.rms);
-    return text + (c.options.flags & GLASS_FREE_INTRINSICS ? ", refined" : "");
+    if (!(c.options.flags & GLASS_FREE_INTRINSICS))
+        return text;
+    return text + (isSplined(lens) ? ", as it is: splines are not refined" : ", refined");
 }
 
 std::string worstViews(const RigCalibration& c, int camera)

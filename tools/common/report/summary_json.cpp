@@ -82,7 +82,7 @@ Json cameraJson(const RigCalibration& c, int camera)
             {"parameters", std::vector<double>(c.fit.rig.cameras[camera]->lensParameters())},
             {"source", lens.kind == LensSource::FROM_FILE ? "file" : lens.kind == LensSource::FROM_DIRECT ? "direct images"
                                                                                                      : "glass images"},
-            {"refined", (c.options.flags & GLASS_FREE_INTRINSICS) != 0}}},
+            {"refined", (c.options.flags & GLASS_FREE_INTRINSICS) != 0 && !isSplined(*c.fit.rig.cameras[camera])}}},
         {"rms_px", {{"glass", glass.px}, {"direct", direct.px}}},
         {"views", {{"glass", glass.views}, {"direct", direct.views}, {"pairs", c.data.countPairs(camera)}}},
         {"corners", {{"glass", glass.points}, {"direct", direct.points}}},

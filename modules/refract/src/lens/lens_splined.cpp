@@ -53,7 +53,7 @@ class SplinedLens : public PlaneLens
 {
 public:
     SplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
-    Mat distCoeffs() const CV_OVERRIDE { return Mat(controls_, true); }
+    Mat distCoeffs() const CV_OVERRIDE { return columnOf(controls_); }
     bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
     Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE;
 
@@ -68,6 +68,7 @@ private:
     Vec2d intoRectangle(const Vec2d& p) const;
     Point cellAt(const Vec2d& p) const;
     bool inDomain(const Vec2d& p, const Matx22d& slope) const;
+    bool isMonotone() const;
     void findDomain();
     bool search(const Vec2d& target, Vec2d& p) const;
 
@@ -75,7 +76,7 @@ private:
     const std::vector<double> controls_;
     double perUnit_;
     Vec2d edge_;                //!< the rectangle in the stereographic plane, about 0
-    Mat1b domain_;              //!< not 0 for its cells in the domain
+    Mat1b domain_;              //!< not 0 for its cells in the domain; empty: all of them
     std::vector<Start> starts_;
 };
 
@@ -95,11 +96,32 @@ Point SplinedLens::cellAt(const Vec2d& p) const
 
 bool SplinedLens::inDomain(const Vec2d& p, const Matx22d& slope) const
 {
-    return domain_(cellAt(p)) && determinant(slope) > 0;
+    return (domain_.empty() || domain_(cellAt(p))) && determinant(slope) > 0;
+}
+
+/* A spline's slope is a mean of the differences of its control points. Where the symmetric part of the Jacobian is positive
+definite all over the rectangle, no two points of it have one image. */
+bool SplinedLens::isMonotone() const
+{
+    double least[2] = { 0, 0 }, across[2] = { 0, 0 };
+    for (int j = 0; j < grid_.ny; j++)
+        for (int i = 0; i < grid_.nx; i++)
+            for (int axis = 0; axis < 2; axis++)
+            {
+                const bool isLast = axis == 0 ? i + 1 == grid_.nx : j + 1 == grid_.ny;
+                const double* here = &controls_[2*((size_t)j*grid_.nx + i)];
+                const double* next = here + (isLast ? 0 : axis == 0 ? 2 : 2*grid_.nx);
+                least[axis] = std::min(least[axis], perUnit_*(next[axis] - here[axis]));
+                across[axis] = std::max(across[axis], perUnit_*std::abs(next[1 - axis] - here[1 - axis]));
+            }
+    const double twist = 0.5*(across[0] + across[1]);
+    return least[0] > -1 && (1 + least[0])*(1 + least[1]) > twist*twist;
 }
 
 void SplinedLens::findDomain()
 {
+    if (isMonotone())
+        return;
     const int nx = CELLS*(grid_.nx - grid_.order), ny = CELLS*(grid_.ny - grid_.order);
     const auto corner = [&](int i, int j) { return Vec2d((2.*i/nx - 1)*edge_[0], (2.*j/ny - 1)*edge_[1]); };
     Mat1b isRegular(ny + 1, nx + 1);

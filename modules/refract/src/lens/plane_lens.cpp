@@ -63,6 +63,11 @@ void PlaneLens::projectJacobian(int n, const double* x, const double* y, const d
     }
 }
 
+Mat PlaneLens::columnOf(const std::vector<double>& values)
+{
+    return values.empty() ? Mat() : Mat((int)values.size(), 1, CV_64F, (void*)values.data()).clone();
+}
+
 std::vector<double> PlaneLens::parameters() const
 {
     std::vector<double> p = { fx_, fy_, cx_, cy_ };

@@ -25,7 +25,7 @@ public:
     int parameterCount() const CV_OVERRIDE { return 4 + (int)coefficients_.size(); }
     String model() const CV_OVERRIDE { return model_; }
     Mat cameraMatrix() const CV_OVERRIDE { return Mat(Matx33d(fx_, 0, cx_, 0, fy_, cy_, 0, 0, 1), true); }
-    Mat distCoeffs() const CV_OVERRIDE { return Mat(coefficients_, true); }
+    Mat distCoeffs() const CV_OVERRIDE { return columnOf(coefficients_); }
     std::vector<double> parameters() const CV_OVERRIDE;
     std::vector<String> parameterNames() const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE { return makeMrcalLens(model_, p); }
@@ -38,6 +38,7 @@ protected:
     virtual uchar bend(const Vec3d& direction, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const = 0;
     //! The unit direction that is seen there.
     virtual uchar unbend(const Vec2d& plane, Vec3d& direction) const = 0;
+    static Mat columnOf(const std::vector<double>& values);     //!< empty if there are none
     virtual std::vector<String> coefficientNames() const { return std::vector<String>(); }
 
     const String model_;
