@@ -55,6 +55,8 @@ public:
     virtual std::vector<String> parameterNames() const = 0;
     //! True for those that no calibration estimates.
     virtual bool isFixed(int /*parameter*/) const { return false; }
+    //! False where the curvature of lines' images may jump.
+    virtual bool isSmooth() const { return true; }
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };

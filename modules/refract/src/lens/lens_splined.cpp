@@ -55,6 +55,7 @@ public:
     SplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
     Mat distCoeffs() const CV_OVERRIDE { return columnOf(controls_); }
     bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
+    bool isSmooth() const CV_OVERRIDE { return grid_.order > 2; }
     Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE;
 
 private:

@@ -244,6 +244,8 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
     const Matx33d R = first ? R12 : R12.t();
     const Vec3d T = first ? T12 : -(R*T12);
 
+    // A segment is measured in its middle. Where the curvature jumps, another of its points lies up to twice as far off.
+    const double atMiddle = to.lens().isSmooth() ? tolerance : 0.5*tolerance;
     std::vector<Polylines> blocks((in.size() + BLOCK - 1)/BLOCK);
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
@@ -266,8 +268,8 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
             const EpipolarCurve curve(R, T, from.layers().normal(), tau[i], d);
             tracks.push_back({ curve, i, curve.parameter(muNear), curve.parameter(muFar), 0, 0 });
         }
-        placeAllNodes(to, tracks, tolerance, nodes, st);
-        joinAllNodes(to, tracks, nodes, tolerance, blocks[begin/BLOCK]);
+        placeAllNodes(to, tracks, atMiddle, nodes, st);
+        joinAllNodes(to, tracks, nodes, atMiddle, blocks[begin/BLOCK]);
         outStatus.store(begin, n, st);
     });
     writeLines(blocks, in.size(), in.depth(), lines);
