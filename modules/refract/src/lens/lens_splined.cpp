@@ -49,60 +49,80 @@ Weights weightsAt(double g, int order, int count)
     return { cell - 1, { 0.5*(0.5 - t)*(0.5 - t), 0.75 - t*t, 0.5*(0.5 + t)*(0.5 + t), 0 }, { t - 0.5, -2*t, t + 0.5, 0 } };
 }
 
-class SplinedLens : public PlaneLens
+//! The surface and its domain. What lenses that differ in fx, fy, cx, cy have in common.
+class SplineSurface
 {
 public:
-    SplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
-    Mat distCoeffs() const CV_OVERRIDE { return columnOf(controls_); }
-    bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
-    bool isSmooth() const CV_OVERRIDE { return grid_.order > 2; }
-    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE;
+    SplineSurface(const SplineGrid& grid, const std::vector<double>& controls);
+    const SplineGrid& grid() const { return grid_; }
+    const std::vector<double>& controls() const { return controls_; }
+
+    //! A point of the stereographic plane -> where it is seen, and by how much that moves.
+    Vec2d at(const Vec2d& p, Matx22d& slope) const;
+    bool inRectangle(const Vec2d& p) const { return std::abs(p[0]) <= edge_[0] && std::abs(p[1]) <= edge_[1]; }
+    bool inDomain(const Vec2d& p, const Matx22d& slope) const;
+    //! The point that is seen there; false if there is none.
+    bool invert(const Vec2d& seen, Vec2d& p) const;
 
 private:
-    //! Where the search for a direction may begin: a point of the stereographic plane and where it is seen.
+    //! Where a search may begin: a point of the stereographic plane and where it is seen.
     struct Start { Vec2d at, seen; };
 
-    uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const CV_OVERRIDE;
-    uchar unbend(const Vec2d& plane, Vec3d& d) const CV_OVERRIDE;
-    Vec2d surface(const Vec2d& p, Matx22d& slope) const;
-    bool inRectangle(const Vec2d& p) const { return std::abs(p[0]) <= edge_[0] && std::abs(p[1]) <= edge_[1]; }
     Vec2d intoRectangle(const Vec2d& p) const;
     Point cellAt(const Vec2d& p) const;
-    bool inDomain(const Vec2d& p, const Matx22d& slope) const;
     bool isMonotone() const;
     void findDomain();
     bool search(const Vec2d& target, Vec2d& p) const;
 
     const SplineGrid grid_;
     const std::vector<double> controls_;
-    double perUnit_;
-    Vec2d edge_;                //!< the rectangle in the stereographic plane, about 0
+    const double perUnit_;
+    const Vec2d edge_;          //!< the rectangle in the stereographic plane, about 0
     Mat1b domain_;              //!< not 0 for its cells in the domain; empty: all of them
     std::vector<Start> starts_;
 };
 
-SplinedLens::SplinedLens(const String& model, const std::vector<double>& p, const SplineGrid& grid)
-    : PlaneLens(model, std::vector<double>(p.begin(), p.begin() + 4)), grid_(grid), controls_(p.begin() + 4, p.end())
+class SplinedLens : public PlaneLens
 {
-    perUnit_ = (grid.nx - grid.order)/(4*std::tan(grid.fovX*CV_PI/720));
-    edge_ = Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_);
+public:
+    SplinedLens(const String& model, const std::vector<double>& four, const Ptr<const SplineSurface>& surface)
+        : PlaneLens(model, four), surface_(surface) {}
+    Mat distCoeffs() const CV_OVERRIDE { return columnOf(surface_->controls()); }
+    bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
+    bool isSmooth() const CV_OVERRIDE { return surface_->grid().order > 2; }
+    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE
+    {
+        return makePtr<SplinedLens>(model_, p, surface_);
+    }
+
+private:
+    uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const CV_OVERRIDE;
+    uchar unbend(const Vec2d& plane, Vec3d& d) const CV_OVERRIDE;
+
+    const Ptr<const SplineSurface> surface_;
+};
+
+SplineSurface::SplineSurface(const SplineGrid& grid, const std::vector<double>& controls)
+    : grid_(grid), controls_(controls), perUnit_((grid.nx - grid.order)/(4*std::tan(grid.fovX*CV_PI/720))),
+      edge_(Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_))
+{
     findDomain();
 }
 
-Point SplinedLens::cellAt(const Vec2d& p) const
+Point SplineSurface::cellAt(const Vec2d& p) const
 {
     return Point(std::min((int)(0.5*(p[0]/edge_[0] + 1)*domain_.cols), domain_.cols - 1),
                  std::min((int)(0.5*(p[1]/edge_[1] + 1)*domain_.rows), domain_.rows - 1));
 }
 
-bool SplinedLens::inDomain(const Vec2d& p, const Matx22d& slope) const
+bool SplineSurface::inDomain(const Vec2d& p, const Matx22d& slope) const
 {
     return (domain_.empty() || domain_(cellAt(p))) && determinant(slope) > 0;
 }
 
 /* A spline's slope is a mean of the differences of its control points. Where the symmetric part of the Jacobian is positive
 definite all over the rectangle, no two points of it have one image. */
-bool SplinedLens::isMonotone() const
+bool SplineSurface::isMonotone() const
 {
     double least[2] = { 0, 0 }, across[2] = { 0, 0 };
     for (int j = 0; j < grid_.ny; j++)
@@ -119,7 +139,7 @@ bool SplinedLens::isMonotone() const
     return least[0] > -1 && (1 + least[0])*(1 + least[1]) > twist*twist;
 }
 
-void SplinedLens::findDomain()
+void SplineSurface::findDomain()
 {
     if (isMonotone())
         return;
@@ -131,7 +151,7 @@ void SplinedLens::findDomain()
     for (int j = 0; j <= ny; j++)
         for (int i = 0; i <= nx; i++)
         {
-            seen(j, i) = surface(corner(i, j), slope);
+            seen(j, i) = at(corner(i, j), slope);
             isRegular(j, i) = determinant(slope) > 0;
         }
     domain_ = oneToOneCells(seen, isRegular);
@@ -141,7 +161,7 @@ void SplinedLens::findDomain()
                 starts_.push_back({ corner(i, j), seen(j, i) });
 }
 
-Vec2d SplinedLens::surface(const Vec2d& p, Matx22d& slope) const
+Vec2d SplineSurface::at(const Vec2d& p, Matx22d& slope) const
 {
     const int n = grid_.order + 1;
     const Weights x = weightsAt(p[0]*perUnit_ + 0.5*(grid_.nx - 1), grid_.order, grid_.nx);
@@ -164,30 +184,17 @@ Vec2d SplinedLens::surface(const Vec2d& p, Matx22d& slope) const
     return p + sum;
 }
 
-uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const
-{
-    Vec2d p;
-    Matx22d slope;
-    const uchar status = stereographic(d, p, byDirection);
-    if (status != REFRACT_OK || !inRectangle(p))
-        return REFRACT_OUTSIDE_LENS_MODEL;
-    plane = surface(p, slope);
-    if (byDirection)
-        *byDirection = slope**byDirection;
-    return inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
-}
-
-Vec2d SplinedLens::intoRectangle(const Vec2d& p) const
+Vec2d SplineSurface::intoRectangle(const Vec2d& p) const
 {
     return Vec2d(std::max(-edge_[0], std::min(p[0], edge_[0])), std::max(-edge_[1], std::min(p[1], edge_[1])));
 }
 
 //! Newton from p, along the edge of the rectangle where a step leads out of it; each step comes nearer and stays in the domain.
-bool SplinedLens::search(const Vec2d& target, Vec2d& p) const
+bool SplineSurface::search(const Vec2d& target, Vec2d& p) const
 {
     const double floor = 4*DBL_EPSILON*(1 + norm(target));
     Matx22d slope, slopeNext;
-    Vec2d error = surface(p, slope) - target;
+    Vec2d error = at(p, slope) - target;
     if (!inDomain(p, slope))
         return false;
     for (int i = 0; i < 100; i++)
@@ -200,7 +207,7 @@ bool SplinedLens::search(const Vec2d& target, Vec2d& p) const
         for (double part = 1; part > 1e-6 && !isNearer; part *= 0.5)
         {
             next = intoRectangle(p + part*step);
-            errorNext = surface(next, slopeNext) - target;
+            errorNext = at(next, slopeNext) - target;
             isNearer = norm(errorNext) < size && inDomain(next, slopeNext);
         }
         if (!isNearer)
@@ -215,39 +222,48 @@ bool SplinedLens::search(const Vec2d& target, Vec2d& p) const
 }
 
 //! From the stereographic projection's answer, else from what is seen nearest.
-uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const
+bool SplineSurface::invert(const Vec2d& seen, Vec2d& p) const
 {
     const int TRIALS = 4;
-    Vec2d p = intoRectangle(plane);
-    if (search(plane, p))
-    {
-        d = stereographicDirection(p);
-        return REFRACT_OK;
-    }
+    if (search(seen, p = intoRectangle(seen)))
+        return true;
     std::array<Start, TRIALS> nearest;
     const auto end = std::partial_sort_copy(starts_.begin(), starts_.end(), nearest.begin(), nearest.end(),
-        [&](const Start& one, const Start& other) { return norm(one.seen - plane) < norm(other.seen - plane); });
+        [&](const Start& one, const Start& other) { return norm(one.seen - seen) < norm(other.seen - seen); });
     for (auto start = nearest.begin(); start != end; start++)
-        if (search(plane, p = start->at))
-        {
-            d = stereographicDirection(p);
-            return REFRACT_OK;
-        }
-    return REFRACT_OUTSIDE_LENS_MODEL;
+        if (search(seen, p = start->at))
+            return true;
+    return false;
 }
 
-Ptr<Lens> SplinedLens::withParameters(const std::vector<double>& p) const
+uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const
 {
-    std::vector<double> intrinsics = p;
-    intrinsics.insert(intrinsics.end(), controls_.begin(), controls_.end());
-    return makeSplinedLens(model_, intrinsics, grid_);
+    Vec2d p;
+    Matx22d slope;
+    const uchar status = stereographic(d, p, byDirection);
+    if (status != REFRACT_OK || !surface_->inRectangle(p))
+        return REFRACT_OUTSIDE_LENS_MODEL;
+    plane = surface_->at(p, slope);
+    if (byDirection)
+        *byDirection = slope**byDirection;
+    return surface_->inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
+}
+
+uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const
+{
+    Vec2d p;
+    if (!surface_->invert(plane, p))
+        return REFRACT_OUTSIDE_LENS_MODEL;
+    d = stereographicDirection(p);
+    return REFRACT_OK;
 }
 
 } // namespace
 
-Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid)
+Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& p, const SplineGrid& grid)
 {
-    return makePtr<SplinedLens>(model, intrinsics, grid);
+    const Ptr<const SplineSurface> surface = makePtr<SplineSurface>(grid, std::vector<double>(p.begin() + 4, p.end()));
+    return makePtr<SplinedLens>(model, std::vector<double>(p.begin(), p.begin() + 4), surface);
 }
 
 }} // namespace
