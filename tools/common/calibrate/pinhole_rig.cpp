@@ -60,10 +60,12 @@ double placeBeside(const RigData& data, const std::vector<int>& moments, const C
 
 int pinholeCoefficients(const refract::RefractiveCamera& camera)
 {
+    const int RICHEST = 8;      // that a few views determine
     const String model = camera.lensModel();
     if (model != "opencv" && model.find("LENSMODEL_") != 0)
         throw Failure("cv::calibrateCamera knows no lens '" + model + "'");
-    return camera.lensParameters().rows - 4;
+    const bool isOpenCV = model == "opencv" || model == "LENSMODEL_PINHOLE" || model.find("LENSMODEL_OPENCV") == 0;
+    return isOpenCV ? camera.lensParameters().rows - 4 : RICHEST;
 }
 
 CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
