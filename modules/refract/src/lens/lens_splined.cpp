@@ -24,29 +24,49 @@ namespace cv { namespace refract {
 
 namespace {
 
-const int MOST_ORDER = 3;
 //! Cells to a control point's distance in which the surface is looked at for folds; searches begin at every STARTS-th.
 const int CELLS = 8, STARTS = 2;
 
 //! The control points that a coordinate needs, and what they weigh.
-struct Weights
+template<int ORDER> struct Weights
 {
+    Weights(double g, int count)
+    {
+        const int cell = std::max(1, std::min((int)(g + (ORDER == 3 ? 0 : 0.5)), count - ORDER));
+        const double t = g - cell;
+        first = cell - 1;
+        fill(t, 1 - t);
+    }
+
     int first;
-    double value[MOST_ORDER + 1], slope[MOST_ORDER + 1];        //!< slope: by g
+    double value[ORDER + 1], slope[ORDER + 1];      //!< slope: by g
+
+private:
+    void fill(double t, double r);
 };
 
-Weights weightsAt(double g, int order, int count)
+template<> inline void Weights<2>::fill(double t, double)
 {
-    const double shift = order == 3 ? 0 : 0.5;
-    const int cell = std::max(1, std::min((int)std::floor(g + shift), count - order));
-    const double t = g - cell;
-    if (order == 3)
-    {
-        const double r = 1 - t;
-        return { cell - 1, { r*r*r/6, (4 + t*t*(3*t - 6))/6, (4 + r*r*(3*r - 6))/6, t*t*t/6 },
-                 { -0.5*r*r, t*(1.5*t - 2), -r*(1.5*r - 2), 0.5*t*t } };
-    }
-    return { cell - 1, { 0.5*(0.5 - t)*(0.5 - t), 0.75 - t*t, 0.5*(0.5 + t)*(0.5 + t), 0 }, { t - 0.5, -2*t, t + 0.5, 0 } };
+    const double before = 0.5 - t, after = 0.5 + t;
+    value[0] = 0.5*before*before;
+    value[1] = 0.75 - t*t;
+    value[2] = 0.5*after*after;
+    slope[0] = -before;
+    slope[1] = -2*t;
+    slope[2] = after;
+}
+
+template<> inline void Weights<3>::fill(double t, double r)
+{
+    const double t2 = t*t, r2 = r*r;
+    value[0] = r2*r*(1./6);
+    value[1] = 2./3 + t2*(0.5*t - 1);
+    value[2] = 2./3 + r2*(0.5*r - 1);
+    value[3] = t2*t*(1./6);
+    slope[0] = -0.5*r2;
+    slope[1] = t*(1.5*t - 2);
+    slope[2] = -r*(1.5*r - 2);
+    slope[3] = 0.5*t2;
 }
 
 //! The surface and its domain. What lenses that differ in fx, fy, cx, cy have in common.
@@ -68,6 +88,7 @@ private:
     //! Where a search may begin: a point of the stereographic plane and where it is seen.
     struct Start { Vec2d at, seen; };
 
+    template<int ORDER> Vec2d added(double gx, double gy, Vec2d& byX, Vec2d& byY) const;
     Vec2d intoRectangle(const Vec2d& p) const;
     Point cellAt(const Vec2d& p) const;
     bool isMonotone() const;
@@ -78,7 +99,8 @@ private:
     const std::vector<double> controls_;
     const double perUnit_;
     const Vec2d edge_;          //!< the rectangle in the stereographic plane, about 0
-    Mat1b domain_;              //!< not 0 for its cells in the domain; empty: all of them
+    const bool isMonotone_;     //!< all of it is the domain
+    Mat1b domain_;              //!< else not 0 for its cells in the domain
     std::vector<Start> starts_;
 };
 
@@ -104,20 +126,21 @@ private:
 
 SplineSurface::SplineSurface(const SplineGrid& grid, const std::vector<double>& controls)
     : grid_(grid), controls_(controls), perUnit_((grid.nx - grid.order)/(4*std::tan(grid.fovX*CV_PI/720))),
-      edge_(Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_))
+      edge_(Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_)), isMonotone_(isMonotone())
 {
-    findDomain();
+    if (!isMonotone_)
+        findDomain();
 }
 
 Point SplineSurface::cellAt(const Vec2d& p) const
 {
-    return Point(std::min((int)(0.5*(p[0]/edge_[0] + 1)*domain_.cols), domain_.cols - 1),
-                 std::min((int)(0.5*(p[1]/edge_[1] + 1)*domain_.rows), domain_.rows - 1));
+    return Point(std::min((int)((p[0] + edge_[0])*(CELLS*perUnit_)), domain_.cols - 1),
+                 std::min((int)((p[1] + edge_[1])*(CELLS*perUnit_)), domain_.rows - 1));
 }
 
 bool SplineSurface::inDomain(const Vec2d& p, const Matx22d& slope) const
 {
-    return (domain_.empty() || domain_(cellAt(p))) && determinant(slope) > 0;
+    return determinant(slope) > 0 && (isMonotone_ || domain_(cellAt(p)));
 }
 
 /* A spline's slope is a mean of the differences of its control points. Where the symmetric part of the Jacobian is positive
@@ -141,8 +164,6 @@ bool SplineSurface::isMonotone() const
 
 void SplineSurface::findDomain()
 {
-    if (isMonotone())
-        return;
     const int nx = CELLS*(grid_.nx - grid_.order), ny = CELLS*(grid_.ny - grid_.order);
     const auto corner = [&](int i, int j) { return Vec2d((2.*i/nx - 1)*edge_[0], (2.*j/ny - 1)*edge_[1]); };
     Mat1b isRegular(ny + 1, nx + 1);
@@ -161,25 +182,38 @@ void SplineSurface::findDomain()
                 starts_.push_back({ corner(i, j), seen(j, i) });
 }
 
+//! What is added to the plane, and its derivatives by gx and gy. ORDER is constant so that straight code comes of it.
+template<int ORDER> Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX, Vec2d& byY) const
+{
+    const Weights<ORDER> x(gx, grid_.nx), y(gy, grid_.ny);
+    const double* c = &controls_[2*((size_t)y.first*grid_.nx + x.first)];
+    double sum[2] = { 0, 0 }, sumByX[2] = { 0, 0 }, sumByY[2] = { 0, 0 };
+    for (int j = 0; j <= ORDER; j++, c += 2*(size_t)grid_.nx)
+    {
+        double row[2] = { 0, 0 }, rowByX[2] = { 0, 0 };
+        for (int i = 0; i <= ORDER; i++)
+            for (int k = 0; k < 2; k++)
+            {
+                row[k] += x.value[i]*c[2*i + k];
+                rowByX[k] += x.slope[i]*c[2*i + k];
+            }
+        for (int k = 0; k < 2; k++)
+        {
+            sum[k] += y.value[j]*row[k];
+            sumByX[k] += y.value[j]*rowByX[k];
+            sumByY[k] += y.slope[j]*row[k];
+        }
+    }
+    byX = Vec2d(sumByX);
+    byY = Vec2d(sumByY);
+    return Vec2d(sum);
+}
+
 Vec2d SplineSurface::at(const Vec2d& p, Matx22d& slope) const
 {
-    const int n = grid_.order + 1;
-    const Weights x = weightsAt(p[0]*perUnit_ + 0.5*(grid_.nx - 1), grid_.order, grid_.nx);
-    const Weights y = weightsAt(p[1]*perUnit_ + 0.5*(grid_.ny - 1), grid_.order, grid_.ny);
-    Vec2d sum, byX, byY;
-    for (int j = 0; j < n; j++)
-    {
-        const double* c = &controls_[2*((size_t)(y.first + j)*grid_.nx + x.first)];
-        Vec2d row, rowByX;
-        for (int i = 0; i < n; i++, c += 2)
-        {
-            row += x.value[i]*Vec2d(c);
-            rowByX += x.slope[i]*Vec2d(c);
-        }
-        sum += y.value[j]*row;
-        byX += y.value[j]*rowByX;
-        byY += y.slope[j]*row;
-    }
+    const double gx = p[0]*perUnit_ + 0.5*(grid_.nx - 1), gy = p[1]*perUnit_ + 0.5*(grid_.ny - 1);
+    Vec2d byX, byY;
+    const Vec2d sum = grid_.order == 3 ? added<3>(gx, gy, byX, byY) : added<2>(gx, gy, byX, byY);
     slope = Matx22d(1 + perUnit_*byX[0], perUnit_*byY[0], perUnit_*byX[1], 1 + perUnit_*byY[1]);
     return p + sum;
 }
@@ -192,33 +226,36 @@ Vec2d SplineSurface::intoRectangle(const Vec2d& p) const
 //! Newton from p, along the edge of the rectangle where a step leads out of it; each step comes nearer and stays in the domain.
 bool SplineSurface::search(const Vec2d& target, Vec2d& p) const
 {
-    const double floor = 4*DBL_EPSILON*(1 + norm(target));
+    const double exact = DBL_EPSILON*(1 + norm(target)), enough = 4e3*exact;
     Matx22d slope, slopeNext;
     Vec2d error = at(p, slope) - target;
+    double size = norm(error);
     if (!inDomain(p, slope))
         return false;
-    for (int i = 0; i < 100; i++)
+    for (int i = 0; i < 100 && size > exact; i++)
     {
-        const double size = norm(error), determinant = cv::determinant(slope);
-        const Vec2d step(-(slope(1, 1)*error[0] - slope(0, 1)*error[1])/determinant,
-                         -(slope(0, 0)*error[1] - slope(1, 0)*error[0])/determinant);
-        Vec2d next, errorNext;
+        const Vec2d step = (-1/determinant(slope))*Vec2d(slope(1, 1)*error[0] - slope(0, 1)*error[1],
+                                                         slope(0, 0)*error[1] - slope(1, 0)*error[0]);
         bool isNearer = false;
         for (double part = 1; part > 1e-6 && !isNearer; part *= 0.5)
         {
-            next = intoRectangle(p + part*step);
-            errorNext = at(next, slopeNext) - target;
-            isNearer = norm(errorNext) < size && inDomain(next, slopeNext);
+            const Vec2d next = intoRectangle(p + part*step), errorNext = at(next, slopeNext) - target;
+            const double sizeNext = norm(errorNext);
+            isNearer = sizeNext < size && inDomain(next, slopeNext);
+            if (isNearer)
+            {
+                p = next;
+                error = errorNext;
+                size = sizeNext;
+                slope = slopeNext;
+            }
+            else if (size <= enough)
+                return true;            // rounding has taken over
         }
         if (!isNearer)
-            return size <= 1e3*floor;       // rounding has taken over, or there is nothing here
-        p = next;
-        error = errorNext;
-        slope = slopeNext;
-        if (norm(error) == 0)
-            return true;
+            return false;
     }
-    return norm(error) <= 1e3*floor;
+    return size <= enough;
 }
 
 //! From the stereographic projection's answer, else from what is seen nearest.
