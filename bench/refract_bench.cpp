@@ -88,6 +88,7 @@ int main(int argc, char** argv)
     }
     std::vector<Row> rows;
     addPointRows(rows, count);
+    addSplinedRows(rows, count);
     addPairRows(rows, count);
     addRobustRows(rows);
     addCallRows(rows, count);

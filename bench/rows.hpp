@@ -11,6 +11,8 @@ namespace bench {
 
 //! Arrays of points through one camera.
 void addPointRows(std::vector<Row>& rows, int count);
+//! A splined lens; none without mrcal.
+void addSplinedRows(std::vector<Row>& rows, int count);
 //! Two cameras: triangulation, epipolar curves.
 void addPairRows(std::vector<Row>& rows, int count);
 //! Poses from matches of which some are wrong.

@@ -1,6 +1,7 @@
 // One battery over all lens models, through the inner header.
 #include "lens/lens.hpp"
 #include "scenes.hpp"
+#include <iostream>
 
 using namespace cv;
 using namespace cv::refract;
@@ -300,6 +301,58 @@ TEST_CASE("What a name of mrcal's goes on with is read or refused", "[lens]")
     p.assign(12, 0.001);
     p[0] = p[1] = 1000;
     CHECK_THAT(thrown([&] { makeMrcalLens("LENSMODEL_CAHVORE_linearity=0.4", p); }), Contains("intrinsics[9]") && Contains("E = 0"));
+}
+
+TEST_CASE("A splined surface that folds outside of its middle: one direction a pixel, or none", "[lens]")
+{
+    CAPTURE(seed());
+    for (int order : { 2, 3 })
+    {
+        Random random(50 + order);
+        const int nx = 14, ny = 12;
+        std::vector<double> p = { 1000, 1010, 640, 480 };
+        for (int j = 0; j < ny; j++)
+            for (int i = 0; i < nx; i++)
+            {
+                const double outside = std::max(std::abs(i - 0.5*(nx - 1))/nx, std::abs(j - 0.5*(ny - 1))/ny);     // to 0.46
+                for (int k = 0; k < 2; k++)
+                    p.push_back(random.normal(outside > 0.3 ? 0.3 : 0.01));
+            }
+        const Ptr<Lens> lens = makeMrcalLens(format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=120", order, nx, ny),
+                                             p);
+        int seen = 0, outside = 0, missed = 0;
+        for (int i = 0; i < 50000; i++)
+        {
+            const Vec3d d = randomNormal(random, 75);
+            Vec2d pixel, same;
+            Vec3d back;
+            double byDirection[6], byParameters[8];
+            const uchar status = project(*lens, d, pixel);
+            CAPTURE(order, d, pixel);
+            REQUIRE(lens->projectJacobian(d, same, byDirection, byParameters) == status);
+            if (status != REFRACT_OK)
+            {
+                outside++;
+                continue;
+            }
+            seen++;
+            REQUIRE(norm(same - pixel) < 1e-12);
+            // The picture is not mirrored: with a third direction across, the determinant of its change keeps the sign.
+            const Vec3d x = Vec3d(0, 1, 0).cross(d), y = d.cross(x);
+            const Matx23d J(byDirection);
+            REQUIRE(determinant(Matx22d((J*x)[0], (J*y)[0], (J*x)[1], (J*y)[1])) > 0);
+            if (unproject(*lens, pixel, back) == REFRACT_OK)
+                REQUIRE(norm(back - d) < 1e-9);
+            else
+                missed++;
+        }
+        CAPTURE(seen, outside, missed);
+        CHECK(seen > 5000);
+        CHECK(outside > 5000);
+        CHECK(missed < 0.02*seen);
+        std::cout << "[numbers] folding splines of order " << order << ": " << seen << " directions with a pixel, of which "
+                  << missed << " are not found again" << std::endl;
+    }
 }
 
 TEST_CASE("Lenses of the whole sphere", "[lens]")

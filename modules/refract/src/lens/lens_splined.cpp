@@ -77,10 +77,12 @@ public:
     const SplineGrid& grid() const { return grid_; }
     const std::vector<double>& controls() const { return controls_; }
 
-    //! A point of the stereographic plane -> where it is seen, and by how much that moves.
-    Vec2d at(const Vec2d& p, Matx22d& slope) const;
+    //! A point of the stereographic plane -> where it is seen, and by how much that moves; null: not asked for.
+    Vec2d at(const Vec2d& p, Matx22d* slope) const;
     bool inRectangle(const Vec2d& p) const { return std::abs(p[0]) <= edge_[0] && std::abs(p[1]) <= edge_[1]; }
     bool inDomain(const Vec2d& p, const Matx22d& slope) const;
+    //! In the domain whatever the slope is.
+    bool inDomain(const Vec2d& p) const { return isMonotone_ || domain_(cellAt(p)) == CERTAIN; }
     //! The point that is seen there; false if there is none.
     bool invert(const Vec2d& seen, Vec2d& p) const;
 
@@ -88,11 +90,14 @@ private:
     //! Where a search may begin: a point of the stereographic plane and where it is seen.
     struct Start { Vec2d at, seen; };
 
-    template<int ORDER> Vec2d added(double gx, double gy, Vec2d& byX, Vec2d& byY) const;
+    enum { OUTSIDE, INSIDE, CERTAIN };      // of the domain; CERTAIN: as far as the control points tell of all of the cell
+
+    template<int ORDER, bool WITH_SLOPE> Vec2d added(double gx, double gy, Vec2d& byX, Vec2d& byY) const;
     Vec2d intoRectangle(const Vec2d& p) const;
     Point cellAt(const Vec2d& p) const;
-    bool isMonotone() const;
+    bool isMonotone(const Rect& controls) const;
     void findDomain();
+    void markCertain();
     bool search(const Vec2d& target, Vec2d& p) const;
 
     const SplineGrid grid_;
@@ -100,7 +105,7 @@ private:
     const double perUnit_;
     const Vec2d edge_;          //!< the rectangle in the stereographic plane, about 0
     const bool isMonotone_;     //!< all of it is the domain
-    Mat1b domain_;              //!< else not 0 for its cells in the domain
+    Mat1b domain_;              //!< else what each of its cells is
     std::vector<Start> starts_;
 };
 
@@ -126,7 +131,8 @@ private:
 
 SplineSurface::SplineSurface(const SplineGrid& grid, const std::vector<double>& controls)
     : grid_(grid), controls_(controls), perUnit_((grid.nx - grid.order)/(4*std::tan(grid.fovX*CV_PI/720))),
-      edge_(Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_)), isMonotone_(isMonotone())
+      edge_(Vec2d(grid.nx - grid.order, grid.ny - grid.order)*(0.5/perUnit_)),
+      isMonotone_(isMonotone(Rect(0, 0, grid.nx, grid.ny)))
 {
     if (!isMonotone_)
         findDomain();
@@ -144,15 +150,15 @@ bool SplineSurface::inDomain(const Vec2d& p, const Matx22d& slope) const
 }
 
 /* A spline's slope is a mean of the differences of its control points. Where the symmetric part of the Jacobian is positive
-definite all over the rectangle, no two points of it have one image. */
-bool SplineSurface::isMonotone() const
+definite all over a rectangle, no two points of it have one image, and the determinant is positive. */
+bool SplineSurface::isMonotone(const Rect& controls) const
 {
     double least[2] = { 0, 0 }, across[2] = { 0, 0 };
-    for (int j = 0; j < grid_.ny; j++)
-        for (int i = 0; i < grid_.nx; i++)
+    for (int j = controls.y; j < controls.br().y; j++)
+        for (int i = controls.x; i < controls.br().x; i++)
             for (int axis = 0; axis < 2; axis++)
             {
-                const bool isLast = axis == 0 ? i + 1 == grid_.nx : j + 1 == grid_.ny;
+                const bool isLast = axis == 0 ? i + 1 == controls.br().x : j + 1 == controls.br().y;
                 const double* here = &controls_[2*((size_t)j*grid_.nx + i)];
                 const double* next = here + (isLast ? 0 : axis == 0 ? 2 : 2*grid_.nx);
                 least[axis] = std::min(least[axis], perUnit_*(next[axis] - here[axis]));
@@ -172,18 +178,31 @@ void SplineSurface::findDomain()
     for (int j = 0; j <= ny; j++)
         for (int i = 0; i <= nx; i++)
         {
-            seen(j, i) = at(corner(i, j), slope);
+            seen(j, i) = at(corner(i, j), &slope);
             isRegular(j, i) = determinant(slope) > 0;
         }
     domain_ = oneToOneCells(seen, isRegular);
+    markCertain();
     for (int j = STARTS/2; j < ny; j += STARTS)
         for (int i = STARTS/2; i < nx; i += STARTS)
             if (domain_(j, i))
                 starts_.push_back({ corner(i, j), seen(j, i) });
 }
 
-//! What is added to the plane, and its derivatives by gx and gy. ORDER is constant so that straight code comes of it.
-template<int ORDER> Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX, Vec2d& byY) const
+//! Cells whose control points leave no doubt of the slope.
+void SplineSurface::markCertain()
+{
+    const int n = grid_.order + 1;
+    for (int j = 0; j < domain_.rows; j++)
+        for (int i = 0; i < domain_.cols; i++)
+            if (domain_(j, i) && isMonotone(Rect(i/CELLS, j/CELLS, n, n)))
+                domain_(j, i) = CERTAIN;
+}
+
+/* What is added to the plane, and its derivatives by gx and gy. All that decides the form of the loops is constant, so that
+straight code comes of them. */
+template<int ORDER, bool WITH_SLOPE>
+Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX, Vec2d& byY) const
 {
     const Weights<ORDER> x(gx, grid_.nx), y(gy, grid_.ny);
     const double* c = &controls_[2*((size_t)y.first*grid_.nx + x.first)];
@@ -195,13 +214,17 @@ template<int ORDER> Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX,
             for (int k = 0; k < 2; k++)
             {
                 row[k] += x.value[i]*c[2*i + k];
-                rowByX[k] += x.slope[i]*c[2*i + k];
+                if (WITH_SLOPE)
+                    rowByX[k] += x.slope[i]*c[2*i + k];
             }
         for (int k = 0; k < 2; k++)
         {
             sum[k] += y.value[j]*row[k];
-            sumByX[k] += y.value[j]*rowByX[k];
-            sumByY[k] += y.slope[j]*row[k];
+            if (WITH_SLOPE)
+            {
+                sumByX[k] += y.value[j]*rowByX[k];
+                sumByY[k] += y.slope[j]*row[k];
+            }
         }
     }
     byX = Vec2d(sumByX);
@@ -209,12 +232,14 @@ template<int ORDER> Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX,
     return Vec2d(sum);
 }
 
-Vec2d SplineSurface::at(const Vec2d& p, Matx22d& slope) const
+Vec2d SplineSurface::at(const Vec2d& p, Matx22d* slope) const
 {
     const double gx = p[0]*perUnit_ + 0.5*(grid_.nx - 1), gy = p[1]*perUnit_ + 0.5*(grid_.ny - 1);
     Vec2d byX, byY;
-    const Vec2d sum = grid_.order == 3 ? added<3>(gx, gy, byX, byY) : added<2>(gx, gy, byX, byY);
-    slope = Matx22d(1 + perUnit_*byX[0], perUnit_*byY[0], perUnit_*byX[1], 1 + perUnit_*byY[1]);
+    if (!slope)
+        return p + (grid_.order == 3 ? added<3, false>(gx, gy, byX, byY) : added<2, false>(gx, gy, byX, byY));
+    const Vec2d sum = grid_.order == 3 ? added<3, true>(gx, gy, byX, byY) : added<2, true>(gx, gy, byX, byY);
+    *slope = Matx22d(1 + perUnit_*byX[0], perUnit_*byY[0], perUnit_*byX[1], 1 + perUnit_*byY[1]);
     return p + sum;
 }
 
@@ -223,12 +248,12 @@ Vec2d SplineSurface::intoRectangle(const Vec2d& p) const
     return Vec2d(std::max(-edge_[0], std::min(p[0], edge_[0])), std::max(-edge_[1], std::min(p[1], edge_[1])));
 }
 
-//! Newton from p, along the edge of the rectangle where a step leads out of it; each step comes nearer and stays in the domain.
+//! Newton from p, along the edge of the rectangle where a step leads out of it. Each step comes nearer and stays in the domain.
 bool SplineSurface::search(const Vec2d& target, Vec2d& p) const
 {
     const double exact = DBL_EPSILON*(1 + norm(target)), enough = 4e3*exact;
     Matx22d slope, slopeNext;
-    Vec2d error = at(p, slope) - target;
+    Vec2d error = at(p, &slope) - target;
     double size = norm(error);
     if (!inDomain(p, slope))
         return false;
@@ -239,7 +264,7 @@ bool SplineSurface::search(const Vec2d& target, Vec2d& p) const
         bool isNearer = false;
         for (double part = 1; part > 1e-6 && !isNearer; part *= 0.5)
         {
-            const Vec2d next = intoRectangle(p + part*step), errorNext = at(next, slopeNext) - target;
+            const Vec2d next = intoRectangle(p + part*step), errorNext = at(next, &slopeNext) - target;
             const double sizeNext = norm(errorNext);
             isNearer = sizeNext < size && inDomain(next, slopeNext);
             if (isNearer)
@@ -280,7 +305,12 @@ uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2
     const uchar status = stereographic(d, p, byDirection);
     if (status != REFRACT_OK || !surface_->inRectangle(p))
         return REFRACT_OUTSIDE_LENS_MODEL;
-    plane = surface_->at(p, slope);
+    if (!byDirection && surface_->inDomain(p))
+    {
+        plane = surface_->at(p, nullptr);
+        return REFRACT_OK;
+    }
+    plane = surface_->at(p, &slope);
     if (byDirection)
         *byDirection = slope**byDirection;
     return surface_->inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
