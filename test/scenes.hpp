@@ -120,11 +120,12 @@ struct LensKind
         all.insert(all.end(), coefficients.begin(), coefficients.end());
         return all;
     }
-    //! lensParameters(): of a splined lens without the control points.
+    //! lensParameters(): without a splined lens's control points and the centre of CAHVORE that does not move.
     std::vector<double> parameters() const
     {
         const std::vector<double> all = intrinsics();
-        return isSplined() ? std::vector<double>(all.begin(), all.begin() + 4) : all;
+        const size_t count = isSplined() ? 4 : mrcal.find("CAHVORE") != std::string::npos ? 9 : all.size();
+        return std::vector<double>(all.begin(), all.begin() + count);
     }
 };
 

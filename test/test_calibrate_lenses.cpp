@@ -75,12 +75,8 @@ TEST_CASE("The other lenses of mrcal are refined", "[calibrate_lenses]")
     calibrateGlass(scene.object, scene.direct, scene.refracted, camera, rvecs, tvecs, deviations, noArray(), noArray(), noArray(),
                    GLASS_FREE_INTRINSICS);
     const Mat found = camera->lensParameters();
-    for (int i = 9; i < 12; i++)
-    {
-        CHECK(found.at<double>(i) == 0);        // e0, e1, e2
-        CHECK(deviations.at<double>(i) == 0);
-    }
     const std::vector<double> truth = lensCalled("CAHVORE, sine").parameters();
+    REQUIRE(found.total() == 9);        // e0, e1, e2 are none
     for (int i = 0; i < 9; i++)
     {
         CAPTURE(i, found.at<double>(i), truth[i], deviations.at<double>(i));

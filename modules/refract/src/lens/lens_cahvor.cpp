@@ -21,7 +21,7 @@ namespace cv { namespace refract {
 
 namespace {
 
-enum { ALPHA, BETA, R0, R1, R2, E0, E1, E2 };
+enum { ALPHA, BETA, R0, R1, R2, E0 };        // E0 and the two after it are 0, and no parameters
 
 //! What a direction's image depends on, and how that moves with it.
 struct FromAxis
@@ -33,16 +33,25 @@ struct FromAxis
 class CahvorLens : public PlaneLens
 {
 public:
-    CahvorLens(const String& model, const std::vector<double>& intrinsics, double linearity);
-    bool isFixed(int parameter) const CV_OVERRIDE { return parameter >= 4 + E0; }
+    //! @param parameters fx, fy, cx, cy, alpha, beta, r0, r1, r2; @param zeros how many follow in a file
+    CahvorLens(const String& model, const std::vector<double>& parameters, double linearity, size_t zeros);
+    Mat distCoeffs() const CV_OVERRIDE
+    {
+        std::vector<double> all = coefficients_;
+        all.resize(all.size() + zeros_);
+        return columnOf(all);
+    }
+    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE
+    {
+        return makePtr<CahvorLens>(model_, p, linearity_, zeros_);
+    }
 
 private:
     uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const CV_OVERRIDE;
     uchar unbend(const Vec2d& plane, Vec3d& d) const CV_OVERRIDE;
     std::vector<String> coefficientNames() const CV_OVERRIDE
     {
-        const std::vector<String> names = { "alpha", "beta", "r0", "r1", "r2", "e0", "e1", "e2" };
-        return std::vector<String>(names.begin(), names.begin() + coefficients_.size());
+        return { "alpha", "beta", "r0", "r1", "r2" };
     }
 
     FromAxis fromAxis(const Vec3d& d, double length) const;
@@ -52,12 +61,13 @@ private:
     double invert(double t) const;                          //!< t -> theta, NaN beyond thetaMax_
 
     const double linearity_;
+    const size_t zeros_;
     double thetaMax_;
     Vec3d axis_, dAxis_[2];     //!< o, and by alpha and beta
 };
 
-CahvorLens::CahvorLens(const String& model, const std::vector<double>& intrinsics, double linearity)
-    : PlaneLens(model, intrinsics), linearity_(std::abs(linearity) > 1e-15 ? linearity : 0)
+CahvorLens::CahvorLens(const String& model, const std::vector<double>& parameters, double linearity, size_t zeros)
+    : PlaneLens(model, parameters), linearity_(std::abs(linearity) > 1e-15 ? linearity : 0), zeros_(zeros)
 {
     const double* p = coefficients_.data();
     const double cA = std::cos(p[ALPHA]), sA = std::sin(p[ALPHA]), cB = std::cos(p[BETA]), sB = std::sin(p[BETA]);
@@ -147,8 +157,6 @@ uchar CahvorLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d
         const double x = chi(at.theta, chiSlope);
         for (int k = 0; k < 3; k++)
             byCoefficients[R0 + k] = seen(at.across*std::pow(x, 2*k + 1));
-        for (int e = E0; e < (int)coefficients_.size(); e++)
-            byCoefficients[e] = Vec2d();        // of what is infinitely far: all that a direction tells
     }
     return at.theta < thetaMax_ && bent[2] > 0 ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
@@ -175,7 +183,9 @@ Ptr<Lens> makeCahvorLens(const String& model, const std::vector<double>& intrins
             CV_Error_(Error::StsBadArg, ("intrinsics[%d], e%d of %s, is %g: its centre moves with the angle, and a lens here has "
                                          "one centre; fit the model with E = 0", (int)i, (int)i - 4 - E0, model.c_str(),
                                          intrinsics[i]));
-    return makePtr<CahvorLens>(model, intrinsics, linearity);
+    const size_t count = 4 + E0;
+    return makePtr<CahvorLens>(model, std::vector<double>(intrinsics.begin(), intrinsics.begin() + count), linearity,
+                               intrinsics.size() - count);
 }
 
 }} // namespace
