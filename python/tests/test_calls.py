@@ -318,3 +318,25 @@ def test_pose(rig, board):
     _, rvec, tvec, _ = refract.refractiveSolvePnP(board.target[0], board.glass1[0], rig.camera1, board.rvecs[0] + 0.01,
                                                   board.tvecs[0] + 1., useExtrinsicGuess=True)
     np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)
+
+
+def test_refractive_index_by_name():
+    assert refract.refractiveIndex("N-BK7", 587.5618) == pytest.approx(1.51680, abs=1e-5)      # the data sheet's nd
+    assert refract.refractiveIndex("water:T=20", wavelengthNm=550.) == refract.refractiveIndex("water")
+    assert refract.refractiveIndexTolerance("soda-lime") > refract.refractiveIndexTolerance("N-BK7") > 0
+    with pytest.raises(refract.error, match="nearest is 'N-BK7'"):
+        refract.refractiveIndex("N-BK8")
+    with pytest.raises(refract.error, match="wavelengthNm is 100"):
+        refract.refractiveIndex("N-BK7", 100.)
+
+
+def test_lens_of_mrcal():
+    controls = np.zeros(2*12*10)
+    camera = refract.RefractiveCamera.createMrcal("LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_fov_x_deg=90",
+                                                  np.concatenate(([1000., 1000., 639.5, 479.5], controls)))
+    pixels, status = refract.refractiveProjectPoints(np.array([[100., 50., 600.], [0., 0., -1.]]), ZERO, ZERO, camera)
+    angle = np.arctan2(np.hypot(100., 50.), 600.)
+    expected = 2000.*np.tan(angle/2)*np.array([100., 50.])/np.hypot(100., 50.) + (639.5, 479.5)
+    np.testing.assert_allclose(pixels[0, 0], expected, atol=1e-10)
+    assert status.ravel().tolist()[0] == 0 and np.isnan(pixels[1]).all() and status[1] != 0
+    assert camera.lensParameters().size == 4 and camera.distCoeffs().size == controls.size

@@ -14,7 +14,8 @@ CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "co
          "refractiveProjectPointsExtended", "refractiveEpipolarDistance", "refractiveEpipolarDistanceExtended",
          "refractiveRecoverPose", "refractiveRecoverPoseExtended", "refractiveSolvePnP", "refractiveSolvePnPRansac",
          "refractiveUndistortPoints", "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass",
-         "triangulateRefractive", "triangulateRefractiveExtended", "writeRig", "refractiveBundleAdjust", "refractiveBundleAdjustExtended"]
+         "triangulateRefractive", "triangulateRefractiveExtended", "writeRig", "refractiveBundleAdjust",
+         "refractiveBundleAdjustExtended", "refractiveIndex"]
 
 
 def test_every_call_is_here_with_its_docstring():
