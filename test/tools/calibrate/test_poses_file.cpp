@@ -87,6 +87,8 @@ TEST_CASE("Poses that are none are refused with file and line", "[poses_file]")
     CHECK_THROWS_WITH(posesOf(heading + ",sigma\na,0,0,0,0,0,0,1\n"), Contains("sigma_deg"));
     CHECK_THROWS_WITH(posesOf(heading + ",sigma_deg,sigma\na,0,0,0,0,0,0,-1,1\n"), Contains("line 2") && Contains("not below 0"));
     CHECK_THROWS_WITH(posesOf(heading + ",sigma_deg,sigma\na,0,0,0,0,0,0,0,1\n"), Contains("line 2") && Contains("both"));
+    CHECK_THROWS_WITH(posesOf("view,r11,r12,r13,r21,r22,r23,r32,r33,tx,ty,tz\na,1,0,0,0,1,0,0,1,0,0,0\n"),
+                      Contains("no column 'r31'"));
     for (const char* matrix : {"1,0,0,0,1,0,0,0,2", "1e200,1e200,0,-1e200,1e200,0,0,0,1"})       // squares that are no numbers
         CHECK_THROWS_WITH(posesOf(std::string("view,r11,r12,r13,r21,r22,r23,r31,r32,r33,tx,ty,tz\na,") + matrix + ",0,0,0\n"),
                           Contains("line 2") && Contains("no rotation"));

@@ -90,9 +90,17 @@ std::string CsvTable::where(const Row& row) const
     return "'" + path_ + "' line " + std::to_string(row.line);
 }
 
+const std::string& CsvTable::cellOf(const Row& row, const std::string& name) const
+{
+    const int column = find(name);
+    if (column < 0)
+        throw Failure("'" + path_ + "': there is no column '" + name + "'");
+    return row.cells[column];
+}
+
 const std::string& CsvTable::text(const Row& row, const std::string& name) const
 {
-    const std::string& cell = row.cells.at(find(name));
+    const std::string& cell = cellOf(row, name);
     if (cell.empty())
         throw Failure(where(row) + ": " + name + " is empty");
     return cell;
@@ -108,7 +116,7 @@ double CsvTable::number(const Row& row, const std::string& name) const
 
 double CsvTable::numberOrNone(const Row& row, const std::string& name) const
 {
-    const std::string& cell = row.cells.at(find(name));
+    const std::string& cell = cellOf(row, name);
     return cell.empty() || cell == "nan" || cell == "NaN" ? std::numeric_limits<double>::quiet_NaN() : number(row, name);
 }
 

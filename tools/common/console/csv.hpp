@@ -31,6 +31,8 @@ public:
     double numberOrNone(const Row& row, const std::string& name) const;         //!< NaN where the cell is empty or nan
 
 private:
+    const std::string& cellOf(const Row& row, const std::string& name) const;
+
     std::string path_;
     std::vector<std::string> names_;
     std::vector<Row> rows_;
