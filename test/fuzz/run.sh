@@ -2,12 +2,13 @@
 # Feeds every parser and every public call with made-up input (libFuzzer, address and undefined-behaviour sanitizers): first the
 # inputs that once were findings, each once, then the corpus and what is mutated from it. A crash, a sanitizer's report, an
 # exception that no caller expects, an answer that breaks a promise of refract.hpp, or more than ten seconds for one input (a
-# minute without options: a gate may run beside anything) is a finding; its input is left in build/sanitize/findings. Prints what was run of each harness, and ends non-zero on any finding.
+# minute without options: a gate may run beside anything) is a finding; its input is left in build/sanitize/findings. Prints
+# what was run of each harness, and ends non-zero on any finding.
 #
-# Usage: test/fuzz/run.sh [SECONDS | --runs=N] [HARNESS...]     ten seconds each of all harnesses; --runs=N: N inputs each
+# Usage: test/fuzz/run.sh [SECONDS | --runs=N] [HARNESS...]     3000 inputs or ten seconds each of all harnesses; --runs=N: N inputs
 set -eu
 cd "$(dirname "$0")/../.."
-limit="-max_total_time=10 -seed=1 -timeout=60"     # the same inputs every time: a gate is no place for news
+limit="-max_total_time=10 -runs=3000 -seed=1 -timeout=60"      # the same inputs on every machine: a gate is no place for news
 case ${1:-} in
   --runs=*) limit="-runs=${1#--runs=} -timeout=10"; shift ;;
   [0-9]*) limit="-max_total_time=$1 -timeout=10"; shift ;;

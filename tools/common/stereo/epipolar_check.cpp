@@ -24,10 +24,10 @@ Vec2f between(const Vec2f& a, const Vec2f& b, float part)
 Vec2f partnerOf(const Mat& map, bool vertical, int x, int y, float disparity)
 {
     const float place = (float)(vertical ? y : x) - disparity;
-    const int first = cvFloor(place), last = (vertical ? map.rows : map.cols) - 1;
+    const int last = (vertical ? map.rows : map.cols) - 1;
     if (!(place >= 0 && place <= (float)last))
         return Vec2f(NAN, NAN);
-    const int second = std::min(first + 1, last);
+    const int first = cvFloor(place), second = std::min(first + 1, last);
     return vertical ? between(map.at<Vec2f>(first, x), map.at<Vec2f>(second, x), place - (float)first)
                     : between(map.at<Vec2f>(y, first), map.at<Vec2f>(y, second), place - (float)first);
 }
