@@ -43,7 +43,16 @@ TEST_CASE("Each parameter of a window stands where its name does", "[parameters]
         CHECK(p[indexOf(names, format("thickness[%d]", i))] == window.thickness[i]);
         CHECK(p[indexOf(names, format("index[%d]", i))] == window.index[i]);
     }
-    const GlassWindow back = windowOf(p.data(), 3);
+    GlassWindow other = window;
+    other.normal = Vec3d(0, 0, 1);
+    other.distance = other.outerIndex = 3;
+    other.index[2] = 2;
+    other.thickness[0] = 99;
+    other.wavelength = 610;
+    other.materials = {"air", "N-BK7", "", "PMMA", "water"};
+    const GlassWindow back = withParameters(other, p.data());
+    CHECK(back.materials == other.materials);
+    CHECK(back.wavelength == 610);
     CHECK(norm(back.normal - normalize(window.normal)) < 1e-15);
     CHECK(windowParameters(back)[3] == p[3]);
     CHECK(back.thickness == window.thickness);

@@ -3,6 +3,7 @@
 
 using namespace cv;
 using namespace scenes;
+using cv::refract::refractiveIndex;
 using Catch::Matchers::Contains;
 
 static GlassWindow laminate()
@@ -22,6 +23,16 @@ static void checkEqual(const GlassWindow& a, const GlassWindow& b)
     CHECK(a.index == b.index);
     CHECK(a.innerIndex == b.innerIndex);
     CHECK(a.outerIndex == b.outerIndex);
+    CHECK(a.wavelength == b.wavelength);
+    CHECK(a.materials == b.materials);
+}
+
+//! A pane before water, indices as the catalogue has them at 540 nm.
+static GlassWindow port()
+{
+    GlassWindow w(Vec3d(0.1, -0.2, 1), 10, 1.5, 40);
+    w.materials = { "air", "N-BK7", "water:T=12" };
+    return w.atWavelength(540);
 }
 
 TEST_CASE("A default window is no window", "[window]")
@@ -90,7 +101,7 @@ TEST_CASE("What is written is read back to the last bit", "[window]")
 {
     const char* extension = GENERATE(".yml", ".xml", ".json");
     CAPTURE(extension);
-    for (const GlassWindow& window : { laminate(), GlassWindow(), GlassWindow(Vec3d(0, 0, 1), 1e-3, 4) })
+    for (const GlassWindow& window : { laminate(), port(), GlassWindow(), GlassWindow(Vec3d(0, 0, 1), 1e-3, 4) })
     {
         FileStorage out(extension, FileStorage::WRITE | FileStorage::MEMORY);
         out << "before" << 1 << "glass_window" << window << "after" << 2;
@@ -117,7 +128,12 @@ TEST_CASE("A missing window reads as the default, a bad one throws and changes n
                             Bad{ "{normal: [0, 0, -1], thickness: [1], index: [1.5]}", "normal" },
                             Bad{ "{normal: [0, 0, 1], thickness: [1], index: []}", "thickness" },
                             Bad{ "{normal: [0, 0, 1], thickness: [1], index: [0.5]}", "0.5" },
-                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], distance: far}", "distance" } })
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], distance: far}", "distance" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], materials: [air, N-BK7]}", "materials" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], materials: N-BK7}", "materials" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], materials: [air, N-BK8, air]}", "N-BK7" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], materials: [air, K9, air], wavelength: 100}", "100" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], wavelength: -1}", "wavelength" } })
     {
         CAPTURE(bad.text);
         FileStorage fs(std::string("%YAML:1.0\n---\nglass_window: ") + bad.text + "\n",
@@ -126,4 +142,63 @@ TEST_CASE("A missing window reads as the default, a bad one throws and changes n
         CHECK_THAT(thrown([&] { fs["glass_window"] >> window; }), Contains(bad.named));
         checkEqual(window, laminate());
     }
+}
+
+TEST_CASE("A window of materials has the catalogue's indices at each wavelength", "[window]")
+{
+    const GlassWindow green = port();
+    for (double wavelength : { 400., 465., 540., 610., 700. })
+    {
+        CAPTURE(wavelength);
+        const GlassWindow w = green.atWavelength(wavelength);
+        CHECK(w.wavelength == wavelength);
+        CHECK(w.materials == green.materials);
+        CHECK(w.index[0] == Approx(refractiveIndex("N-BK7", wavelength)).epsilon(1e-15));
+        CHECK(w.outerIndex == Approx(refractiveIndex("water:T=12", wavelength)).epsilon(1e-15));
+        CHECK(w.innerIndex == Approx(1).margin(1e-15));
+        CHECK(w.distance == green.distance);
+        CHECK(w.normal == green.normal);
+        const GlassWindow back = w.atWavelength(540);
+        CHECK(back.index[0] == Approx(green.index[0]).epsilon(1e-15));
+    }
+    CHECK(green.atWavelength(465).outerIndex - green.atWavelength(610).outerIndex == Approx(0.0062).margin(0.0003));
+}
+
+TEST_CASE("An estimated index keeps its distance from the catalogue's in another colour", "[window]")
+{
+    GlassWindow w = port();
+    w.outerIndex *= 1.001;      // colder or saltier than was said
+    CHECK(w.atWavelength(465).outerIndex == Approx(1.001*refractiveIndex("water:T=12", 465)).epsilon(1e-15));
+    // A material that is not known has no colours.
+    w.materials[1] = "";
+    CHECK(w.atWavelength(465).index[0] == w.index[0]);
+}
+
+TEST_CASE("Indices that a file leaves out are those of its materials", "[window]")
+{
+    const struct { const char* wavelength; double nm; } cases[] = { { "", 550 }, { ", wavelength: 610", 610 } };
+    for (const auto& c : cases)
+    {
+        FileStorage fs(format("%%YAML:1.0\n---\nw: {normal: [0, 0, 1], distance: 5, thickness: [10], "
+                              "materials: [air, PMMA, water]%s}\n", c.wavelength), FileStorage::READ | FileStorage::MEMORY);
+        GlassWindow window;
+        fs["w"] >> window;
+        CHECK(window.index == std::vector<double>{ refractiveIndex("PMMA", c.nm) });
+        CHECK(window.outerIndex == refractiveIndex("water", c.nm));
+        CHECK(window.wavelength == c.nm);
+    }
+}
+
+TEST_CASE("Another colour is refused where nothing tells of it", "[window]")
+{
+    CHECK_THAT(thrown([] { laminate().atWavelength(465); }), Contains("window.materials is empty"));
+    CHECK_NOTHROW(GlassWindow().atWavelength(465));         // what does not refract has no colours
+    for (double wavelength : { 0., -1., NaN, INF, 100. })
+        CHECK_THAT(thrown([=] { port().atWavelength(wavelength); }), Contains("wavelengthNm"));
+    GlassWindow w = port();
+    w.materials.pop_back();
+    CHECK_THAT(thrown([&] { w.check(); }), Contains("window.materials has 2 names"));
+    w = port();
+    w.wavelength = NaN;
+    CHECK_THAT(thrown([&] { w.check(); }), Contains("window.wavelength"));
 }

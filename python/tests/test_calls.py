@@ -330,6 +330,17 @@ def test_refractive_index_by_name():
         refract.refractiveIndex("N-BK7", 100.)
 
 
+def test_window_in_another_colour():
+    window = refract.GlassWindow((0., 0., 1.), 10., 1.5, 40.)
+    with pytest.raises(refract.error, match="window.materials is empty"):
+        window.atWavelength(465.)
+    window.materials = ["air", "N-BK7", "water:T=12"]
+    green = window.atWavelength(540.)       # of no wavelength yet: the catalogue's
+    assert green.wavelength == 540. and list(green.materials) == list(window.materials)
+    assert green.outerIndex == refract.refractiveIndex("water:T=12", 540.)
+    assert green.atWavelength(465.).outerIndex == pytest.approx(refract.refractiveIndex("water:T=12", 465.), rel=1e-15)
+
+
 def test_lens_of_mrcal():
     controls = np.zeros(2*12*10)
     camera = refract.RefractiveCamera.createMrcal("LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_fov_x_deg=90",

@@ -120,6 +120,9 @@ enum GlassImageStatus {
 /** @brief A flat window: parallel layers that share one normal.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
+
+The indices are those of one colour of light. Where `materials` says what the media are, atWavelength() is the same window in
+another colour: of water 3 to 6 px between blue and red at the edge of a wide port.
 */
 class CV_EXPORTS_W_SIMPLE GlassWindow
 {
@@ -143,6 +146,19 @@ public:
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
+    CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
+    /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex takes
+    it; an empty one has an index that does not change. Empty: not known. */
+    CV_PROP_RW std::vector<String> materials;
+
+    /** @brief The same window in light of another colour.
+
+    Each index is multiplied by what its material's changes by from `wavelength` to wavelengthNm, so that one that was measured or
+    estimated keeps its distance from the catalogue's. Where `wavelength` is 0, the indices become the catalogue's.
+    @param wavelengthNm in air, nm.
+    Throws cv::Exception if the window refracts and `materials` is empty, or as refractiveIndex does.
+    */
+    CV_WRAP GlassWindow atWavelength(double wavelengthNm) const;
 
     //! Throws cv::Exception that names the first field that is wrong, and its value.
     CV_WRAP void check() const;

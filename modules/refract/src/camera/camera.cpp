@@ -67,7 +67,7 @@ void Camera::setParameters(const std::vector<double>& p)
 {
     CV_Assert((int)p.size() == parameterCount());
     const double* w = p.data() + lensCount();
-    setWindow(windowOf(w, layers_.at().layers));
+    setWindow(withParameters(window_, w));
     lens_ = lens_->withParameters(std::vector<double>(p.data(), w));
 }
 

@@ -62,10 +62,10 @@ std::vector<double> windowParameters(const GlassWindow& window)
     return p;
 }
 
-GlassWindow windowOf(const double* p, int layers)
+GlassWindow withParameters(GlassWindow window, const double* p)
 {
+    const int layers = (int)window.thickness.size();
     const WindowLayout at = windowLayout(layers);
-    GlassWindow window;
     window.normal = normalize(Vec3d(p + at.normal));
     window.distance = p[at.distance];
     window.thickness.assign(p + at.thickness, p + at.thickness + layers);

@@ -20,8 +20,9 @@ WindowParameter kindOf(const WindowLayout& at, int parameter);
 //! normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex
 std::vector<String> windowParameterNames(int layers);
 std::vector<double> windowParameters(const GlassWindow& window);
-//! @param parameters of a normal of any length
-GlassWindow windowOf(const double* parameters, int layers);
+/** The window with other parameters; it keeps what is none of them.
+@param parameters of a normal of any length */
+GlassWindow withParameters(GlassWindow window, const double* parameters);
 
 //! GlassCalibrationFlags -> which are free. The normal is always.
 std::vector<bool> freeWindowParameters(int layers, int flags);

@@ -6,11 +6,11 @@
 
 namespace cv { namespace refract {
 
-GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1) {}
+GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1), wavelength(0) {}
 
 GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
     : normal(normal_), distance(distance_), thickness(1, thickness_), index(1, index_), innerIndex(1),
-      outerIndex(outerIndex_)
+      outerIndex(outerIndex_), wavelength(0)
 {
     const double length = cv::norm(normal);
     if (!(length > 0) || !std::isfinite(length))
@@ -55,6 +55,32 @@ void GlassWindow::check() const
         checkBetween("window.thickness", thickness[i], 0, MOST_LENGTH, (int)i);
         checkBetween("window.index", index[i], 1, MOST_INDEX, (int)i);
     }
+    checkBetween("window.wavelength", wavelength, 0, MOST_LENGTH);
+    if (!materials.empty() && materials.size() != index.size() + 2)
+        CV_Error_(Error::StsUnmatchedSizes, ("window.materials has %d names; it must be empty or have %d: inner medium, layers, "
+                                             "outer medium", (int)materials.size(), (int)index.size() + 2));
+}
+
+GlassWindow GlassWindow::atWavelength(double wavelengthNm) const
+{
+    check();
+    if (!(wavelengthNm > 0 && wavelengthNm <= MOST_LENGTH))
+        CV_Error_(Error::StsOutOfRange, ("wavelengthNm is %g; it must be finite and more than 0", wavelengthNm));
+    const bool refracts = !index.empty() || innerIndex != outerIndex;
+    if (refracts && materials.empty())
+        CV_Error(Error::StsBadArg, "window.materials is empty: nothing says how the indices change with the wavelength");
+    GlassWindow window = *this;
+    window.wavelength = wavelengthNm;
+    for (size_t i = 0; i < materials.size(); i++)
+    {
+        if (materials[i].empty())
+            continue;
+        double& n = i == 0 ? window.innerIndex : i <= index.size() ? window.index[i - 1] : window.outerIndex;
+        const double there = refractiveIndex(materials[i], wavelengthNm);
+        n = wavelength > 0 ? n*(there/refractiveIndex(materials[i], wavelength)) : there;
+    }
+    window.check();
+    return window;
 }
 
 void GlassWindow::write(FileStorage& fs) const
@@ -65,7 +91,12 @@ void GlassWindow::write(FileStorage& fs) const
     for (double t : thickness) fs << t;
     fs << "]" << "index" << "[:";
     for (double n : index) fs << n;
-    fs << "]" << "inner_index" << innerIndex << "outer_index" << outerIndex << "}";
+    fs << "]" << "inner_index" << innerIndex << "outer_index" << outerIndex;
+    if (wavelength > 0)
+        fs << "wavelength" << wavelength;
+    if (!materials.empty())
+        fs << "materials" << materials;
+    fs << "}";
 }
 
 static double readNumber(const FileNode& map, const char* key, double missing)
@@ -94,6 +125,39 @@ static std::vector<double> readSequence(const FileNode& map, const char* key)
     return values;
 }
 
+static std::vector<String> readNames(const FileNode& map, const char* key)
+{
+    std::vector<String> names;
+    const FileNode node = map[key];
+    for (FileNodeIterator it = node.begin(); it != node.end(); it++)
+    {
+        const FileNode item = *it;
+        if (!node.isSeq() || !item.isString())
+            CV_Error_(Error::StsParseError, ("glass_window.%s must be a list of names", key));
+        names.push_back((String)item);
+    }
+    return names;
+}
+
+//! The indices that the file leaves out, as its materials have them.
+static void readMaterials(const FileNode& node, GlassWindow& window)
+{
+    window.wavelength = readNumber(node, "wavelength", 0);
+    window.materials = readNames(node, "materials");
+    if (window.materials.empty())
+        return;
+    const bool none = node["index"].empty() && node["inner_index"].empty() && node["outer_index"].empty();
+    const double wavelength = window.wavelength > 0 ? window.wavelength : 550.;
+    if (none)
+    {
+        window.index.assign(window.thickness.size(), 1.);
+        window.wavelength = 0;
+    }
+    const GlassWindow catalogue = window.atWavelength(wavelength);      // and thereby every name is one that is known
+    if (none)
+        window = catalogue;
+}
+
 void GlassWindow::read(const FileNode& node)
 {
     if (!node.isMap())
@@ -111,6 +175,7 @@ void GlassWindow::read(const FileNode& node)
     window.index = readSequence(node, "index");
     window.innerIndex = readNumber(node, "inner_index", 1);
     window.outerIndex = readNumber(node, "outer_index", 1);
+    readMaterials(node, window);
     window.check();
     *this = window;
 }
