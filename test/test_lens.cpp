@@ -162,8 +162,7 @@ TEST_CASE("Directions behind the camera have no image", "[lens]")
     CAPTURE(kind.name);
     Vec2d pixel;
     CHECK(project(*makeLens(kind), Vec3d(0, 0, -1), pixel) != REFRACT_OK);
-    if (!kind.mrcal.empty())
-        CHECK(project(*makeLens(kind), Vec3d(0, 0, 0), pixel) != REFRACT_OK);
+    CHECK(project(*makeLens(kind), Vec3d(0, 0, 0), pixel) != REFRACT_OK);
     if (!kind.fisheye && kind.mrcal.empty())
         for (const Vec3d& d : { Vec3d(1, 2, 0), Vec3d(0.1, 0.1, -1), Vec3d(0, 0, 0) })
             CHECK(project(*makeLens(kind), d, pixel) == REFRACT_BEHIND_CAMERA);

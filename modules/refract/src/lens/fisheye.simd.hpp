@@ -13,6 +13,9 @@
 
 namespace cv { namespace refract { namespace {
 
+//! The camera's own place has none, though its angle would be 0.
+inline Mask isDirection(Lanes r, Lanes Z) { return larger(r, absolute(Z)) > 0; }
+
 bool projectFisheye(const FisheyeModel& model, int n, const double* px, const double* py, const double* pz,
                     double* u, double* v)
 {
@@ -20,11 +23,11 @@ bool projectFisheye(const FisheyeModel& model, int n, const double* px, const do
     Answers answers;
     eachRegister(n, [&](auto at)
     {
-        const Lanes X = load(px, at), Y = load(py, at), r = sqrt(X*X + Y*Y), theta = angleOf(load(pz, at), r);
+        const Lanes X = load(px, at), Y = load(py, at), Z = load(pz, at), r = sqrt(X*X + Y*Y), theta = angleOf(Z, r);
         Lanes factor, slope;
         bendFactor(m, theta*theta, factor, slope);
         const Lanes scale = theta*factor/larger(r, all(1e-300)), x = X*scale, y = Y*scale;
-        const Mask good = theta < m.thetaMax;
+        const Mask good = (theta < m.thetaMax) & isDirection(r, Z);
         store(answers.where(good, m.fx*(x + m.alpha*y) + m.cx), u, at);
         store(m.fy*y + m.cy, v, at);
     });
@@ -96,7 +99,7 @@ bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, 
         bendFactor(m, theta*theta, factor, slope);
         const Lanes thetaD = theta*factor, side = select(r > 0, thetaD*inverseR, 1/Z), along = slope*Z*inverseL2;
         const Lanes ex = X*inverseR, ey = Y*inverseR, x = thetaD*(ex + m.alpha*ey), y = thetaD*ey;
-        store(answers.where(theta < m.thetaMax, m.fx*x + m.cx), u, at);
+        store(answers.where((theta < m.thetaMax) & isDirection(r, Z), m.fx*x + m.cx), u, at);
         store(m.fy*y + m.cy, v, at);
         const Lanes xx = side + (along - side)*ex*ex, xy = (along - side)*ex*ey, yy = side + (along - side)*ey*ey;
         const Lanes back = -slope*r*inverseL2, xz = back*ex, yz = back*ey;
