@@ -3,6 +3,8 @@
 #include "temporary_file.hpp"
 #include "temporary_folder.hpp"
 
+#include <fstream>
+
 #include <opencv2/calib3d.hpp>
 
 using namespace cv;
@@ -264,4 +266,80 @@ TEST_CASE("A rig that cannot be written is named and leaves what was there", "[r
     CHECK_THAT(refused(Rig()), Contains("cameras is empty"));
     CHECK_THAT(thrown([&] { writeRig("no/such/folder/rig.yml", rig.cameras, rig.Rs, rig.Ts); }),
                Contains("no/such/folder/rig.yml"));
+}
+
+TEST_CASE("A rig of mrcal is a numbered file for each camera", "[rig_file]")
+{
+    const TemporaryFolder folder;
+    Random random;
+    Rig rig;
+    const Mat K = (Mat_<double>(3, 3) << 900, 0, 640, 0, 901, 512, 0, 0, 1);
+    for (int c = 0; c < 3; c++)
+    {
+        rig.cameras.push_back(RefractiveCamera::create(K, std::vector<double>(c == 1 ? 8 : 4, 0.01*(c + 1))));
+        rig.cameras[c]->setImageSize(Size(1280 + c, 1024));
+        Mat R;
+        Rodrigues(c ? random.vector(0.5) : Vec3d(), R);
+        rig.Rs.push_back(R);
+        rig.Ts.push_back(c ? random.vector(300) : Vec3d());
+    }
+    const std::string numbered = folder / "cam%d.cameramodel";
+    writeRig(numbered, rig.cameras, rig.Rs, rig.Ts);
+    CHECK(folder.count() == 3);
+    CHECK(readAll(folder / "cam1.cameramodel").cameras.size() == 1);
+    const Rig back = readAll(numbered);
+    REQUIRE(back.cameras.size() == 3);
+    for (int c = 0; c < 3; c++)
+    {
+        CHECK(norm(back.Rs[c], rig.Rs[c], NORM_INF) < 1e-14);
+        CHECK(norm(back.Ts[c] - rig.Ts[c]) < 1e-11);
+        CHECK(norm(back.cameras[c]->lensParameters(), rig.cameras[c]->lensParameters(), NORM_INF) == 0);
+        CHECK(back.cameras[c]->imageSize() == rig.cameras[c]->imageSize());
+    }
+    // The frame that all share need not be camera 1's, nor need the numbers begin with 0.
+    Matx33d R1;
+    Rodrigues(Vec3d(0.3, -0.2, 0.1), R1);
+    const Vec3d T1(10, 20, 30);
+    for (int c = 0; c < 3; c++)
+    {
+        const Matx33d R = Matx33d(rig.Rs[c])*R1;
+        const Vec3d T = Matx33d(rig.Rs[c])*T1 + rig.Ts[c];
+        Vec3d rvec;
+        Rodrigues(R, rvec);
+        std::ofstream(folder / format("far%d.cameramodel", c + 1)) << format("{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [900, 901, 640, "
+            "512], 'extrinsics': [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g], 'imagersize': [1280, 1024]}", rvec[0], rvec[1], rvec[2],
+            T[0], T[1], T[2]);
+    }
+    const Rig moved = readAll(folder / "far%d.cameramodel");
+    REQUIRE(moved.cameras.size() == 3);
+    for (int c = 0; c < 3; c++)
+    {
+        CHECK(norm(moved.Rs[c], rig.Rs[c], NORM_INF) < 1e-7);       // cv::Rodrigues
+        CHECK(norm(moved.Ts[c] - rig.Ts[c]) < 1e-4);
+    }
+}
+
+TEST_CASE("A rig that mrcal's files cannot state is refused, and none is written", "[rig_file]")
+{
+    const TemporaryFolder folder;
+    Random random;
+    const Rig rig = makeRig(2, random);
+    const Mat K = Mat::eye(3, 3, CV_64F);
+    std::vector<Ptr<RefractiveCamera> > plain(2);
+    for (Ptr<RefractiveCamera>& camera : plain)
+    {
+        camera = RefractiveCamera::create(K, noArray());
+        camera->setImageSize(Size(4, 4));
+    }
+    const std::string numbered = folder / "c%d.cameramodel", one = folder / "c.cameramodel";
+    CHECK_THAT(thrown([&] { writeRig(numbered, rig.cameras, rig.Rs, rig.Ts); }), Contains("cannot state a window"));
+    CHECK_THAT(thrown([&] { writeRig(one, plain, rig.Rs, rig.Ts); }), Contains("camera-%d.cameramodel"));
+    plain[1]->setImageSize(Size());
+    CHECK_THAT(thrown([&] { writeRig(numbered, plain, rig.Rs, rig.Ts); }), Contains("c1.cameramodel") && Contains("image size"));
+    const Mat covariance = Mat::zeros(2*(4 + 6) + 6, 2*(4 + 6) + 6, CV_64F);
+    CHECK_THAT(thrown([&] { writeRig(numbered, plain, rig.Rs, rig.Ts, {}, covariance); }), Contains("covariance"));
+    CHECK(folder.count() == 0);
+    CHECK_THAT(thrown([&] { readAll(numbered); }), Contains("c1.cameramodel"));
+    std::ofstream(folder / "c0.cameramodel") << "{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [9, 9, 6, 5], 'extrinsics': [1, 2]}";
+    CHECK_THAT(thrown([&] { readAll(numbered); }), Contains("c0.cameramodel") && Contains("extrinsics"));
 }

@@ -306,10 +306,12 @@ private:
 /** @brief Reads all cameras of a rig and where they are, from a file such as refract_calib writes (YAML, XML or JSON).
 
 One camera is at the top level of the file. Several are in the maps `camera1`, `camera2`, ..., as RefractiveCamera::write
-writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on. A .cameramodel of mrcal
-is one camera.
+writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on.
 
-@param filename path.
+A .cameramodel of mrcal is one camera; of a rig, `camera-%d.cameramodel` are the files camera-0.cameramodel (or 1), the next number,
+and so on, whose `extrinsics` place each camera in a frame that all share.
+
+@param filename path; of .cameramodel files the number may stand as %d.
 @param cameras one or more.
 @param Rs 3x3 CV_64F rotation camera 1 -> camera, one per camera; the first is the identity.
 @param Ts 3x1 CV_64F, as Rs; the first is 0.
@@ -334,7 +336,8 @@ CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::
 
 /** @brief Writes a file that readRig() reads: the whole of it or, if that fails (which throws), nothing. A file of that name is
 replaced, with whatever else was in it.
-@param filename path; its extension chooses the format: .xml, .json, else YAML.
+@param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (of cameras without windows; of several,
+with %d for the number, which begins with 0, each file whole; camera 1 is the reference), else YAML.
 @param cameras one or more.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding. May
 be empty for one camera.

@@ -6,7 +6,6 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
-#include <fstream>
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -19,34 +18,6 @@ void Camera::write(FileStorage& fs) const
     fs << "lens_model" << lensModel();
     fs << "glass_window";
     window_.write(fs);
-}
-
-//! mrcal's name for an OpenCV lens with that many coefficients, of which it has no tilted ones.
-static String mrcalName(const RefractiveCamera& camera, size_t coefficients, const String& filename)
-{
-    const String model = camera.lensModel();
-    if (model.find("LENSMODEL_") == 0)
-        return model;
-    if (model != "opencv" || coefficients > 12)
-        CV_Error_(Error::StsBadArg, ("%s: mrcal knows no lens %s with %d coefficients; save it as YAML", filename.c_str(),
-                                     model.c_str(), (int)coefficients));
-    return coefficients == 0 ? String("LENSMODEL_PINHOLE") : "LENSMODEL_OPENCV" + std::to_string(coefficients);
-}
-
-static std::string cameraModelOf(const RefractiveCamera& camera, const String& filename)
-{
-    const GlassWindow window = camera.window();
-    if (!window.thickness.empty() || window.innerIndex != window.outerIndex)
-        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel cannot state a window; save it as YAML, or export it with "
-                                     "refract_export --to=mrcal", filename.c_str()));
-    if (camera.imageSize().empty())
-        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel states the image size; call setImageSize first", filename.c_str()));
-    const Mat K = camera.cameraMatrix(), D = camera.distCoeffs();
-    CameraModel model = { mrcalName(camera, D.total(), filename), { K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
-                                                                    K.at<double>(1, 2) }, camera.imageSize() };
-    if (!D.empty())
-        model.intrinsics.insert(model.intrinsics.end(), D.ptr<double>(), D.ptr<double>() + D.total());
-    return cameraModelText(model);
 }
 
 static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filename)
@@ -79,12 +50,7 @@ Ptr<RefractiveCamera> RefractiveCamera::read(const String& filename, const Strin
     CV_INSTRUMENT_REGION();
 
     if (isCameraModel(filename))
-    {
-        const CameraModel model = readCameraModel(filename);
-        Ptr<RefractiveCamera> camera = createMrcal(model.lensModel, model.intrinsics);
-        camera->setImageSize(model.imageSize);
-        return camera;
-    }
+        return cameraFrom(readCameraModel(filename));
     const FileStorage fs = openStorage(filename);
     FileNode node = fs.root();
     if (node.isMap() && !name.empty())
@@ -116,12 +82,7 @@ void RefractiveCamera::save(const String& filename) const
 
     if (!isCameraModel(filename))
         return saveStorage(filename, [this](FileStorage& fs) { write(fs); });
-    const std::string text = cameraModelOf(*this, filename);
-    saveWhole(filename, [&](const String& path)
-    {
-        std::ofstream file(path.c_str());
-        return (file << text).flush().good();
-    });
+    saveCameraModel(filename, cameraModelOf(*this, filename));
 }
 
 }} // namespace

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "camera/cameramodel.hpp"
+#include "camera/storage.hpp"
 #include <climits>
 #include <cstdlib>
 #include <cstring>
@@ -23,7 +24,7 @@ public:
     CameraModel parse()
     {
         CameraModel model;
-        std::vector<double> size;
+        std::vector<double> size, place(6, 0.);
         expect('{');
         while (!accept('}'))
         {
@@ -35,6 +36,8 @@ public:
                 model.intrinsics = numbers();
             else if (key == "imagersize")
                 size = numbers();
+            else if (key == "extrinsics")
+                place = numbers();
             else
                 skip();
             if (!accept(','))
@@ -50,6 +53,10 @@ public:
                 fail("imagersize is not two numbers of pixels");
         if (size.size() == 2)
             model.imageSize = Size((int)size[0], (int)size[1]);
+        if (place.size() != 6)
+            fail("extrinsics are not six numbers");
+        model.rvec = Vec3d(place.data());
+        model.tvec = Vec3d(place.data() + 3);
         return model;
     }
 
@@ -176,7 +183,42 @@ CameraModel readCameraModel(const String& filename)
     return Parser(text.str(), filename).parse();
 }
 
-std::string cameraModelText(const CameraModel& model)
+Ptr<RefractiveCamera> cameraFrom(const CameraModel& model)
+{
+    Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(model.lensModel, model.intrinsics);
+    camera->setImageSize(model.imageSize);
+    return camera;
+}
+
+//! mrcal's name for an OpenCV lens with that many coefficients, of which it has no tilted ones.
+static String mrcalName(const RefractiveCamera& camera, size_t coefficients, const String& filename)
+{
+    const String model = camera.lensModel();
+    if (model.find("LENSMODEL_") == 0)
+        return model;
+    if (model != "opencv" || coefficients > 12)
+        CV_Error_(Error::StsBadArg, ("%s: mrcal knows no lens %s with %d coefficients; save it as YAML", filename.c_str(),
+                                     model.c_str(), (int)coefficients));
+    return coefficients == 0 ? String("LENSMODEL_PINHOLE") : "LENSMODEL_OPENCV" + std::to_string(coefficients);
+}
+
+CameraModel cameraModelOf(const RefractiveCamera& camera, const String& filename)
+{
+    const GlassWindow window = camera.window();
+    if (!window.thickness.empty() || window.innerIndex != window.outerIndex)
+        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel cannot state a window; save it as YAML, or export it with "
+                                     "refract_export --to=mrcal", filename.c_str()));
+    if (camera.imageSize().empty())
+        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel states the image size; call setImageSize first", filename.c_str()));
+    const Mat K = camera.cameraMatrix(), D = camera.distCoeffs();
+    CameraModel model = { mrcalName(camera, D.total(), filename), { K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
+                                                                    K.at<double>(1, 2) }, camera.imageSize(), Vec3d(), Vec3d() };
+    if (!D.empty())
+        model.intrinsics.insert(model.intrinsics.end(), D.ptr<double>(), D.ptr<double>() + D.total());
+    return model;
+}
+
+static std::string textOf(const CameraModel& model)
 {
     std::ostringstream text;
     text.imbue(std::locale::classic());
@@ -185,9 +227,21 @@ std::string cameraModelText(const CameraModel& model)
          << "    # intrinsics are fx,fy,cx,cy,distortion0,distortion1,....\n    'intrinsics': [ ";
     for (double value : model.intrinsics)
         text << value << ", ";
-    text << "],\n\n    # extrinsics are rt_fromref\n    'extrinsics': [ 0, 0, 0, 0, 0, 0 ],\n\n"
-         << "    'imagersize': [ " << model.imageSize.width << ", " << model.imageSize.height << " ]\n}\n";
+    text << "],\n\n    # extrinsics are rt_fromref\n    'extrinsics': [ ";
+    for (const Vec3d& part : { model.rvec, model.tvec })
+        text << part[0] << ", " << part[1] << ", " << part[2] << ", ";
+    text << "],\n\n    'imagersize': [ " << model.imageSize.width << ", " << model.imageSize.height << " ]\n}\n";
     return text.str();
+}
+
+void saveCameraModel(const String& filename, const CameraModel& model)
+{
+    const std::string text = textOf(model);
+    saveWhole(filename, [&](const String& path)
+    {
+        std::ofstream file(path.c_str());
+        return (file << text).flush().good();
+    });
 }
 
 }} // namespace

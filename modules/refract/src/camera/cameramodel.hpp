@@ -15,6 +15,7 @@ struct CameraModel
     String lensModel;                   //!< LENSMODEL_...
     std::vector<double> intrinsics;
     Size imageSize;
+    Vec3d rvec, tvec;                   //!< reference -> camera
 };
 
 //! By its name.
@@ -24,8 +25,14 @@ bool isCameraModel(const String& filename);
 optimization inputs) are passed over. Throws with the file's name. */
 CameraModel readCameraModel(const String& filename);
 
-//! The text of such a file, of a camera that is the reference frame; each number is read back as it was.
-std::string cameraModelText(const CameraModel& model);
+//! The camera without a window; where it is stays behind.
+Ptr<RefractiveCamera> cameraFrom(const CameraModel& model);
+
+//! A camera that is the reference frame. Throws with the file's name if it has a window, a lens that mrcal has not, or no size.
+CameraModel cameraModelOf(const RefractiveCamera& camera, const String& filename);
+
+//! Whole or not at all; each number is read back as it was. Throws with the file's name.
+void saveCameraModel(const String& filename, const CameraModel& model);
 
 }} // namespace
 

@@ -6,8 +6,11 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
+#include "math/rotation.hpp"
+#include <fstream>
 
-/* All cameras of a rig <-> one file: camera1, camera2, ... with R, T, R3, T3, ... beside them; one camera is at the top level. */
+/* All cameras of a rig <-> one file: camera1, camera2, ... with R, T, R3, T3, ... beside them; one camera is at the top level.
+Of mrcal, each camera has a file of its own, which says where it is in a frame that all share. */
 
 namespace cv { namespace refract {
 
@@ -115,17 +118,71 @@ void checkCovariance(const Mat& C, const std::vector<Ptr<RefractiveCamera> >& ca
                                      where.c_str()));
 }
 
+//! The name of a numbered file, "camera-%d.cameramodel"; any other is that of all numbers.
+String numberedFile(String filename, int number)
+{
+    const size_t at = filename.find("%d");
+    return at == String::npos ? filename : filename.replace(at, 2, std::to_string(number));
+}
+
+bool isNumbered(const String& filename) { return numberedFile(filename, 0) != filename; }
+
+bool isThere(const String& filename) { return std::ifstream(filename.c_str()).good(); }
+
+//! Numbers begin with 0, as mrcal's do, or 1.
+void readCameraModels(const String& filename, std::vector<Ptr<RefractiveCamera> >& cameras, std::vector<RigidTransform>& places)
+{
+    RigidTransform first;
+    for (int number = isThere(numberedFile(filename, 0)) ? 0 : 1; ; number++)
+    {
+        const String file = numberedFile(filename, number);
+        if (!cameras.empty() && (!isNumbered(filename) || !isThere(file)))
+            break;
+        const CameraModel model = readCameraModel(file);
+        RigidTransform place;
+        place.R = rotationMatrix(model.rvec);
+        place.T = model.tvec;
+        if (cameras.empty())
+            first = place;
+        place.R = place.R*first.R.t();
+        place.T -= place.R*first.T;
+        cameras.push_back(inFile(file, "lens", [&] { return cameraFrom(model); }));
+        places.push_back(place);
+    }
+    places[0] = RigidTransform();
+}
+
+void writeCameraModels(const String& filename, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                       const std::vector<RigidTransform>& places)
+{
+    if (cameras.size() > 1 && !isNumbered(filename))
+        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel is of one camera; of %d, give a numbered name, as in camera-%%d.cameramodel",
+                                     filename.c_str(), (int)cameras.size()));
+    std::vector<CameraModel> models;
+    for (size_t c = 0; c < cameras.size(); c++)
+    {
+        models.push_back(cameraModelOf(*cameras[c], numberedFile(filename, (int)c)));
+        models[c].rvec = rotationVector(places[c].R);
+        models[c].tvec = places[c].T;
+    }
+    for (size_t c = 0; c < models.size(); c++)
+        saveCameraModel(numberedFile(filename, (int)c), models[c]);
+}
+
 //! windowOfCamera and covariance may be null.
 void read(const String& filename, std::vector<Ptr<RefractiveCamera> >& cameras, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts,
           std::vector<int>* windowOfCamera, Mat* covariance)
 {
     std::vector<Ptr<RefractiveCamera> > found;
-    std::vector<RigidTransform> places(1);
+    std::vector<RigidTransform> places;
     const FileStorage fs = isCameraModel(filename) ? FileStorage() : openStorage(filename);
     const FileNode root = fs.isOpened() && fs.root().isMap() ? fs.root() : FileNode();
     const int count = countCameras(root, filename);
-    if (count == 0)
+    if (isCameraModel(filename))
+        readCameraModels(filename, found, places);
+    else if (count == 0)
         found.push_back(inFile(filename, "top level", [&] { return RefractiveCamera::read(filename); }));
+    places.resize(std::max(places.size(), (size_t)1));
     for (int number = 1; number <= count; number++)
     {
         found.push_back(inFile(filename, cameraKey(number), [&] { return RefractiveCamera::read(root[cameraKey(number)]); }));
@@ -179,6 +236,11 @@ void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >&
     Mat C;
     covariance.getMat().convertTo(C, CV_64F);
     checkCovariance(C, cameras, "");
+    if (isCameraModel(filename) && !C.empty())
+        CV_Error_(Error::StsBadArg, ("%s: a .cameramodel cannot state a covariance; leave it out, or save the rig as YAML",
+                                     filename.c_str()));
+    if (isCameraModel(filename))
+        return writeCameraModels(filename, cameras, places);
     saveStorage(filename, [&](FileStorage& fs)
     {
         if (count == 1)
