@@ -1,6 +1,7 @@
 #include "assess/consistency.hpp"
 #include "assess/eigen_matrix.hpp"
 #include "assess/point_derivatives.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -47,6 +48,7 @@ public:
     PartnerMisfits(const Calibration& calibration, const Measurement& m, double pixelSigma)
         : m_(m), sigma_(pixelSigma), cameras_(calibration.cameras.size())
     {
+        const RigModel rig = modelOf(calibration);
         for (size_t c = 0; c < cameras_.size(); c++)
         {
             Camera& camera = cameras_[c];
@@ -55,8 +57,8 @@ public:
             camera.R = toEigen(Mat(calibration.Rs[c]));
             refract::refractiveProjectPoints(m.points, rvec, calibration.Ts[c], calibration.cameras[c].camera, camera.predicted);
             camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.Ts[c]);
-            camera.column = parameters_;
-            parameters_ += camera.derivatives.byParameters.cols();
+            camera.column = columnsOf(rig, (int)c).lens;
+            camera.place = placeColumn(rig, (int)c);
         }
         if (!calibration.covariance.empty())
             covariance_ = toEigen(calibration.covariance);
@@ -95,7 +97,7 @@ private:
         MatrixXd R;
         std::vector<Point2d> predicted;
         PointDerivatives derivatives;
-        Eigen::Index column;            //!< of its parameters
+        int column, place;              //!< of its parameters; of R and T, if it is not the first
     };
 
     MatrixXd covarianceOf(size_t i, const std::vector<size_t>& views, const MatrixXd& over) const
@@ -110,7 +112,7 @@ private:
             const PointDerivatives& d = camera.derivatives;
             A.block(2*k, camera.column, 2, d.byParameters.cols()) = d.byParameters.middleRows(2*i, 2);
             if (views[k] > 0)
-                A.block(2*k, parameters_ + 6*(views[k] - 1), 2, 6) = d.byPose.middleRows(2*i, 2);
+                A.block(2*k, camera.place, 2, 6) = d.byPose.middleRows(2*i, 2);
         }
         const MatrixXd a = A.transpose()*over;
         return S + a.transpose()*covariance_*a;
@@ -119,7 +121,6 @@ private:
     const Measurement& m_;
     double sigma_;
     std::vector<Camera> cameras_;
-    Eigen::Index parameters_ = 0;
     MatrixXd covariance_;
 };
 

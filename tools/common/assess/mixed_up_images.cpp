@@ -34,7 +34,9 @@ Explanation directAndGlassExchanged(const Given& given)
 Explanation directAndGlassExchangedOfOne(const Given& given)
 {
     Explanation best{"", NO_FIT};
-    for (int c = 0; c < given.data.cameraCount && given.data.cameraCount > 1 && hasPairs(given.data); c++)
+    if (given.data.cameraCount == 1 || !hasPairs(given.data))
+        return best;
+    for (int c = 0; c < given.data.cameraCount; c++)
     {
         const std::string suffix = cameraSuffix(c);
         best = better(best, {"--direct" + suffix + " and --glass" + suffix + " exchanged",

@@ -23,10 +23,7 @@ bool startPose(const RigModel& rig, const Moment& m, Sight& sight)
             const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
             if (pixels.empty() || !refractiveSolvePnP(m.objectPoints, pixels, camera, sight.rvec, sight.tvec))
                 continue;
-            RigModel back = rig;        // camera c -> camera 1
-            back.Rs[c] = rig.Rs[c].t();
-            back.Ts[c] = -(rig.Rs[c].t()*rig.Ts[c]);
-            poseInCamera(back, c, sight.rvec, sight.tvec);
+            poseInCamera1(rig, c, sight.rvec, sight.tvec);
             return true;
         }
     return false;

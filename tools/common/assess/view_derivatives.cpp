@@ -37,12 +37,6 @@ Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
     return glass ? rig.cameras[camera] : copyWithWindow(rig.cameras[camera], GlassWindow());
 }
 
-//! Where R and T of a camera stand, after the parameters of all cameras.
-int placeColumn(const RigModel& rig, int camera)
-{
-    return columnsOf(rig, (int)rig.cameras.size() - 1).end + 6*(camera - 1);
-}
-
 } // namespace
 
 ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec,
@@ -54,7 +48,7 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
     ViewDerivatives view;
     view.predicted.resize(rows);
     view.byPose.resize(rows, 6);
-    view.byParameters = MatrixXd::Zero(rows, placeColumn(rig, (int)rig.cameras.size()));
+    view.byParameters = MatrixXd::Zero(rows, columnCount(rig));
     int row = 0;
     for (const ImageOfView& image : images)
     {

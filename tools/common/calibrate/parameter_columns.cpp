@@ -34,6 +34,13 @@ ParameterColumns columnsOf(const RigModel& rig, int camera)
     return columnsOf(*rig.cameras[camera], first);
 }
 
+int placeColumn(const RigModel& rig, int camera)
+{
+    return columnsOf(rig, (int)rig.cameras.size() - 1).end + 6*(camera - 1);
+}
+
+int columnCount(const RigModel& rig) { return placeColumn(rig, (int)rig.cameras.size()); }
+
 std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
 {
     const int at = columnsOf(rig, camera).normal;

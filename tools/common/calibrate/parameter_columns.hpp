@@ -15,6 +15,11 @@ struct ParameterColumns
 ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int first = 0);
 ParameterColumns columnsOf(const RigModel& rig, int camera);
 
+//! Where R (a rotation vector) and T of a camera after the first begin: after the parameters of all cameras.
+int placeColumn(const RigModel& rig, int camera);
+//! Of all of them.
+int columnCount(const RigModel& rig);
+
 //! Two principal standard deviations of the normal of a camera, larger first.
 std::vector<double> normalStdDeg(const cv::Mat& covariance, const RigModel& rig, int camera);
 

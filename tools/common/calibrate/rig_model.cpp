@@ -1,4 +1,5 @@
 #include "calibrate/rig_model.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 
@@ -60,6 +61,14 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
     tvec = rig.Rs[camera]*tvec + rig.Ts[camera];
 }
 
+void poseInCamera1(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
+{
+    Matx33d R;
+    Rodrigues(rvec, R);
+    Rodrigues(rig.Rs[camera].t()*R, rvec);
+    tvec = rig.Rs[camera].t()*(tvec - rig.Ts[camera]);
+}
+
 RigModel modelOf(const Calibration& calibration)
 {
     RigModel rig;
@@ -77,12 +86,9 @@ Calibration firstPair(const Calibration& rig)
     pair.windows.resize(std::min(rig.windows.size(), (size_t)2));
     if (rig.covariance.empty())
         return pair;
-    int ofPair = 0, ofAll = 0;
-    for (size_t c = 0; c < rig.cameras.size(); c++)
-        (c < 2 ? ofPair : ofAll) += (int)rig.cameras[c].camera->parameterNames().size();
-    ofAll += ofPair;
-    // The parameters of both, and the second one's place, which stands after the parameters of all.
-    const Range here[] = {Range(0, ofPair), Range(ofPair, ofPair + 6)}, there[] = {Range(0, ofPair), Range(ofAll, ofAll + 6)};
+    const RigModel all = modelOf(rig);
+    const int ofPair = columnsOf(all, 1).end, place = placeColumn(all, 1);
+    const Range here[] = {Range(0, ofPair), Range(ofPair, ofPair + 6)}, there[] = {Range(0, ofPair), Range(place, place + 6)};
     pair.covariance = Mat::zeros(ofPair + 6, ofPair + 6, CV_64F);
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++)

@@ -40,6 +40,8 @@ cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract:
 
 //! Board -> a camera of the rig, from board -> camera 1.
 void poseInCamera(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
+//! The way back.
+void poseInCamera1(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
 
 //! What a file says of them; each window by itself, as one that moved no longer is where the others are.
 RigModel modelOf(const Calibration& calibration);

@@ -129,20 +129,16 @@ static int lostWithImages(const WrongPoints& wrong)
 
 WrongPoints dropWrongPoints(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources)
 {
-    RigData held = data, freed = data;
-    WrongPoints byHeld = dropWrongPoints(held, start, flags);
+    RigData freed = data;
+    const WrongPoints byHeld = dropWrongPoints(data, start, flags);
     const bool mayBeLens = fromImages(lensSources) && !(flags & GLASS_FREE_INTRINSICS);
-    if (mayBeLens && (!byHeld.fault.empty() || lostWithImages(byHeld) > 0))
-    {
-        WrongPoints byFreed = dropWrongPoints(freed, start, flags | GLASS_FREE_INTRINSICS);
-        if (!byHeld.fault.empty() || (byFreed.fault.empty() && lostWithImages(byFreed) < lostWithImages(byHeld)))
-        {
-            data = freed;
-            return byFreed;
-        }
-    }
-    data = held;
-    return byHeld;
+    if (!mayBeLens || (byHeld.fault.empty() && lostWithImages(byHeld) == 0))
+        return byHeld;
+    const WrongPoints byFreed = dropWrongPoints(freed, start, flags | GLASS_FREE_INTRINSICS);
+    if (byHeld.fault.empty() && (!byFreed.fault.empty() || lostWithImages(byFreed) >= lostWithImages(byHeld)))
+        return byHeld;
+    data = freed;
+    return byFreed;
 }
 
 WrongPoints startWithoutWrongPoints(RigData& data, const RigOptions& options, RigModel& start,
