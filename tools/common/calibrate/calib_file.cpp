@@ -1,4 +1,5 @@
 #include "calibrate/calib_file.hpp"
+#include "calibrate/rig_data.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 
@@ -62,21 +63,6 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
         fs << "rms" << calibration.rms;
 }
 
-//! An OpenCV matrix or a plain list of numbers; empty if it is neither or not finite.
-cv::Mat readMatrix(const FileNode& node)
-{
-    if (node.isSeq())
-        return cv::checkRange(readList(node)) ? cv::Mat(readList(node), true) : cv::Mat();
-    if (!node.isMap() || !node["rows"].isInt() || !node["cols"].isInt())
-        return cv::Mat();
-    // Not node >> matrix: that takes the memory for as many rows and columns as the file claims.
-    const int rows = node["rows"], cols = node["cols"];
-    const std::vector<double> data = readList(node["data"]);
-    if (data.empty() || rows < 0 || cols < 0 || (int64_t)rows*cols != (int64_t)data.size() || !cv::checkRange(data))
-        return cv::Mat();
-    return cv::Mat(data, true).reshape(1, rows);
-}
-
 bool isCameraModel(const std::string& filename)
 {
     return std::filesystem::path(filename).extension() == ".cameramodel";
@@ -89,32 +75,16 @@ void requireDistortion(const FileNode& camera, const std::string& filename)
                       "a lens without distortion write distortion_coefficients: [ 0., 0., 0., 0., 0. ]");
 }
 
-CameraCalibration readCamera(const FileNode& node, const std::string& filename, const std::string& name)
+CameraCalibration readCamera(const FileNode& node, const std::string& filename, const cv::Ptr<RefractiveCamera>& camera)
 {
     CameraCalibration calibration;
-    calibration.camera = RefractiveCamera::read(filename, name);
+    calibration.camera = camera;
     requireDistortion(node, filename);
     calibration.windowGiven = !node["glass_window"].empty();
     const std::vector<double> normal = readList(node["glass_window"]["normal"]);
     calibration.normalLength = normal.empty() ? 1. : cv::norm(normal);
     readEstimate(node, calibration);
     return calibration;
-}
-
-/** Empty where the file has none; else it throws Failure where none can be: cut short or edited, it must not be taken for a
-calibration that is exact. */
-cv::Mat readCovariance(const FileStorage& fs, const std::string& filename)
-{
-    const FileNode node = fs["covariance"];
-    const cv::Mat C = readMatrix(node);
-    double least = 0., most = 0.;
-    if (C.rows > 0 && C.rows == C.cols)
-        cv::minMaxIdx(C.diag(), &least, &most);
-    const double ROUNDING = 1e-12;
-    if (!node.empty() && (C.empty() || C.rows != C.cols || least < -ROUNDING*most))
-        throw Failure("'" + filename + "': the covariance is none: it must be a square matrix of finite numbers with none "
-                      "below 0 on its diagonal. Was the file edited? Calibrate again");
-    return C;
 }
 
 //! What the residuals told: not below 0, and finite.
@@ -128,73 +98,51 @@ double readNotNegative(const FileStorage& fs, const char* key, double otherwise,
     return node.empty() ? otherwise : number;
 }
 
-//! In the order of calibrateGlassRig: lens, normal, distance, thickness, index, innerIndex, outerIndex of each; then R and T.
-void requireCovarianceOf(const Calibration& calibration, const std::string& filename)
-{
-    int count = 6*((int)calibration.cameras.size() - 1);
-    for (const CameraCalibration& c : calibration.cameras)
-        count += (int)c.camera->parameterNames().size();
-    const cv::Mat& C = calibration.covariance;
-    if (!C.empty() && C.size() != cv::Size(count, count))
-        throw Failure(format("'%s': the covariance is %dx%d, lens and window have %d parameters: was the file edited? Calibrate "
-                             "again", filename.c_str(), C.rows, C.cols, count));
-}
-
 std::string cameraName(size_t camera) { return "camera" + std::to_string(camera + 1); }
 
 //! What follows R and T of a camera after the first: nothing for the second, then its number.
 std::string placeSuffix(size_t camera) { return camera == 1 ? "" : std::to_string(camera + 1); }
 
-//! R and T of a camera after the first.
-void readPlace(const FileStorage& fs, const std::string& filename, size_t camera, cv::Matx33d& R, cv::Vec3d& T)
+//! The map of a camera; one alone is at the top level.
+FileNode cameraNode(const FileStorage& fs, size_t camera)
 {
-    const std::string suffix = placeSuffix(camera);
-    const cv::Mat rotation = readMatrix(fs["R" + suffix]), translation = readMatrix(fs["T" + suffix]);
-    if (rotation.total() != 9 || translation.total() != 3)
-        throw Failure("'" + filename + "' has a " + cameraName(camera) + " but no 3x3 R" + suffix + " and no T" + suffix
-                      + " of 3 numbers beside it");
-    R = cv::Matx33d(rotation.ptr<double>());
-    T = cv::Vec3d(translation.ptr<double>());
-    if (cv::norm(R*R.t() - cv::Matx33d::eye()) > 1e-6)
-        throw Failure("'" + filename + "': R" + suffix + " is not a rotation");
+    const FileNode root = fs.isOpened() ? fs.root() : FileNode();
+    return root[cameraName(0)].empty() ? root : root[cameraName(camera)];
 }
 
-//! Equal numbers share a window; empty where the file does not say.
-std::vector<int> readWindows(const FileNode& node, const std::string& filename, size_t cameras)
+//! What the module reads of a file.
+struct Rig
 {
+    std::vector<cv::Ptr<RefractiveCamera>> cameras;
+    std::vector<cv::Mat> Rs, Ts;
     std::vector<int> windows;
-    for (const FileNode& number : node.isSeq() ? node : FileNode())
-        if (number.isInt())
-            windows.push_back((int)number);
-    if (!node.empty() && (!node.isSeq() || node.size() != cameras || windows.size() != cameras))
-        throw Failure("'" + filename + format("': window_of_camera must have one whole number for each of %zu cameras", cameras));
-    return windows;
-}
+    cv::Mat covariance;
+};
 
-//! Cameras under keys of their own.
-void readCameras(const FileStorage& fs, const std::string& filename, Calibration& calibration)
+Rig readRig(const std::string& filename)
 {
-    const size_t MOST = 16;
-    if (!fs[cameraName(MOST)].empty())
-        throw Failure("'" + filename + "' has more than 16 cameras");
-    for (size_t c = 0; c < 2 || (c < MOST && !fs[cameraName(c)].empty()); c++)
+    Rig rig;
+    if (!std::filesystem::is_regular_file(filename) && !isCameraModel(filename))
+        throw Failure("there is no calibration file '" + filename + "'");
+    try
     {
-        cv::Matx33d R = cv::Matx33d::eye();
-        cv::Vec3d T;
-        const CameraCalibration camera = readCamera(fs[cameraName(c)], filename, cameraName(c));
-        if (c > 0)
-            readPlace(fs, filename, c, R, T);
-        calibration.add(camera, R, T);
+        cv::refract::readRig(filename, rig.cameras, rig.Rs, rig.Ts, rig.windows, rig.covariance);
     }
-    calibration.windows = readWindows(fs["window_of_camera"], filename, calibration.cameras.size());
+    catch (const cv::Exception& e)
+    {
+        throw Failure(e.err + ". If it is what refract_calib wrote, was it edited or cut short? Calibrate again");
+    }
+    if (rig.cameras.size() > MAX_CAMERAS)
+        throw Failure(format("'%s' has %zu cameras; the tools are for up to %d", filename.c_str(), rig.cameras.size(), MAX_CAMERAS));
+    return rig;
 }
 
 //! Where a camera's parameters begin in the covariance of its file.
-int firstParameter(const std::string& filename, const std::string& name)
+int firstParameter(const std::vector<cv::Ptr<RefractiveCamera>>& cameras, size_t camera)
 {
     int first = 0;
-    for (size_t c = 0; cameraName(c) != name && !name.empty(); c++)
-        first += (int)RefractiveCamera::read(filename, cameraName(c))->parameterNames().size();
+    for (size_t c = 0; c < camera; c++)
+        first += (int)cameras[c]->parameterNames().size();
     return first;
 }
 
@@ -270,39 +218,29 @@ KnownLens readLens(const std::string& filename, const std::string& name)
     if (isCameraModel(filename))
         return lens;
     const FileStorage fs(filename, FileStorage::READ);
-    FileNode node = fs.root();
-    const int first = firstParameter(filename, name);
-    if (!name.empty())
-        node = node[name];
-    else if (node["camera_matrix"].empty())
-        node = node["camera1"];
-    requireDistortion(node, filename);
-    const cv::Mat covariance = readCovariance(fs, filename);
-    const int count = lens.camera->lensParameters().rows;
-    if (covariance.rows == covariance.cols && covariance.rows >= first + (int)lens.camera->parameterNames().size())
-        lens.covariance = covariance(cv::Rect(first, first, count, count)).clone();
+    size_t which = 0;
+    while (!name.empty() && cameraName(which) != name)
+        which++;
+    requireDistortion(cameraNode(fs, which), filename);
+    if (fs["covariance"].empty())
+        return lens;
+    const Rig rig = readRig(filename);
+    const int first = firstParameter(rig.cameras, which), count = lens.camera->lensParameters().rows;
+    lens.covariance = rig.covariance(cv::Rect(first, first, count, count)).clone();
     return lens;
 }
 
 Calibration readCalibration(const std::string& filename)
 {
-    if (!std::filesystem::is_regular_file(filename))
-        throw Failure("there is no calibration file '" + filename + "'");
+    const Rig rig = readRig(filename);
     Calibration calibration;
-    if (isCameraModel(filename))
-    {
-        calibration.add({RefractiveCamera::read(filename), WindowStd(), -1., false});
-        return calibration;
-    }
-    RefractiveCamera::read(filename);       // refuses what is no such file, in any way
-    const FileStorage fs(filename, FileStorage::READ);
-    if (fs["camera1"].empty())
-        calibration.add(readCamera(fs.root(), filename, ""));
-    else
-        readCameras(fs, filename, calibration);
+    calibration.windows = rig.windows;
+    calibration.covariance = rig.covariance;
+    // Of a .cameramodel, nothing else is known.
+    const FileStorage fs = isCameraModel(filename) ? FileStorage() : FileStorage(filename, FileStorage::READ);
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+        calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), rig.Rs[c], rig.Ts[c]);
     calibration.rms = readNumber(fs["rms"], -1.);
-    calibration.covariance = readCovariance(fs, filename);
-    requireCovarianceOf(calibration, filename);
     calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
     calibration.freedom = readNotNegative(fs, "degrees_of_freedom", 0., filename);
     if (fs["unit"].isString())
