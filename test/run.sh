@@ -19,7 +19,7 @@ build() {   # build DIRECTORY OPTIONS...
   cmake --build "$directory"
 }
 
-passed=0; failed=0; skipped=0; failures=""
+passed=0; failed=0; skipped=0; failures=""; failing_logs=""
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
   name=$1; shift
   code=0
@@ -49,6 +49,7 @@ count_suites() {    # waits for all suites, shows what they printed, counts thei
     if [ -z "$p$f" ]; then      # a crash prints no counts
       failed=$((failed + 1)); failures="$failures; $log ends before its last test"
     fi
+    [ -n "$p" ] && [ -z "$f" ] || failing_logs="$failing_logs $log"
   done
   suites=""
 }
@@ -97,6 +98,12 @@ if [ $fast = no ]; then
   run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
 
+# Once more at the end, where one looks first.
+for log in $failing_logs; do
+  echo "From $log:"
+  grep -B 12 -A 8 'FAILED:\|ERROR: AddressSanitizer\|runtime error' "$log" | head -200
+  tail -5 "$log"
+done
 [ -z "$failures" ] || echo "FAILED: ${failures#; }"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]
