@@ -65,9 +65,10 @@ struct Options
     PerCamera<std::string> camera;
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
     std::string innerIndex = "1", outerIndex = "1";
-    double wavelength = 550., distance = 0., thicknessStd = 0., indexStd = 0.;
+    std::string channel;
+    double wavelength = 0., distance = 0., thicknessStd = 0., indexStd = 0.;
     std::vector<std::string> free;
-    bool distanceGiven = false, wavelengthGiven = false, unpaired = false, sharedWindow = false;
+    bool distanceGiven = false, unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
     Limits limits;
     Label label;
@@ -128,8 +129,10 @@ Options parseOptions(Command& command)
         ->capture_default_str();
     app.add_option("--outer-index", o.outerIndex, "index of the scene's medium, or its name: 1.333, water, "
         "seawater:T=12,S=35")->capture_default_str();
-    CLI::Option* wavelength = app.add_option("--wavelength", o.wavelength, "of the light, nm, for materials that are named")
-        ->check(moreThanZero())->capture_default_str();
+    app.add_option("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
+        "valid (default: the brightness of all)")->check(CLI::IsMember({"red", "green", "blue"}));
+    app.add_option("--wavelength", o.wavelength, "of the light, nm, for materials that are named (default: 550; of --channel red "
+        "610, green 540, blue 465)")->check(moreThanZero());
     CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
         "where it is needed and not given, it is estimated");
     app.add_option("--free", o.free, "what to estimate beside the normal")->delimiter(',')
@@ -168,7 +171,7 @@ Options parseOptions(Command& command)
     for (const std::string& text : notes)
         o.label.notes.push_back(parseNote(text));
     o.distanceGiven = distance->count() > 0;
-    o.wavelengthGiven = wavelength->count() > 0;
+    o.images.channel = channelOf(o.channel);
     for (int c = 0; c < o.images.cameraCount(); c++)
         if (o.images.glass[c].empty())
             throw Failure(format("--glass%d is given, but no --glass%d: number the cameras 1, 2, 3, ... without a gap",
@@ -244,20 +247,26 @@ void makeRelativeToThinnest(RigOptions& rig)
 //! Numbers, or by the materials' names.
 void takeIndices(const Options& o, RigOptions& rig)
 {
+    const Light light = lightOf(o.images.channel, o.wavelength);
     if (!o.index.empty())
-        rig.layers = readIndices(o.index, o.wavelength, "--index");
-    rig.inner = readIndex(o.innerIndex, o.wavelength, "--inner-index");
-    rig.outer = readIndex(o.outerIndex, o.wavelength, "--outer-index");
-    bool named = rig.inner.isNamed() || rig.outer.isNamed();
-    for (const GivenIndex& layer : rig.layers)
-        named = named || layer.isNamed();
-    if (o.wavelengthGiven && !named)
+        rig.layers = readIndices(o.index, light, "--index");
+    rig.inner = readIndex(o.innerIndex, light, "--inner-index");
+    rig.outer = readIndex(o.outerIndex, light, "--outer-index");
+    if (o.wavelength > 0 && !rig.hasMaterials())
         throw Failure("--wavelength: no material is named, and indices that are numbers do not depend on it; leave it out");
     makeRelativeToThinnest(rig);
     for (const GivenIndex& layer : rig.layers)
         rig.window.index.push_back(layer.value);
     rig.window.innerIndex = rig.inner.value;
     rig.window.outerIndex = rig.outer.value;
+    rig.channel = o.images.channel;
+    if (!rig.hasMaterials())
+        return;
+    rig.window.wavelength = light.wavelength;
+    rig.window.materials = {rig.inner.material};
+    for (const GivenIndex& layer : rig.layers)
+        rig.window.materials.push_back(layer.material);
+    rig.window.materials.push_back(rig.outer.material);
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.

@@ -117,6 +117,7 @@ std::vector<Sight> readImages(const Options& options, const Calibration& calibra
                               const Command& command)
 {
     RigSources sources;
+    sources.channel = calibration.channel;
     PerCamera<cv::Size> sizes;
     std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
     for (size_t c = 0; c < calibration.cameras.size(); c++)
@@ -402,6 +403,8 @@ void printTable(const Options& options, const Calibration& calibration, const st
     const bool alone = !options.compare && options.compareWith.empty();
     table.add(rowOf(alone ? "measured" : "with the window", sights, results, lengthsMeasured));
     std::cout << sights.size() << (sights.size() == 1 ? " view" : " views")
+              << (calibration.channel == BRIGHTNESS || !options.points.empty() ? std::string()
+                  : ", the " + nameOf(calibration.channel) + " channel of colour images, as calibrated")
               << (lengthsMeasured ? "; distances between neighbouring points, measured minus true:\n\n"
               : options.triangulates() || !options.plane.empty() ? ":\n\n" : "; points from the pose of the target:\n\n");
     table.print(std::cout);

@@ -30,6 +30,8 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
   R, T                   # camera 1 -> camera 2; R3, T3: camera 1 -> camera 3; ...
   exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
   seed: 1
+  channels: [610., 540., 465.]   # wavelengths of red, green and blue, nm: colour images, each colour bent as the window's
+                         # materials do; glass_window: { ..., wavelength: 540., materials: [air, N-BK7, water] }
   poses:                 # of the target in camera 1, by name: given, or drawn so that all cameras see all points (with
                          # seen_by: N in the braces, N of them)
     board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] } ]
@@ -96,9 +98,24 @@ BoardPose poseOf(const Scene& scene, const Job& job)
     return inOtherCamera(job.pose, scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera]);
 }
 
+//! The camera in the light of each channel; empty: all see the same.
+std::vector<cv::Ptr<cv::refract::RefractiveCamera>> coloursOf(const Scene& scene, const Job& job)
+{
+    return scene.coloured ? camerasInColours(cameraOf(scene, job), scene.wavelengths, "RIG.yml")
+                          : std::vector<cv::Ptr<cv::refract::RefractiveCamera>>();
+}
+
 Viewpoint viewOf(const Scene& scene, const Job& job)
 {
-    return {cameraOf(scene, job), scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera]};
+    return {cameraOf(scene, job), scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera], coloursOf(scene, job)};
+}
+
+cv::Mat imageOf(const Scene& scene, const Target* target, const Job& job, uint64_t seed)
+{
+    if (job.isOfScene())
+        return renderScene(scene.surfaces, viewOf(scene, job), scene.exposure, seed);
+    const auto colours = coloursOf(scene, job);
+    return render(*target, poseOf(scene, job), colours.empty() ? std::vector{cameraOf(scene, job)} : colours, scene.exposure, seed);
 }
 
 //! Before anything is written, as a camera that sees nothing is a mistake in the file.
@@ -186,10 +203,7 @@ void renderAll(const std::string& folder, const Scene& scene, const Target* targ
     {
         const Job& job = jobs[i];
         progress.at(job.path);
-        const uint64_t seed = scene.seed*1000003 + i + 1;
-        const cv::Mat image = job.isOfScene() ? renderScene(scene.surfaces, viewOf(scene, job), scene.exposure, seed) :
-                              render(*target, poseOf(scene, job), cameraOf(scene, job), scene.exposure, seed);
-        writeImage(folder + "/" + job.path, image, parameters);
+        writeImage(folder + "/" + job.path, imageOf(scene, target, job, scene.seed*1000003 + i + 1), parameters);
         if (job.isOfScene())
             writeImage(folder + "/" + job.depthPath, job.depth);
         progress.step();

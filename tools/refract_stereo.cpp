@@ -1,4 +1,5 @@
 #include "calibrate/calib_file.hpp"
+#include "calibrate/light.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -55,7 +56,7 @@ const int PAIRS_SEARCHED = 5;
 
 struct Options
 {
-    std::string calibration, left, right, depth, out, depthMap, picture, rectifiedFolder, folder, truth, matcher = "3way";
+    std::string calibration, left, right, depth, out, depthMap, picture, rectifiedFolder, folder, truth, matcher = "3way", channels;
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
     bool ascii = false, noWindow = false;
@@ -157,7 +158,8 @@ void refuseOverwriting(const Options& options, const Frames& first, const Frames
 class PairReader
 {
 public:
-    PairReader(Frames& first, Frames& second, const Calibration& rig) : first_(first), second_(second), rig_(rig) {}
+    PairReader(Frames& first, Frames& second, const Calibration& rig, bool needsColour)
+        : first_(first), second_(second), rig_(rig), needsColour_(needsColour) {}
 
     std::pair<cv::Mat, cv::Mat> read(const FramePair& pair)
     {
@@ -167,6 +169,9 @@ public:
         if (image1.size() != image2.size())
             throw Failure(format("the images of the cameras are %dx%d and %dx%d pixels: refract_stereo is for two of one size",
                                  image1.cols, image1.rows, image2.cols, image2.rows));
+        if (needsColour_ && (image1.channels() != 3 || image2.channels() != 3))
+            throw Failure("'" + (image1.channels() != 3 ? first_.name(pair.first) : second_.name(pair.second))
+                          + "' is a grey image: --channels is for colours, leave it out");
         makeEightBit(image1, image2);
         return {image1, image2};
     }
@@ -174,6 +179,7 @@ public:
 private:
     Frames &first_, &second_;
     const Calibration& rig_;
+    bool needsColour_;
 };
 
 cv::Vec2d givenRange(const Options& options, const Calibration& rig)
@@ -240,8 +246,11 @@ void printComparison(const DepthComparison& c)
 class Tool
 {
 public:
-    Tool(const Options& options, const Calibration& rig, const cv::Vec2d& range)
-        : options_(options), rig_(rig, range) {}
+    Tool(const Options& options, const Calibration& rig, const cv::Vec2d& range) : options_(options), rig_(rig, range)
+    {
+        if (!options.channels.empty())
+            rig_.correctColours(parseChannels(options.channels), options.calibration);
+    }
 
     const RectifiedRig& rig() const { return rig_; }
 
@@ -357,6 +366,20 @@ bool judgeRows(const Options& options, const std::vector<PairResult>& results, c
     return !(options.maxRowError > 0) || worst.rowOffset <= options.maxRowError;
 }
 
+//! Which light the answer is of.
+void sayColour(const Options& options, const Calibration& rig, bool colourImages)
+{
+    if (!colourImages)
+        return;
+    const std::string notice = oneColourNotice(*rig.cameras[0].camera);
+    if (!options.channels.empty())
+        std::cout << "each colour rectified by itself\n\n";
+    else if (rig.channel != BRIGHTNESS)
+        std::cout << "matched: the " << nameOf(rig.channel) << " channel, as calibrated\n\n";
+    else if (!notice.empty())
+        std::cout << "rectified " << notice << "\n\n";
+}
+
 //! A matcher finds partners in anything.
 void sayUnsupported(const std::vector<PairResult>& results, const Command& command)
 {
@@ -396,6 +419,8 @@ void addOptions(CLI::App& app, Options& options)
         ->check(CLI::Range(1, 21))->capture_default_str();
     app.add_option("--passes", options.matching.passes, "1: rectified for a plane; 2: then for the depths found")
         ->check(CLI::Range(1, 2))->capture_default_str();
+    app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel of colour images, nm, as 610,540,465; each "
+                   "is rectified by itself, as a window in front of water bends blue more than red");
     app.add_option("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more")->check(moreThanZero());
     app.add_flag("--ascii", options.ascii, "cloud as text, not binary");
     app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
@@ -411,6 +436,8 @@ int main(int argc, char** argv)
         checkCombination(options);
         if (!options.depth.empty())
             parseDepthRange(options.depth);
+        if (!options.channels.empty())
+            parseChannels(options.channels);
         const Calibration rig = readPair(options);
         Frames first(options.left), second(options.right);
         const FramePairs frames = pairsOf(first, second);
@@ -419,7 +446,7 @@ int main(int argc, char** argv)
         sayAlone(frames.alone1, 1, command);
         sayAlone(frames.alone2, 2, command);
 
-        PairReader reader(first, second, rig);
+        PairReader reader(first, second, rig, !options.channels.empty());
         auto images = reader.read(frames.pairs[0]);
         for (const CameraCalibration& camera : rig.cameras)
             if (camera.camera->imageSize().empty())
@@ -427,6 +454,8 @@ int main(int argc, char** argv)
         const cv::Mat truth = options.truth.empty() ? cv::Mat() : readTrueDepth(options.truth, images.first.size());
         Tool tool(options, rig, options.depth.empty() ? foundRange(rig, reader, frames.pairs, command)
                                                       : givenRange(options, rig));
+        if (!command.quiet())
+            sayColour(options, rig, images.first.channels() == 3);
         std::vector<PairResult> results;
         std::vector<std::string> unmatched;
         {

@@ -1,4 +1,5 @@
 #include "calibrate/calib_file.hpp"
+#include "calibrate/light.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
@@ -21,6 +22,10 @@ The correction depends on where the scene is: exact for points on the plane z = 
 camera's frame); --depth=inf for scenes far away. The new images have the old names, size and camera matrix; pixels that
 the old image does not show are black.
 
+--channels corrects each colour of a colour image for its own wavelength, as a window in front of water bends blue more than red;
+calib.yml must say what the window is made of (refract_calib --index=N-BK7 --outer-index=water). Without it, all colours are
+corrected as that of the calibration.
+
 IMAGE may be a quoted glob, numbered images (left%04d.png) or a video (.avi, .mp4, .mkv ...); frames of a video become
 frame000001.png and so on.)";
 
@@ -31,7 +36,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, folder, depth, plane;
+    std::string calibration, folder, depth, plane, channels;
     std::vector<std::string> sources;
     int camera = 1;
     bool noWindow = false;
@@ -105,30 +110,39 @@ void refuseOverwriting(const Options& options, const std::vector<Frames>& source
 class Corrector
 {
 public:
-    Corrector(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const std::vector<double>& depth)
-        : camera_(camera), depth_(depth) {}
+    //! @param cameras one for all channels, or one for each
+    Corrector(const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& cameras, const std::vector<double>& depth)
+        : cameras_(cameras), depth_(depth) {}
 
     //! @param name of the image, for a sentence
     cv::Mat correct(const cv::Mat& image, const std::string& name)
     {
-        requireSize(image, name, camera_->imageSize());
-        if (map1_.size() != image.size())
-        {
-            cv::refract::initRefractiveUndistortRectifyMap(camera_, depth_, cv::noArray(), cv::noArray(), image.size(),
-                                                           CV_32FC1, map1_, map2_);
-            if (cv::countNonZero(map1_ >= 0.f) == 0)
-                throw Failure("the camera sees nothing of that --depth or --plane: it must lie beyond the window, in the unit "
-                              "of the calibration, and in front of the camera");
-        }
-        cv::Mat corrected;
-        cv::remap(image, corrected, map1_, map2_, cv::INTER_CUBIC);
-        return corrected;
+        requireSize(image, name, cameras_[0]->imageSize());
+        if (cameras_.size() > 1 && image.channels() != (int)cameras_.size())
+            throw Failure("'" + name + "' is a grey image: --channels is for colours, leave it out");
+        if (maps_.empty() || maps_[0].size() != image.size())
+            makeMaps(image.size());
+        return remapChannels(image, maps_, cv::INTER_CUBIC);
     }
 
 private:
-    cv::Ptr<cv::refract::RefractiveCamera> camera_;
+    void makeMaps(cv::Size size)
+    {
+        maps_.clear();
+        for (const auto& camera : cameras_)
+        {
+            cv::Mat map, none;
+            cv::refract::initRefractiveUndistortRectifyMap(camera, depth_, cv::noArray(), cv::noArray(), size, CV_32FC2, map, none);
+            if (cv::countNonZero(map.reshape(1) >= 0.f) == 0)
+                throw Failure("the camera sees nothing of that --depth or --plane: it must lie beyond the window, in the unit "
+                              "of the calibration, and in front of the camera");
+            maps_.push_back(map);
+        }
+    }
+
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras_;
     std::vector<double> depth_;
-    cv::Mat map1_, map2_;
+    std::vector<cv::Mat> maps_;
 };
 
 } // namespace
@@ -142,12 +156,16 @@ int main(int argc, char** argv)
         command.app.add_option("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
         command.app.add_option("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
         command.app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there")->required();
+        command.app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
+                               "sensor; each is corrected by itself");
         command.app.add_option("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
             ->check(CLI::Range(1, 2))->capture_default_str();
         command.app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
         command.parse();
 
         const std::vector<double> depth = depthOf(options);
+        const bool byColour = !options.channels.empty();
+        const ChannelWavelengths wavelengths = byColour ? parseChannels(options.channels) : ChannelWavelengths();
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
         if (options.camera > (int)calibration.cameras.size())
@@ -157,7 +175,8 @@ int main(int argc, char** argv)
             sources.emplace_back(source);
         const std::vector<Job> jobs = listJobs(options, sources);
         refuseOverwriting(options, sources, jobs);
-        Corrector corrector(calibration.cameras[options.camera - 1].camera, depth);
+        const auto camera = calibration.cameras[options.camera - 1].camera;
+        Corrector corrector(byColour ? camerasInColours(camera, wavelengths, options.calibration) : std::vector{camera}, depth);
         Progress progress("correcting images", (int)jobs.size(), command.quiet());
         for (const Job& job : jobs)
         {
@@ -169,7 +188,11 @@ int main(int argc, char** argv)
             progress.step();
         }
         if (!command.quiet())
-            std::cout << jobs.size() << (jobs.size() == 1 ? " image" : " images") << " written to " << options.folder << std::endl;
+        {
+            const std::string notice = byColour ? "each colour by itself" : oneColourNotice(*camera);
+            std::cout << jobs.size() << (jobs.size() == 1 ? " image" : " images") << " written to " << options.folder
+                      << (notice.empty() ? "" : ", corrected " + notice) << std::endl;
+        }
         return DONE;
     });
 }

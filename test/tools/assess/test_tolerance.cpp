@@ -131,7 +131,7 @@ TEST_CASE("An index of a named material is wrong by what its name leaves open", 
     RigCalibration c = calibrated(paperRig(1), Vec3d());
     const Tolerance number = analyseTolerances(c, 1., true)[1];
     REQUIRE((number.done && number.what == "index wrong by 0.001"));
-    GivenIndex given{1.5437, "N-BK7", 550.};
+    GivenIndex given{1.5437, "N-BK7"};
     given.deviation = 0.0054;
     c.options.layers = {given};
     const Tolerance name = analyseTolerances(c, 1., true)[1];

@@ -114,8 +114,6 @@ std::string lens(const TemporaryFolder& f) { return " --camera=" + f / "camera1.
 
 double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b))*180/CV_PI; }
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 //! RMS of glass1.vnl behind a window, each board where it fits best.
 double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
 {

@@ -24,7 +24,6 @@ double rmsAgainst(const TrueView& truth, const std::vector<CsvRow>& rows)
     return std::sqrt(squares/rows.size());
 }
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 //! Copies of bundled images under other names: measure1/FROM -> FOLDER/TO.jpg
 void copyImage(const TemporaryFolder& folder, const std::string& from, const std::string& to)

@@ -42,11 +42,6 @@ sets:
 
 const char* const CHESSBOARD = "{ pattern: chessboard, size: \"6x5\", square: 39. }";
 
-void write(const std::string& path, const std::string& text)
-{
-    std::ofstream(path, std::ios::binary) << text;
-}
-
 //! Two small cameras behind panes and what they see; lines of `shapes` and `sets` as in the file.
 std::string texturedScene(const std::string& shapes, const std::string& sets, int seed = 1)
 {
@@ -82,7 +77,7 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
                                   "--pattern=circles --size=6x5 --square=39", 30, false, 0.3}})
     {
         const TemporaryFolder folder;
-        write(folder / "rig.yml", scene(kind.target, "   glass: { window: 1, poses: [ fixed ] }\n"));
+        writeFile(folder / "rig.yml", scene(kind.target, "   glass: { window: 1, poses: [ fixed ] }\n"));
         const ToolResult rendered = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
         CAPTURE(kind.options, rendered.err);
         REQUIRE(rendered.code == 0);
@@ -111,7 +106,7 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
 TEST_CASE("a chessboard of another size than --size is told from, soon", "[tools][simulate]")
 {
     const TemporaryFolder folder;
-    write(folder / "rig.yml", scene("{ pattern: chessboard, size: \"9x6\", square: 22. }",
+    writeFile(folder / "rig.yml", scene("{ pattern: chessboard, size: \"9x6\", square: 22. }",
                                     "   glass: { window: 1, poses: [ fixed ] }\n   direct: { window: 0, poses: [ drawn, fixed ] }\n"));
     REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out")).code == 0);
     const std::string measure = "refract_measure " + (folder / "out/truth.yml") + " '" + (folder / "out/glass/*") + "' --square=22";
@@ -144,8 +139,8 @@ TEST_CASE("the same scene gives the same images, another seed gives others", "[t
 {
     const TemporaryFolder folder;
     const std::string sets = "   direct: { window: 0, poses: [ drawn ] }\n   glass: { window: 1, poses: [ drawn ] }\n";
-    write(folder / "rig.yml", scene(CHESSBOARD, sets));
-    write(folder / "other.yml", scene(CHESSBOARD, sets, 2));
+    writeFile(folder / "rig.yml", scene(CHESSBOARD, sets));
+    writeFile(folder / "other.yml", scene(CHESSBOARD, sets, 2));
     for (const std::string name : {"a", "b"})
         REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder/name)).code == 0);
     REQUIRE(runTool("refract_simulate " + (folder / "other.yml") + " --format=jpg --out-dir=" + (folder / "c")).code == 0);
@@ -163,7 +158,7 @@ TEST_CASE("the same scene gives the same images, another seed gives others", "[t
 TEST_CASE("a textured scene: images and depth of each camera, with window and without", "[tools][simulate]")
 {
     const TemporaryFolder folder;
-    write(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
+    writeFile(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
     const ToolResult rendered = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
     INFO(rendered.err);
     REQUIRE(rendered.code == 0);
@@ -208,8 +203,8 @@ TEST_CASE("a textured scene: images and depth of each camera, with window and wi
 TEST_CASE("the same textured scene gives the same bytes, another seed another texture", "[tools][simulate]")
 {
     const TemporaryFolder folder;
-    write(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
-    write(folder / "other.yml", texturedScene(SHAPES, SCENE_SETS, 2));
+    writeFile(folder / "rig.yml", texturedScene(SHAPES, SCENE_SETS));
+    writeFile(folder / "other.yml", texturedScene(SHAPES, SCENE_SETS, 2));
     for (const std::string name : {"a", "b"})
         REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder/name)).code == 0);
     REQUIRE(runTool("refract_simulate " + (folder / "other.yml") + " --out-dir=" + (folder / "c")).code == 0);
@@ -223,10 +218,10 @@ TEST_CASE("the same textured scene gives the same bytes, another seed another te
 TEST_CASE("target and scene stand in one file, and a mesh beside it", "[tools][simulate]")
 {
     const TemporaryFolder folder;
-    write(folder / "part.obj", "v -100 -100 0\nv 100 -100 0\nv 0 120 0\nf 1 2 3\n");
+    writeFile(folder / "part.obj", "v -100 -100 0\nv 100 -100 0\nv 0 120 0\nf 1 2 3\n");
     std::string text = scene(CHESSBOARD, "   glass: { window: 1, poses: [ fixed ] }\n   room: { window: 1, scene: 1 }\n");
     text += "texture: { size: 60. }\nscene:\n   - { shape: mesh, file: part.obj, tvec: [ 0., 0., 600. ] }\n";
-    write(folder / "rig.yml", text);
+    writeFile(folder / "rig.yml", text);
     REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --format=jpg --out-dir=" + (folder / "out")).code == 0);
     CHECK(readTruth(folder / "out").size() == 3);
     const cv::FileStorage truth(folder / "out/truth.yml", cv::FileStorage::READ);
@@ -242,7 +237,7 @@ TEST_CASE("target and scene stand in one file, and a mesh beside it", "[tools][s
 TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one sentence", "[tools][simulate]")
 {
     const TemporaryFolder folder;
-    write(folder / "points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    writeFile(folder / "points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                                  "end_header\n0 0 0\n");
     const std::string good = texturedScene(SHAPES, SCENE_SETS);
     const auto replaced = [&](const std::string& from, const std::string& to) {
@@ -292,7 +287,7 @@ TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one s
                                "are of a 'target'"},
                           Case{scene(CHESSBOARD, "   room: { window: 1, scene: 1 }\n"), "renders the 'scene' of the file"}})
     {
-        write(folder / "rig.yml", c.text);
+        writeFile(folder / "rig.yml", c.text);
         const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
         CAPTURE(c.text, c.expected, result.err);
         CHECK(result.code == 1);
@@ -327,7 +322,7 @@ TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence",
                           Case{replaced("index: [ 1.5 ]", "index: [ 0.5 ]"), "index"},
                           Case{replaced("distance: [ 600., 700. ]", "distance: [ 100., 110. ]"), "smaller target"}})
     {
-        write(folder / "rig.yml", c.text);
+        writeFile(folder / "rig.yml", c.text);
         const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
         CAPTURE(c.text, result.err);
         CHECK(result.code == 1);

@@ -246,6 +246,8 @@ Calibration readCalibration(const std::string& filename)
     if (fs["unit"].isString())
         fs["unit"] >> calibration.unit;
     calibration.square = readNumber(fs["target_square"], 0.);
+    if (fs["channel"].isString())
+        calibration.channel = channelOf(fs["channel"]);
     calibration.label = readLabel(fs);
     if (fs["calibration_time"].isString())
         fs["calibration_time"] >> calibration.time;
@@ -303,6 +305,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
     writeLabel(fs, calibration.label);
     if (calibration.square > 0)
         fs << "unit" << calibration.unit << "target_square" << calibration.square;
+    if (calibration.channel != BRIGHTNESS)
+        fs << "channel" << nameOf(calibration.channel);
     writeRig(fs, calibration);
     if (calibration.freedom > 0)
         fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;

@@ -1,6 +1,7 @@
 #ifndef REFRACT_TOOLS_CALIB_FILE_HPP
 #define REFRACT_TOOLS_CALIB_FILE_HPP
 
+#include "console/images.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
 #include <utility>
@@ -10,9 +11,9 @@
 and so on; window_of_camera where some share a window: equal numbers look through the same one.
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
-thickness, index, inner_index, outer_index}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
+thickness, index, inner_index, outer_index, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
 rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
-board), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+board), channel (of colour images, that it is for), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 //! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
@@ -52,6 +53,7 @@ struct Calibration
     double freedom = 0.;    //!< degrees of freedom of those residuals; 0 where unknown
     std::string unit;       //!< of length; empty where unknown
     double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
+    Channel channel = BRIGHTNESS;   //!< of colour images, in which the points were found: it is valid for that one
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()

@@ -11,31 +11,23 @@ namespace tools {
 
 namespace {
 
-const double BLUE = 450., RED = 650.;       // nm, between which most of what a sensor sees of white light is
-
 bool isName(const std::string& text)
 {
     double number;
     return !text.empty() && std::isalpha((unsigned char)text[0]) && !parseNumber(text, number);
 }
 
-bool isWhite(double wavelength)
+//! What is known is a name: the light may be of any colour of the band, the piece of any batch.
+double deviationOf(const std::string& name, const Light& light)
 {
-    return wavelength >= BLUE && wavelength <= RED;
+    return std::hypot(refractiveIndexTolerance(name), 0.5*(refractiveIndex(name, light.shortest) - refractiveIndex(name, light.longest)));
 }
 
-//! What is known is a name: the light may be of any colour, the piece of any batch.
-double deviationOf(const std::string& name, double wavelength)
-{
-    const double kind = refractiveIndexTolerance(name);
-    return isWhite(wavelength) ? std::hypot(kind, 0.5*(refractiveIndex(name, BLUE) - refractiveIndex(name, RED))) : kind;
-}
-
-GivenIndex named(const std::string& name, double wavelength, const std::string& option)
+GivenIndex named(const std::string& name, const Light& light, const std::string& option)
 {
     try
     {
-        return {refractiveIndex(name, wavelength), name, wavelength, deviationOf(name, wavelength)};
+        return {refractiveIndex(name, light.wavelength), name, name, light, deviationOf(name, light)};
     }
     catch (const cv::Exception& e)
     {
@@ -47,32 +39,32 @@ GivenIndex named(const std::string& name, double wavelength, const std::string& 
 
 std::string GivenIndex::sentence() const
 {
-    return format("the index of %s at %g nm: %.5f", name.c_str(), wavelength, value);
+    return format("the index of %s at %g nm: %.5f", name.c_str(), of.wavelength, value);
 }
 
 std::string GivenIndex::light() const
 {
-    return name + (isWhite(wavelength) ? format(", light of %g to %g nm", BLUE, RED) : std::string());
+    return name + (of.shortest < of.longest ? format(", light of %g to %g nm", of.shortest, of.longest) : std::string());
 }
 
-GivenIndex readIndex(const std::string& text, double wavelength, const std::string& option)
+GivenIndex readIndex(const std::string& text, const Light& light, const std::string& option)
 {
     if (isName(text))
-        return named(text, wavelength, option);
+        return named(text, light, option);
     const std::vector<double> numbers = parseNumbers(text, option);
     if (numbers.size() != 1)
         throw Failure(option + "=" + text + ": give one number, or the name of a material");
     return {numbers[0]};
 }
 
-std::vector<GivenIndex> readIndices(const std::string& text, double wavelength, const std::string& option)
+std::vector<GivenIndex> readIndices(const std::string& text, const Light& light, const std::string& option)
 {
     std::vector<GivenIndex> indices;
     for (const std::string& item : CLI::detail::split(text, ','))
     {
         if (item.find('=') != std::string::npos)
             throw Failure(option + "=" + text + ": '" + item + "': a layer's material stands without parameters");
-        indices.push_back(readIndex(CLI::detail::trim_copy(item), wavelength, option));
+        indices.push_back(readIndex(CLI::detail::trim_copy(item), light, option));
     }
     return indices;
 }

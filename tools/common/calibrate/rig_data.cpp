@@ -129,7 +129,8 @@ RigViewSets readViewSets(const RigSources& sources, const Target* target, const 
         {
             const std::string& source = (through ? sources.glass : sources.direct)[c];
             if (!source.empty())
-                (through ? sets.glass : sets.direct)[c] = readViews(source, target, imageSize[c], quiet);
+                (through ? sets.glass : sets.direct)[c] = readViews(source, target, imageSize[c], quiet,
+                                                                          sources.channel);
         }
     return sets;
 }

@@ -21,6 +21,7 @@ inline std::string cameraSuffix(int camera) { return camera ? std::to_string(cam
 struct RigSources
 {
     PerCamera<std::string> direct, glass;
+    Channel channel = BRIGHTNESS;               //!< of colour images, in which the target is looked for
 
     //! --direct, --glass, --direct2, --glass2, ... --glass16; the first is required.
     void addTo(CLI::App& app, const std::string& aboutGlass, const std::string& aboutDirect);

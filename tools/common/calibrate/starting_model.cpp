@@ -226,6 +226,12 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
 
 } // namespace
 
+bool RigOptions::hasMaterials() const
+{
+    const auto named = [](const GivenIndex& index) { return index.isNamed(); };
+    return named(inner) || named(outer) || std::any_of(layers.begin(), layers.end(), named);
+}
+
 double startDistance(const RigData& data, double square)
 {
     if (square > 0)

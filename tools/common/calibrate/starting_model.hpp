@@ -19,6 +19,9 @@ struct RigOptions
     double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
     std::vector<GivenIndex> layers = {};                    //!< where the window's indices come from; empty: numbers
     GivenIndex inner = {}, outer = {};                      //!< the same of the media
+    Channel channel = BRIGHTNESS;                           //!< of colour images, in which the points were found
+
+    bool hasMaterials() const;                              //!< that are named
 };
 
 //! Where the lens of a camera came from.

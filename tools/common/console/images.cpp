@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <glob.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -67,6 +68,42 @@ cv::Mat decode(const std::string& path, int flags)
 
 } // namespace
 
+static const char* const CHANNELS[] = {"blue", "green", "red", "brightness"};
+
+std::string nameOf(Channel channel) { return CHANNELS[channel]; }
+
+Channel channelOf(const std::string& name)
+{
+    return (Channel)(std::find(CHANNELS, CHANNELS + BRIGHTNESS, name) - CHANNELS);
+}
+
+cv::Mat greyOf(const cv::Mat& image, Channel channel)
+{
+    cv::Mat grey = image;
+    if (image.channels() == 3 && channel == BRIGHTNESS)
+        cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+    else if (image.channels() == 3)
+        cv::extractChannel(image, grey, channel);
+    return grey;
+}
+
+cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, int interpolation)
+{
+    cv::Mat result;
+    if (maps.size() == 1)
+    {
+        cv::remap(image, result, maps[0], cv::noArray(), interpolation);
+        return result;
+    }
+    std::vector<cv::Mat> channels;
+    cv::split(image, channels);
+    CV_Assert(channels.size() == maps.size());
+    for (size_t i = 0; i < maps.size(); i++)
+        cv::remap(channels[i].clone(), channels[i], maps[i], cv::noArray(), interpolation);
+    cv::merge(channels, result);
+    return result;
+}
+
 std::vector<std::string> matchingFiles(const std::string& pattern)
 {
     if (fs::is_regular_file(pattern))
@@ -94,9 +131,9 @@ std::vector<std::string> expandGlob(const std::string& pattern)
     return paths;
 }
 
-cv::Mat readGrey(const std::string& path)
+cv::Mat readGrey(const std::string& path, Channel channel)
 {
-    cv::Mat image = decode(path, cv::IMREAD_GRAYSCALE);
+    cv::Mat image = channel == BRIGHTNESS ? decode(path, cv::IMREAD_GRAYSCALE) : greyOf(readImage(path), channel);
     double brightest = 0;
     if (image.depth() != CV_8U)
     {

@@ -7,6 +7,21 @@
 
 namespace tools {
 
+//! What of a colour image is looked at; the numbers are OpenCV's order.
+enum Channel { BLUE, GREEN, RED, BRIGHTNESS };
+
+//! "blue", "green", "red"; "brightness": all of them.
+std::string nameOf(Channel channel);
+//! BRIGHTNESS for any other name.
+Channel channelOf(const std::string& name);
+
+//! One channel; of a grey image, itself.
+cv::Mat greyOf(const cv::Mat& image, Channel channel);
+
+/** As cv::remap, each channel by a map of its own; one map serves all.
+@param maps CV_32FC2 */
+cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, int interpolation);
+
 //! Files that match, sorted; none is no error.
 std::vector<std::string> matchingFiles(const std::string& glob);
 
@@ -15,7 +30,7 @@ std::vector<std::string> expandGlob(const std::string& glob);
 
 /** The whole image, 8-bit grey (more bits are scaled so that the brightest pixel becomes 255); throws Failure that names
 the file if it is missing, cut or not an image. */
-cv::Mat readGrey(const std::string& path);
+cv::Mat readGrey(const std::string& path, Channel channel = BRIGHTNESS);
 
 //! The same with the file's channels (1 or 3) and depth.
 cv::Mat readImage(const std::string& path);

@@ -106,6 +106,15 @@ std::vector<SummaryRow> columnsFrom(const std::vector<SummaryRow>& rows, int fir
 
 } // namespace
 
+//! Of which colour of light the calibration is; empty: nobody said.
+static std::string lightText(const RigOptions& options)
+{
+    const std::string channel = options.channel == BRIGHTNESS ? "" : nameOf(options.channel) + " channel";
+    if (!options.hasMaterials())
+        return channel;
+    return format("%g nm", options.window.wavelength) + (channel.empty() ? "" : ", " + channel);
+}
+
 std::vector<SummaryRow> windowRows(const RigCalibration& c)
 {
     const auto window = [&c](int k) { return c.fit.rig.cameras[k]->window(); };
@@ -146,6 +155,9 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
                          : std::string("-");
         }));
     rows.push_back(row(c, "lens", [&](int k) { return lensOf(c, k); }));
+    const std::string light = lightText(c.options);
+    if (!light.empty())
+        rows.push_back(row(c, "light", [&](int) { return light; }));
     return rows;
 }
 
@@ -296,6 +308,7 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     file.covariance = c.fit.covariance;
     file.unit = c.unit;
     file.square = c.square;
+    file.channel = c.options.channel;
     file.label = c.label;
     file.command = command;
     file.time = timeOfFiles(c.inputs);

@@ -130,10 +130,14 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
 
 } // namespace
 
-Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& colours,
            const Exposure& exposure, uint64_t seed)
 {
-    Mat levels = paintFine(Paint(target, exposure), traceTarget(target, pose, camera));
+    std::vector<Mat> channels;
+    for (const auto& camera : colours)
+        channels.push_back(paintFine(Paint(target, exposure), traceTarget(target, pose, camera)));
+    Mat levels;
+    cv::merge(channels, levels);
     return expose(levels, exposure, seed);
 }
 

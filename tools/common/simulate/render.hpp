@@ -16,8 +16,9 @@ struct BoardPose
 /* Ray tracing, not warping: every pixel's ray is followed through the lens and the window to the target's plane, and
 the target is drawn there from its formula. Twice as many samples as pixels each way, each the mean of 8x8 points where
 it meets an edge; between pixels the target's coordinates are interpolated linearly, which is wrong by less than 1e-4
-pixels at any usual distortion. Blur at the finer resolution, then the mean over each pixel, then noise. */
-cv::Mat render(const Target& target, const BoardPose& pose, const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+pixels at any usual distortion. Blur at the finer resolution, then the mean over each pixel, then noise.
+@param colours one camera: a grey image; the camera in the light of blue, green and red: a colour image */
+cv::Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& colours,
                const Exposure& exposure, uint64_t seed);
 
 //! Camera 2's pose of a target whose pose in camera 1 is known.

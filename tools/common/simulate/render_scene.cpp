@@ -71,7 +71,8 @@ Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view)
     return depth;
 }
 
-Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed)
+//! The light on the fine grid, blue, green, red.
+static Mat lightOf(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure)
 {
     const SolidTexture texture(scene.texture, scene.seed);
     const double spacing = pixelAngle(view)/FINE;       // of samples, at range 1
@@ -88,6 +89,17 @@ Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposur
         for (int channel = 0; channel < 3; channel++)
             level[channel] = (float)(exposure.dark + (exposure.light - exposure.dark)*light*color[2 - channel]);
     });
+    return levels;
+}
+
+Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed)
+{
+    Mat levels = lightOf(scene, {view.colours.empty() ? view.camera : view.colours[0], view.R, view.T}, exposure);
+    for (int channel = 1; channel < (int)view.colours.size(); channel++)
+    {
+        const int one[] = {channel, channel};
+        cv::mixChannels(lightOf(scene, {view.colours[channel], view.R, view.T}, exposure), levels, one, 1);
+    }
     return expose(levels, exposure, seed);
 }
 

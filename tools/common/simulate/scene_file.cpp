@@ -226,6 +226,13 @@ Scene readScene(const std::string& filename)
                       "--help)");
     scene.exposure = readExposure(fs["exposure"]);
     scene.seed = (uint64_t)Keys(fs.root(), filename).number("seed", 0, 2147483647, 1);
+    scene.coloured = !fs["channels"].empty();
+    if (scene.coloured)
+    {
+        scene.wavelengths = channelsOf(Keys(fs.root(), filename).numbers("channels", 3), "'" + filename + "': channels");
+        for (const CameraCalibration& c : scene.cameras.cameras)
+            camerasInColours(c.camera, scene.wavelengths, filename);        // refuses a window of unknown materials
+    }
     if (!fs["scene"].empty())
         scene.surfaces = readSurfaces(fs["scene"], fs["texture"], filename, scene.meshes);
     scene.surfaces.seed = scene.seed;

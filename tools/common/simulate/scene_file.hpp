@@ -2,6 +2,7 @@
 #define REFRACT_TOOLS_SCENE_FILE_HPP
 
 #include "calibrate/calib_file.hpp"
+#include "calibrate/light.hpp"
 #include "simulate/render.hpp"
 #include "simulate/render_scene.hpp"
 
@@ -14,6 +15,7 @@
     T: ...
     exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
     seed: 1
+    channels: [610., 540., 465.]             # wavelengths of red, green and blue, nm, for windows of materials; else grey
     poses:                                   # of the target in camera 1, by name
       board: [ { rvec: [0., 0., 0.], tvec: [-90., -80., 600.] }, ... ]                     # given, or
       pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }   # drawn
@@ -51,6 +53,8 @@ struct Scene
     Exposure exposure;
     uint64_t seed = 1;
     std::vector<ImageSet> sets;
+    bool coloured = false;          //!< each colour is seen through the window at its wavelength
+    ChannelWavelengths wavelengths;
 };
 
 //! Throws Failure (or cv::Exception) that names the file and the key.

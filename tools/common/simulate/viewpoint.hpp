@@ -14,6 +14,8 @@ struct Viewpoint
     cv::Ptr<cv::refract::RefractiveCamera> camera;
     cv::Matx33d R = cv::Matx33d::eye();         //!< scene -> camera
     cv::Vec3d T;
+    //! The camera in the light of blue, green and red; empty: it is the same in all.
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> colours = {};
 
     //! z in the camera's frame.
     double depthOf(const cv::Vec3d& point) const { return (R*point + T)[2]; }

@@ -25,11 +25,8 @@ struct Details
     Mat descriptors;
 };
 
-Details detailsOf(const Mat& image)
+Details detailsOf(const Mat& grey)
 {
-    Mat grey = image;
-    if (image.channels() == 3)
-        cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
     Details details;
     cv::SIFT::create(MOST_DETAILS)->detectAndCompute(grey, cv::noArray(), details.places, details.descriptors);
     return details;
@@ -48,9 +45,9 @@ std::vector<int> bestOf(const Details& from, const Details& to)
 }
 
 //! Pairs that choose each other.
-void findPartners(const Mat& image1, const Mat& image2, std::vector<Point2d>& pixels1, std::vector<Point2d>& pixels2)
+void findPartners(const Mat& grey1, const Mat& grey2, std::vector<Point2d>& pixels1, std::vector<Point2d>& pixels2)
 {
-    const Details first = detailsOf(image1), second = detailsOf(image2);
+    const Details first = detailsOf(grey1), second = detailsOf(grey2);
     if (first.places.size() < 2 || second.places.size() < 2)
         return;
     const std::vector<int> forth = bestOf(first, second), back = bestOf(second, first);
@@ -78,7 +75,7 @@ bool isBeyondWindows(const Calibration& calibration, double z)
 std::vector<float> depthsOfDetails(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {
     std::vector<Point2d> pixels1, pixels2;
-    findPartners(image1, image2, pixels1, pixels2);
+    findPartners(greyOf(image1, calibration.channel), greyOf(image2, calibration.channel), pixels1, pixels2);
     std::vector<float> depths;
     if (pixels1.empty())
         return depths;

@@ -14,10 +14,8 @@ const double FLAT = 0.25;           // variance, grey levels squared, as roundin
 
 Mat greyFloat(const Mat& image)
 {
-    Mat grey = image, result;
-    if (image.channels() == 3)
-        cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-    grey.convertTo(result, CV_32F);
+    Mat result;
+    greyOf(image, BRIGHTNESS).convertTo(result, CV_32F);
     return result;
 }
 

@@ -25,12 +25,20 @@ RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& i
     for (int c = 0; c < 2; c++)
     {
         const int64 start = cv::getTickCount();
-        const Mat T = c ? Mat(rig.calibration().Ts[c]) : Mat();
-        cv::refract::initRefractiveStereoRectifyMap(rig.calibration().cameras[c].camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1,
-                                                    scaled(c ? rig.P2 : rig.P1, scale), T, size, CV_32FC2, result.map[c],
-                                                    cv::noArray());
+        const Mat T = c ? Mat(rig.calibration().Ts[c]) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
+        const auto mapOf = [&](const cv::Ptr<cv::refract::RefractiveCamera>& camera) {
+            Mat map;
+            cv::refract::initRefractiveStereoRectifyMap(camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1, P, T, size, CV_32FC2, map,
+                                                        cv::noArray());
+            return map;
+        };
+        result.map[c] = mapOf(rig.calibration().cameras[c].camera);
+        std::vector<Mat> maps;
+        for (const auto& camera : rig.colours(c))
+            maps.push_back(mapOf(camera));
         seconds += secondsSince(start);
-        cv::remap(c ? image2 : image1, result.image[c], result.map[c], cv::noArray(), cv::INTER_LINEAR);
+        result.image[c] = remapChannels(c ? image2 : image1, maps.empty() ? std::vector<Mat>{result.map[c]} : maps,
+                                        cv::INTER_LINEAR);
     }
     return result;
 }
@@ -39,10 +47,8 @@ Mat fromMatcher(const RectifiedRig& rig, const Mat& image) { return rig.vertical
 
 Mat forMatcher(const RectifiedRig& rig, const Mat& image)
 {
-    Mat grey = image;
-    if (image.channels() == 3)
-        cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-    return fromMatcher(rig, grey);
+    // Colours that were rectified each by itself lie on each other.
+    return fromMatcher(rig, greyOf(image, rig.correctsColours() ? BRIGHTNESS : rig.calibration().channel));
 }
 
 Mat match(const Mat& first, const Mat& second, int minDisparity, int disparities, const MatcherOptions& options, double& seconds)

@@ -33,6 +33,12 @@ RectifiedRig::RectifiedRig(const Calibration& calibration, const Vec2d& depthRan
                                  "%d: give a smaller range", depthRange[0], depthRange[1], disparities_, across));
 }
 
+void RectifiedRig::correctColours(const ChannelWavelengths& wavelengths, const std::string& of)
+{
+    for (int c = 0; c < 2; c++)
+        colours_[c] = camerasInColours(calibration_.cameras[c].camera, wavelengths, of);
+}
+
 Vec3d RectifiedRig::centre() const { return centreOf(P1); }
 
 double RectifiedRig::shift() const

@@ -2,6 +2,7 @@
 #define REFRACT_TOOLS_RECTIFIED_RIG_HPP
 
 #include "calibrate/calib_file.hpp"
+#include "calibrate/light.hpp"
 
 namespace tools {
 
@@ -28,6 +29,13 @@ public:
     cv::Vec3d centre() const;
 
     const Calibration& calibration() const { return calibration_; }
+
+    /** Colour images are then rectified each channel by itself.
+    @param of the calibration's file, for a sentence */
+    void correctColours(const ChannelWavelengths& wavelengths, const std::string& of);
+    bool correctsColours() const { return !colours_[0].empty(); }
+    //! Camera 0 or 1 in the light of each channel; empty: all are corrected as that of the calibration.
+    const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& colours(int camera) const { return colours_[camera]; }
     const cv::Vec2d& depthRange() const { return depthRange_; }
     //! z in the rectified frame of the plane that the first pass is made for.
     double planeDepth() const { return 2/(1/depthRange_[0] + 1/depthRange_[1]); }
@@ -38,6 +46,7 @@ private:
     double perInverse() const;
 
     Calibration calibration_;
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> colours_[2];
     cv::Vec2d depthRange_;
     cv::Size size_;
     bool vertical_;

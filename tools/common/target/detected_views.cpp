@@ -45,7 +45,7 @@ struct Search
     std::exception_ptr error;
 };
 
-void search(const std::vector<std::string>& paths, const std::vector<int>& which, const Target& target,
+void search(const std::vector<std::string>& paths, const std::vector<int>& which, const Target& target, Channel channel,
             std::vector<Search>& results, Progress& progress)
 {
     cv::parallel_for_(cv::Range(0, (int)which.size()), [&](const cv::Range& range) {
@@ -55,7 +55,7 @@ void search(const std::vector<std::string>& paths, const std::vector<int>& which
             progress.at(paths[i]);
             try
             {
-                const cv::Mat grey = readGrey(paths[i]);
+                const cv::Mat grey = readGrey(paths[i], channel);
                 results[i].image = grey.size();
                 results[i].points = target.detect(grey, &results[i].otherTarget);
             }
@@ -101,7 +101,7 @@ void requireOneSize(const std::vector<std::string>& paths, const std::vector<Sea
 
 /* Images are read and searched in parallel; the result and the error reported do not depend on the order. The first, the
 middle and the last come first: if all three show a target of another size, it need not be looked for in the others. */
-ViewSet detectViews(const std::vector<std::string>& paths, const Target& target, cv::Size imageSize, bool quiet)
+ViewSet detectViews(const std::vector<std::string>& paths, const Target& target, cv::Size imageSize, bool quiet, Channel channel)
 {
     const int count = (int)paths.size();
     std::vector<int> samples, others;
@@ -110,11 +110,11 @@ ViewSet detectViews(const std::vector<std::string>& paths, const Target& target,
     std::vector<Search> results(count);
     {
         Progress progress("searching images for the target", count, quiet);
-        search(paths, samples, target, results, progress);
+        search(paths, samples, target, channel, results, progress);
         if (samples.size() > 2 && !otherTargetIn(results, samples).empty())
             throw Failure(otherTargetText("'" + paths[samples[0]] + "', '" + paths[samples[1]] + "' and '" + paths[samples[2]]
                                           + "'", target, otherTargetIn(results, samples)));
-        search(paths, others, target, results, progress);
+        search(paths, others, target, channel, results, progress);
     }
     for (const Search& result : results)
         if (result.error)
@@ -178,13 +178,13 @@ bool isPointFile(const std::string& source)
     return extensionOf(source) == ".vnl" || extensionOf(source) == ".csv";
 }
 
-ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet)
+ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet, Channel channel)
 {
     if (!target && extensionOf(source) != ".csv")
         throw Failure("'" + source + "' shows a target that must be known: give --size and --square (only a points.csv brings its "
                       "own coordinates)");
     const ViewSet set = isPointFile(source) ? viewsOfPointFile(source, target, imageSize)
-                                            : detectViews(expandGlob(source), *target, imageSize, quiet);
+                                            : detectViews(expandGlob(source), *target, imageSize, quiet, channel);
     if (set.views.empty())
         throw Failure("the target was not found in any image of '" + source + "': check --pattern and --size="
                       + sizeText(target->size()) + " (inner corners or dots), light and focus");

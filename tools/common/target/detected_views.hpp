@@ -32,8 +32,10 @@ struct ViewSet
 @param target null: there is none, and only a points.csv can be read.
 @param imageSize needed for a .vnl and a .csv, which do not say it; otherwise checked if not empty.
 @param quiet no progress.
+@param channel of colour images, in which the target is looked for.
 Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
-ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet);
+ViewSet readViews(const std::string& source, const Target* target, cv::Size imageSize, bool quiet,
+                  Channel channel = BRIGHTNESS);
 
 //! A file of points in place of images: there is nothing to look at.
 bool isPointFile(const std::string& source);
