@@ -2,6 +2,7 @@
 #include "console/cli.hpp"
 #include "console/images.hpp"
 
+#include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -99,7 +100,9 @@ Frames::Frames(const std::string& source) : source_(source)
         throw Failure("'" + source + "' are several videos: give one at a time");
     source_ = files_[0];
     files_.clear();
-    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);      // a decoder's remarks about a cut file are not for users
+    // Decoders' remarks about a file that is none, or is cut, are not for users.
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     open();
     while (video_.grab())       // what files say of their length is not always true
         count_++;
