@@ -92,6 +92,17 @@ TEST_CASE("Images of different moments given as pairs are named", "[pair_check]"
         }
 }
 
+TEST_CASE("Wrong pairs are named behind layers of known materials, too", "[pair_check]")
+{
+    GlassWindow laminate({ -0.2483, 0.0961, 1 }, 10, 1.52, 50);
+    laminate.thickness = { 10, 1.52, 10 };
+    laminate.index = { 1.52, 1.48, 1.52 };
+    laminate.materials = { "", "N-BK7", "PMMA", "N-BK7", "" };
+    laminate.wavelength = 540;
+    Mono mono(laminate);
+    CHECK_THAT(mono.why(mono.scene.direct, rotated(mono.scene.refracted)), Contains("same target"));
+}
+
 TEST_CASE("A fit that is bad for other reasons is returned", "[pair_check]")
 {
     SECTION("a wrong thickness")

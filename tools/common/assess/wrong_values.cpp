@@ -23,6 +23,7 @@ GlassWindow onePane(const GlassWindow& window)
     }
     pane.thickness = {thickness};
     pane.index = {window.outerIndex/(1. - shift/thickness)};
+    pane.materials.clear();
     return pane;
 }
 

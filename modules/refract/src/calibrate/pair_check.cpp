@@ -179,6 +179,7 @@ double otherWindowRms(Rig start, RigTask task)
             const double optical = std::inner_product(window.thickness.begin(), window.thickness.end(), window.index.begin(), 0.);
             window.thickness.assign(1, total);
             window.index.assign(1, optical/total);
+            window.materials.clear();
             camera.setWindow(window);
         }
         task.flags |= window.innerIndex == window.outerIndex ? GLASS_FREE_THICKNESS
