@@ -235,6 +235,44 @@ TEST_CASE("Derivatives by point and parameters as mrcal_project's", "[against_mr
     printNumber("derivatives against mrcal_project's, worst, relative", worst, "");
 }
 
+TEST_CASE("Derivatives by the control points of splines as mrcal_project's", "[against_mrcal]")
+{
+    CAPTURE(seed());
+    Random random;
+    double worst = 0;
+    for (const Model& m : models())
+    {
+        if (m.name.find("SPLINED") == std::string::npos)
+            continue;
+        CAPTURE(m.name);
+        const mrcal_lensmodel_t lens = lensModel(m.name);
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(m.name, m.intrinsics);
+        const int count = 300, all = (int)m.intrinsics.size();
+        std::vector<Vec3d> points;
+        for (int i = 0; i < count; i++)
+            points.push_back(random.uniform(0.5, 2)*randomNormal(random, m.halfField));
+        std::vector<Vec2d> pixels(count);
+        Mat byPoint(2*count, 3, CV_64F), theirs(2*count, all, CV_64F), which, weights;
+        std::vector<uchar> status;
+        REQUIRE(mrcal_project((mrcal_point2_t*)pixels.data(), byPoint.ptr<mrcal_point3_t>(), theirs.ptr<double>(),
+                              (const mrcal_point3_t*)points.data(), count, &lens, m.intrinsics.data()));
+        refractiveSplineWeights(points, Vec3d(), Vec3d(), camera, which, weights, status);
+        for (int i = 0; i < count; i++)
+        {
+            REQUIRE(status[i] == REFRACT_OK);
+            CHECK(std::abs(sum(weights.row(i))[0] - 1) < 1e-14);
+            Mat ours = Mat::zeros(2, all, CV_64F);
+            for (int k = 0; k < which.cols; k++)
+                for (int axis = 0; axis < 2; axis++)
+                    ours.at<double>(axis, 4 + 2*which.at<int>(i, k) + axis) = m.intrinsics[axis]*weights.at<double>(i, k);
+            const Mat expected = theirs.rowRange(2*i, 2*i + 2);
+            worst = std::max(worst, norm(ours.colRange(4, all), expected.colRange(4, all))/norm(expected.colRange(4, all)));
+        }
+    }
+    CHECK(worst < 1e-9);
+    printNumber("derivatives by control points against mrcal_project's, worst, relative", worst, "");
+}
+
 TEST_CASE("A pane in air leaves mrcal's bearing as it is", "[against_mrcal]")
 {
     CAPTURE(seed());

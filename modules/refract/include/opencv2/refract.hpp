@@ -290,7 +290,8 @@ public:
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
     //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
     CV_WRAP virtual std::vector<String> parameterNames() const = 0;
-    //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs()) as the jacobian's columns, Nx1 CV_64F.
+    //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the jacobian's
+    //! columns, Nx1 CV_64F.
     CV_WRAP virtual Mat lensParameters() const = 0;
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
@@ -385,6 +386,23 @@ thickness of each layer, index of each layer, innerIndex, outerIndex. NaN where 
 CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
         InputArray objectPoints, InputArray rvec, InputArray tvec, const Ptr<RefractiveCamera>& camera,
         OutputArray imagePoints, OutputArray status, OutputArray jacobian);
+
+/** @brief The derivatives that refractiveProjectPoints' jacobian leaves out, those by the control points of a splined lens: a
+pixel depends on few of them, and linearly.
+
+With c[k] = (distCoeffs()[2k], distCoeffs()[2k + 1]) the control point k, du/dc[k][0] = fx w and dv/dc[k][1] = fy w; u does not
+depend on c[k][1], nor v on c[k][0]. A window does not come in, as a point's direction at the lens does not depend on the lens.
+
+@param objectPoints N 3-D points, object coordinates.
+@param rvec rotation vector (or 3x3 matrix) object -> camera.
+@param tvec translation object -> camera.
+@param camera with a lens LENSMODEL_SPLINED_STEREOGRAPHIC_...; others throw.
+@param controls NxM CV_32S: which control points k a pixel depends on, M = (order + 1)^2; -1 where status is not 0.
+@param weights NxM CV_64F: w of each, their sum is 1; NaN where status is not 0.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveSplineWeights(InputArray objectPoints, InputArray rvec, InputArray tvec,
+        const Ptr<RefractiveCamera>& camera, OutputArray controls, OutputArray weights, OutputArray status = noArray());
 
 /** @brief Rays in the scene that pixels look along. Closed form but for the lens.
 @param imagePoints N raw pixels.

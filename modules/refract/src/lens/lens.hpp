@@ -57,6 +57,13 @@ public:
     virtual bool isFixed(int /*parameter*/) const { return false; }
     //! False where the curvature of lines' images may jump.
     virtual bool isSmooth() const { return true; }
+    //! Of a lens made of control points, how many of them a pixel depends on; 0: it is not such a lens.
+    virtual int controlsPerPixel() const { return 0; }
+    //! Which control points those are, and the plane's derivative by each (that of both coordinates, each by its own).
+    virtual uchar controlsOf(const Vec3d& /*direction*/, int* /*which*/, double* /*weights*/) const
+    {
+        return REFRACT_OUTSIDE_LENS_MODEL;
+    }
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };

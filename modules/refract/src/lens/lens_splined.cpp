@@ -83,6 +83,8 @@ public:
     bool inDomain(const Vec2d& p, const Matx22d& slope) const;
     //! In the domain whatever the slope is.
     bool inDomain(const Vec2d& p) const { return isMonotone_ || domain_(cellAt(p)) == CERTAIN; }
+    //! The control points that a point of the plane needs, row by row, and what they weigh.
+    void weigh(const Vec2d& p, int* which, double* weights) const;
     //! The point that is seen there; false if there is none.
     bool invert(const Vec2d& seen, Vec2d& p) const;
 
@@ -92,7 +94,12 @@ private:
 
     enum { OUTSIDE, INSIDE, CERTAIN };      // of the domain; CERTAIN: as far as the control points tell of all of the cell
 
-    template<int ORDER, bool WITH_SLOPE> Vec2d added(double gx, double gy, Vec2d& byX, Vec2d& byY) const;
+    Vec2d gridAt(const Vec2d& p) const
+    {
+        return Vec2d(p[0]*perUnit_ + 0.5*(grid_.nx - 1), p[1]*perUnit_ + 0.5*(grid_.ny - 1));
+    }
+    template<int ORDER> void weigh(const Vec2d& g, int* which, double* weights) const;
+    template<int ORDER, bool WITH_SLOPE> Vec2d added(const Vec2d& g, Vec2d& byX, Vec2d& byY) const;
     Vec2d intoRectangle(const Vec2d& p) const;
     Point cellAt(const Vec2d& p) const;
     bool isMonotone(const Rect& controls) const;
@@ -117,6 +124,8 @@ public:
     Mat distCoeffs() const CV_OVERRIDE { return columnOf(surface_->controls()); }
     bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
     bool isSmooth() const CV_OVERRIDE { return surface_->grid().order > 2; }
+    int controlsPerPixel() const CV_OVERRIDE { return (surface_->grid().order + 1)*(surface_->grid().order + 1); }
+    uchar controlsOf(const Vec3d& d, int* which, double* weights) const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE
     {
         return makePtr<SplinedLens>(model_, p, surface_);
@@ -199,12 +208,12 @@ void SplineSurface::markCertain()
                 domain_(j, i) = CERTAIN;
 }
 
-/* What is added to the plane, and its derivatives by gx and gy. All that decides the form of the loops is constant, so that
+/* What is added to the plane, and its derivatives by g. All that decides the form of the loops is constant, so that
 straight code comes of them. */
 template<int ORDER, bool WITH_SLOPE>
-Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX, Vec2d& byY) const
+Vec2d SplineSurface::added(const Vec2d& g, Vec2d& byX, Vec2d& byY) const
 {
-    const Weights<ORDER> x(gx, grid_.nx), y(gy, grid_.ny);
+    const Weights<ORDER> x(g[0], grid_.nx), y(g[1], grid_.ny);
     const double* c = &controls_[2*((size_t)y.first*grid_.nx + x.first)];
     double sum[2] = { 0, 0 }, sumByX[2] = { 0, 0 }, sumByY[2] = { 0, 0 };
     for (int j = 0; j <= ORDER; j++, c += 2*(size_t)grid_.nx)
@@ -232,13 +241,29 @@ Vec2d SplineSurface::added(double gx, double gy, Vec2d& byX, Vec2d& byY) const
     return Vec2d(sum);
 }
 
+template<int ORDER> void SplineSurface::weigh(const Vec2d& g, int* which, double* weights) const
+{
+    const Weights<ORDER> x(g[0], grid_.nx), y(g[1], grid_.ny);
+    for (int j = 0; j <= ORDER; j++)
+        for (int i = 0; i <= ORDER; i++)
+        {
+            *which++ = (y.first + j)*grid_.nx + x.first + i;
+            *weights++ = x.value[i]*y.value[j];
+        }
+}
+
+void SplineSurface::weigh(const Vec2d& p, int* which, double* weights) const
+{
+    grid_.order == 3 ? weigh<3>(gridAt(p), which, weights) : weigh<2>(gridAt(p), which, weights);
+}
+
 Vec2d SplineSurface::at(const Vec2d& p, Matx22d* slope) const
 {
-    const double gx = p[0]*perUnit_ + 0.5*(grid_.nx - 1), gy = p[1]*perUnit_ + 0.5*(grid_.ny - 1);
+    const Vec2d g = gridAt(p);
     Vec2d byX, byY;
     if (!slope)
-        return p + (grid_.order == 3 ? added<3, false>(gx, gy, byX, byY) : added<2, false>(gx, gy, byX, byY));
-    const Vec2d sum = grid_.order == 3 ? added<3, true>(gx, gy, byX, byY) : added<2, true>(gx, gy, byX, byY);
+        return p + (grid_.order == 3 ? added<3, false>(g, byX, byY) : added<2, false>(g, byX, byY));
+    const Vec2d sum = grid_.order == 3 ? added<3, true>(g, byX, byY) : added<2, true>(g, byX, byY);
     *slope = Matx22d(1 + perUnit_*byX[0], perUnit_*byY[0], perUnit_*byX[1], 1 + perUnit_*byY[1]);
     return p + sum;
 }
@@ -314,6 +339,15 @@ uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2
     if (byDirection)
         *byDirection = slope**byDirection;
     return surface_->inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
+}
+
+uchar SplinedLens::controlsOf(const Vec3d& d, int* which, double* weights) const
+{
+    Vec2d plane, p;
+    const uchar status = bend(d, plane, nullptr, nullptr);
+    if (status == REFRACT_OK && stereographic(d, p, nullptr) == REFRACT_OK)
+        surface_->weigh(p, which, weights);
+    return status;
 }
 
 uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const
