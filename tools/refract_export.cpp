@@ -44,7 +44,7 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
     app.add_option("--points", options.points, "points.csv of refract_measure (--to=colmap)");
     app.add_option("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
-                   "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses)");
+                   "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; a splined lens stays one with --to=mrcal)");
     app.add_option("--max-error", options.maxError, "px: exit code 2 if a camera is further off")->check(moreThanZero());
 }
 
@@ -86,6 +86,8 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
         throw Failure(format("--coefficients=%d: %s has no such lens model", options.coefficients, options.target.c_str()));
     if (options.coefficients >= 0)
         return fitCentralCamera(camera, range, options.coefficients, name);
+    if (options.target == "mrcal" && camera->lensModel().find("LENSMODEL_SPLINED") == 0)
+        return fitCentralSplined(camera, range, name);
     if (camera->lensModel() == "fisheye" && isKnown(0))
         return fitCentralCamera(camera, range, 0, name);
     const double NEARLY = 1.1;

@@ -148,6 +148,35 @@ TEST_CASE("refract_export writes mrcal's models", "[tools][export]")
 #endif
 }
 
+TEST_CASE("refract_export leaves a splined lens splined for mrcal", "[tools][export]")
+{
+    const TemporaryFolder folder;
+    std::vector<double> intrinsics(4 + 2*12*10, 0.);
+    std::copy_n(std::vector<double>{ 700, 702, 640, 510 }.begin(), 4, intrinsics.begin());
+    for (size_t k = 4; k < intrinsics.size(); k++)
+        intrinsics[k] = 0.01*std::sin(0.7*(double)k);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(
+        "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_fov_x_deg=110", intrinsics, GlassWindow(Vec3d(0.05, 0.02, 1), 10, 1.5, 30, 1.333));
+    camera->setImageSize(Size(1280, 1024));
+    camera->save(folder / "calib.yml");
+    const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + " --to=mrcal" + RANGE + " --out-dir=" + (folder / "m"));
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.code == 0);
+    const Ptr<RefractiveCamera> ours = RefractiveCamera::read(folder / "m/camera1.cameramodel");
+    CHECK(ours->lensModel().find("LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_") == 0);
+#ifdef HAVE_MRCAL
+    mrcal_cameramodel_t* model = mrcal_read_cameramodel_file((folder / "m/camera1.cameramodel").c_str());
+    REQUIRE(model);
+    const mrcal_point3_t p = { { 100, -60, 700 } };
+    mrcal_point2_t q;
+    REQUIRE(mrcal_project(&q, NULL, NULL, &p, 1, &model->lensmodel, model->intrinsics));
+    std::vector<Point2d> pixel;
+    refractiveProjectPoints(std::vector<Vec3d>{ Vec3d(p.x, p.y, p.z) }, Vec3d(), Vec3d(), ours, pixel);
+    CHECK(norm(pixel[0] - Point2d(q.x, q.y)) < 1e-9);
+    mrcal_free_cameramodel(&model);
+#endif
+}
+
 TEST_CASE("refract_export writes COLMAP's model, whose points and pixels belong together exactly", "[tools][export]")
 {
     const TemporaryFolder folder;

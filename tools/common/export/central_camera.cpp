@@ -1,56 +1,24 @@
-#include "export/central_camera.hpp"
+#include "export/seen_points.hpp"
 #include "console/cli.hpp"
 
 #include <ceres/ceres.h>
 #include <opencv2/calib3d.hpp>
-#include <cmath>
 
 namespace tools {
 
 using cv::Mat;
 using cv::Point2d;
-using cv::Point3d;
 using cv::Ptr;
 using cv::Vec3d;
 using cv::refract::RefractiveCamera;
 
 namespace {
 
-//! Scene points, camera frame, and the pixels where they are seen.
-struct Sample
-{
-    std::vector<Point3d> points;
-    std::vector<Point2d> pixels;
-};
-
-//! Pixels all over the image, seen at depths whose inverses are evenly spaced.
-Sample sampleRange(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths)
-{
-    const cv::Size size = camera->imageSize();
-    std::vector<Point2d> grid;
-    for (int i = 0; i < columns*rows; i++)
-        grid.emplace_back((i % columns)*(size.width - 1.)/(columns - 1), (i/columns)*(size.height - 1.)/(rows - 1));
-    Sample sample;
-    for (int k = 0; k < depths; k++)
-    {
-        const double part = k/(depths - 1.), z = 1/((1 - part)/range[0] + part/range[1]);
-        std::vector<Point3d> seen;
-        cv::refract::refractivePointsOnPlane(grid, seen, camera, cv::Vec4d(0, 0, 1, z));
-        for (size_t i = 0; i < grid.size(); i++)
-            if (seen[i].z == seen[i].z)
-            {
-                sample.points.push_back(seen[i]);
-                sample.pixels.push_back(grid[i]);
-            }
-    }
-    return sample;
-}
-
 //! All pixels' errors by (rvec, tvec, lens), of a camera without a window.
 class CentralResidual : public ceres::CostFunction
 {
 public:
-    CentralResidual(const Sample& sample, const Ptr<RefractiveCamera>& model)
+    CentralResidual(const SeenPoints& sample, const Ptr<RefractiveCamera>& model)
         : sample_(sample), model_(model->clone()), lens_((int)model->lensParameters().total())
     {
         set_num_residuals(2*(int)sample.points.size());
@@ -80,7 +48,7 @@ public:
     }
 
 private:
-    const Sample& sample_;
+    const SeenPoints& sample_;
     Ptr<RefractiveCamera> model_;
     int lens_;
 };
@@ -99,7 +67,7 @@ Ptr<RefractiveCamera> startOf(const Ptr<RefractiveCamera>& camera, int coefficie
     return start;
 }
 
-void fit(const Sample& sample, CentralCamera& central, const std::string& name)
+void fit(const SeenPoints& sample, CentralCamera& central, const std::string& name)
 {
     Vec3d rvec, tvec;
     Mat lens = central.camera->lensParameters().clone();
@@ -122,46 +90,17 @@ void fit(const Sample& sample, CentralCamera& central, const std::string& name)
     central.T = tvec;
 }
 
-CentralError errorOf(const Sample& sample, const CentralCamera& central)
-{
-    std::vector<Point2d> seen;
-    std::vector<Vec3d> origins, directions;
-    cv::refract::refractiveProjectPoints(sample.points, central.R, central.T, central.camera, seen);
-    cv::refract::refractiveUnprojectPoints(sample.pixels, origins, directions, central.camera);
-    CentralError e;
-    const auto n = (double)sample.points.size();
-    const cv::Matx33d back = central.R.t();
-    for (size_t i = 0; i < sample.points.size(); i++)
-    {
-        // Where the ray that the central camera takes the pixel for passes the depth of the point.
-        const Vec3d centre = back*(origins[i] - central.T), along = back*directions[i], X = sample.points[i];
-        const double length = cv::norm(centre + along*((X[2] - centre[2])/along[2]) - X);
-        const double px = cv::norm(seen[i] - sample.pixels[i]);
-        // NaN counts as the worst there can be
-        e.max = px <= e.max ? e.max : px;
-        e.lengthMax = length <= e.lengthMax ? e.lengthMax : length;
-        e.rms += px*px/n;
-        e.lengthRms += length*length/n;
-    }
-    e.rms = std::sqrt(e.rms);
-    e.lengthRms = std::sqrt(e.lengthRms);
-    return e;
-}
-
 } // namespace
 
 CentralCamera fitCentralCamera(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range, int coefficients,
                                const std::string& name)
 {
-    const Sample fitted = sampleRange(camera, range, 25, 19, 7);
-    const size_t FEWEST = 100;
-    if (fitted.points.size() < FEWEST)
-        throw Failure(cv::format("%s sees next to nothing between z = %g and %g: give a range beyond its window", name.c_str(),
-                                 range[0], range[1]));
+    const SeenPoints fitted = seenPoints(camera, range, 25, 19, 7);
+    requireEnough(fitted, range, name);
     CentralCamera central;
     central.camera = startOf(camera, coefficients);
     fit(fitted, central, name);
-    central.error = errorOf(sampleRange(camera, range, 40, 30, 12), central);       // elsewhere, too
+    central.error = errorOf(seenPoints(camera, range, 40, 30, 12), central);       // elsewhere, too
     return central;
 }
 

@@ -1,0 +1,70 @@
+#include "export/seen_points.hpp"
+#include "console/cli.hpp"
+
+#include <cmath>
+
+namespace tools {
+
+using cv::Point2d;
+using cv::Point3d;
+using cv::Ptr;
+using cv::Vec3d;
+using cv::refract::RefractiveCamera;
+
+SeenPoints seenPoints(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths)
+{
+    const cv::Size size = camera->imageSize();
+    std::vector<Point2d> grid;
+    for (int i = 0; i < columns*rows; i++)
+        grid.emplace_back((i % columns)*(size.width - 1.)/(columns - 1), (i/columns)*(size.height - 1.)/(rows - 1));
+    SeenPoints all;
+    for (int k = 0; k < depths; k++)
+    {
+        const double part = k/(depths - 1.), z = 1/((1 - part)/range[0] + part/range[1]);
+        std::vector<Point3d> seen;
+        cv::refract::refractivePointsOnPlane(grid, seen, camera, cv::Vec4d(0, 0, 1, z));
+        for (size_t i = 0; i < grid.size(); i++)
+            if (seen[i].z == seen[i].z)
+            {
+                all.points.push_back(seen[i]);
+                all.pixels.push_back(grid[i]);
+            }
+    }
+    return all;
+}
+
+void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name)
+{
+    const size_t FEWEST = 100;
+    if (seen.points.size() < FEWEST)
+        throw Failure(cv::format("%s sees next to nothing between z = %g and %g: give a range beyond its window", name.c_str(),
+                                 range[0], range[1]));
+}
+
+CentralError errorOf(const SeenPoints& sample, const CentralCamera& central)
+{
+    std::vector<Point2d> seen;
+    std::vector<Vec3d> origins, directions;
+    cv::refract::refractiveProjectPoints(sample.points, central.R, central.T, central.camera, seen);
+    cv::refract::refractiveUnprojectPoints(sample.pixels, origins, directions, central.camera);
+    CentralError e;
+    const auto n = (double)sample.points.size();
+    const cv::Matx33d back = central.R.t();
+    for (size_t i = 0; i < sample.points.size(); i++)
+    {
+        // Where the ray that the central camera takes the pixel for passes the depth of the point.
+        const Vec3d centre = back*(origins[i] - central.T), along = back*directions[i], X = sample.points[i];
+        const double length = cv::norm(centre + along*((X[2] - centre[2])/along[2]) - X);
+        const double px = cv::norm(seen[i] - sample.pixels[i]);
+        // NaN counts as the worst there can be
+        e.max = px <= e.max ? e.max : px;
+        e.lengthMax = length <= e.lengthMax ? e.lengthMax : length;
+        e.rms += px*px/n;
+        e.lengthRms += length*length/n;
+    }
+    e.rms = std::sqrt(e.rms);
+    e.lengthRms = std::sqrt(e.lengthRms);
+    return e;
+}
+
+} // namespace tools

@@ -1,0 +1,26 @@
+#ifndef REFRACT_TOOLS_SEEN_POINTS_HPP
+#define REFRACT_TOOLS_SEEN_POINTS_HPP
+
+#include "export/central_camera.hpp"
+
+namespace tools {
+
+//! Scene points, camera frame, and the pixels where they are seen: what central cameras are fitted to and judged by.
+struct SeenPoints
+{
+    std::vector<cv::Point3d> points;
+    std::vector<cv::Point2d> pixels;
+};
+
+//! Pixels all over the image, seen at depths whose inverses are evenly spaced.
+SeenPoints seenPoints(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths);
+
+//! Throws where the camera of that name sees next to nothing of the range.
+void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name);
+
+//! By how much a central camera is off.
+CentralError errorOf(const SeenPoints& seen, const CentralCamera& central);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SEEN_POINTS_HPP
