@@ -8,6 +8,7 @@
 #include "arrays/array_kernels.hpp"
 #include "lens/fisheye_model.hpp"
 #include "lens/opencv_model.hpp"
+#include "lens/spline_model.hpp"
 #include "points/point_kernels.hpp"
 #include "window/layer_kernels.hpp"
 
@@ -30,6 +31,7 @@ the room's *.simd.hpp. */
     EACH(LayerKernels, layer) \
     EACH(LensKernels<OpenCVModel>, openCV) \
     EACH(LensKernels<FisheyeModel>, fisheye) \
+    EACH(SplineKernels, spline) \
     EACH(PointKernels, point)
 
 //! All of one level.

@@ -9,6 +9,7 @@
 #include "dispatch/kernels.hpp"
 #include "lens/fisheye.simd.hpp"
 #include "lens/opencv.simd.hpp"
+#include "lens/spline.simd.hpp"
 #include "points/points.simd.hpp"
 #include "window/layers.simd.hpp"
 

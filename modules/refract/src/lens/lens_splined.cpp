@@ -4,7 +4,9 @@
 
 #include "lens/one_to_one.hpp"
 #include "lens/plane_lens.hpp"
+#include "lens/spline_model.hpp"
 #include "lens/stereographic.hpp"
+#include "math/missing.hpp"
 #include <array>
 
 /* mrcal's LENSMODEL_SPLINED_STEREOGRAPHIC_order=O_Nx=N_Ny=M_fov_x_deg=F: the stereographic projection and, added to it, a
@@ -27,46 +29,36 @@ namespace {
 //! Cells to a control point's distance in which the surface is looked at for folds; searches begin at every STARTS-th.
 const int CELLS = 8, STARTS = 2;
 
-//! The control points that a coordinate needs, and what they weigh.
+//! The control points that a coordinate needs, what they weigh, and by how much that changes.
 template<int ORDER> struct Weights
 {
-    Weights(double g, int count)
+    Weights(double g, int count) : first(splineCell<ORDER>(g, count) - 1)
     {
-        const int cell = std::max(1, std::min((int)(g + (ORDER == 3 ? 0 : 0.5)), count - ORDER));
-        const double t = g - cell;
-        first = cell - 1;
-        fill(t, 1 - t);
+        const double t = g - (first + 1);
+        splineWeights<ORDER>(t, value);
+        slopes(t, 1 - t);
     }
 
-    int first;
+    const int first;
     double value[ORDER + 1], slope[ORDER + 1];      //!< slope: by g
 
 private:
-    void fill(double t, double r);
+    void slopes(double t, double r);
 };
 
-template<> inline void Weights<2>::fill(double t, double)
+template<> inline void Weights<2>::slopes(double t, double)
 {
-    const double before = 0.5 - t, after = 0.5 + t;
-    value[0] = 0.5*before*before;
-    value[1] = 0.75 - t*t;
-    value[2] = 0.5*after*after;
-    slope[0] = -before;
+    slope[0] = t - 0.5;
     slope[1] = -2*t;
-    slope[2] = after;
+    slope[2] = t + 0.5;
 }
 
-template<> inline void Weights<3>::fill(double t, double r)
+template<> inline void Weights<3>::slopes(double t, double r)
 {
-    const double t2 = t*t, r2 = r*r;
-    value[0] = r2*r*(1./6);
-    value[1] = 2./3 + t2*(0.5*t - 1);
-    value[2] = 2./3 + r2*(0.5*r - 1);
-    value[3] = t2*t*(1./6);
-    slope[0] = -0.5*r2;
+    slope[0] = -0.5*r*r;
     slope[1] = t*(1.5*t - 2);
     slope[2] = -r*(1.5*r - 2);
-    slope[3] = 0.5*t2;
+    slope[3] = 0.5*t*t;
 }
 
 //! The surface and its domain. What lenses that differ in fx, fy, cx, cy have in common.
@@ -75,7 +67,9 @@ class SplineSurface
 public:
     SplineSurface(const SplineGrid& grid, const std::vector<double>& controls);
     const SplineGrid& grid() const { return grid_; }
-    const std::vector<double>& controls() const { return controls_; }
+    Mat controls() const { return Mat(2*grid_.nx*grid_.ny, 1, CV_64F, (void*)controls_.data()).clone(); }
+    //! For the vector code; it points into this surface.
+    SplineModel model(double fx, double fy, double cx, double cy) const;
 
     //! A point of the stereographic plane -> where it is seen, and by how much that moves; null: not asked for.
     Vec2d at(const Vec2d& p, Matx22d* slope) const;
@@ -92,7 +86,7 @@ private:
     //! Where a search may begin: a point of the stereographic plane and where it is seen.
     struct Start { Vec2d at, seen; };
 
-    enum { OUTSIDE, INSIDE, CERTAIN };      // of the domain; CERTAIN: as far as the control points tell of all of the cell
+    enum { OUTSIDE, INSIDE, CERTAIN = CERTAIN_CELL };      // of the domain; CERTAIN: as far as the control points tell of all of the cell
 
     Vec2d gridAt(const Vec2d& p) const
     {
@@ -108,7 +102,7 @@ private:
     bool search(const Vec2d& target, Vec2d& p) const;
 
     const SplineGrid grid_;
-    const std::vector<double> controls_;
+    std::vector<double> controls_;      //!< and two more numbers, see SplineModel
     const double perUnit_;
     const Vec2d edge_;          //!< the rectangle in the stereographic plane, about 0
     const bool isMonotone_;     //!< all of it is the domain
@@ -120,8 +114,9 @@ class SplinedLens : public PlaneLens
 {
 public:
     SplinedLens(const String& model, const std::vector<double>& four, const Ptr<const SplineSurface>& surface)
-        : PlaneLens(model, four), surface_(surface) {}
-    Mat distCoeffs() const CV_OVERRIDE { return columnOf(surface_->controls()); }
+        : PlaneLens(model, four), surface_(surface), m_(surface->model(fx_, fy_, cx_, cy_)) {}
+    void project(int n, const double* x, const double* y, const double* z, double* u, double* v, uchar* status) const CV_OVERRIDE;
+    Mat distCoeffs() const CV_OVERRIDE { return surface_->controls(); }
     bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
     bool isSmooth() const CV_OVERRIDE { return surface_->grid().order > 2; }
     int controlsPerPixel() const CV_OVERRIDE { return (surface_->grid().order + 1)*(surface_->grid().order + 1); }
@@ -136,6 +131,7 @@ private:
     uchar unbend(const Vec2d& plane, Vec3d& d) const CV_OVERRIDE;
 
     const Ptr<const SplineSurface> surface_;
+    const SplineModel m_;
 };
 
 SplineSurface::SplineSurface(const SplineGrid& grid, const std::vector<double>& controls)
@@ -145,6 +141,13 @@ SplineSurface::SplineSurface(const SplineGrid& grid, const std::vector<double>& 
 {
     if (!isMonotone_)
         findDomain();
+    controls_.resize(controls_.size() + 2, 0.);
+}
+
+SplineModel SplineSurface::model(double fx, double fy, double cx, double cy) const
+{
+    return { fx, fy, cx, cy, grid_.order, grid_.nx, grid_.ny, perUnit_, { edge_[0], edge_[1] }, controls_.data(),
+             isMonotone_ ? nullptr : domain_.ptr(), domain_.cols, domain_.rows, CELLS*perUnit_ };
 }
 
 Point SplineSurface::cellAt(const Vec2d& p) const
@@ -321,6 +324,12 @@ bool SplineSurface::invert(const Vec2d& seen, Vec2d& p) const
         if (search(seen, p = start->at))
             return true;
     return false;
+}
+
+void SplinedLens::project(int n, const double* x, const double* y, const double* z, double* u, double* v, uchar* status) const
+{
+    if (!splineKernels().project(m_, n, x, y, z, u, v))
+        answerMissing(n, u, status, [=](int i) { return projectOne(Vec3d(x[i], y[i], z[i]), u[i], v[i]); });
 }
 
 uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const

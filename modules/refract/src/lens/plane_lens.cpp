@@ -12,14 +12,17 @@ PlaneLens::PlaneLens(const String& model, const std::vector<double>& p)
 void PlaneLens::project(int n, const double* x, const double* y, const double* z, double* u, double* v, uchar* status) const
 {
     for (int i = 0; i < n; i++)
-    {
-        Vec2d plane;
-        if (status[i] != REFRACT_OK)
-            continue;
-        status[i] = bend(Vec3d(x[i], y[i], z[i]), plane, NULL, NULL);
-        u[i] = fx_*plane[0] + cx_;
-        v[i] = fy_*plane[1] + cy_;
-    }
+        if (status[i] == REFRACT_OK)
+            status[i] = projectOne(Vec3d(x[i], y[i], z[i]), u[i], v[i]);
+}
+
+uchar PlaneLens::projectOne(const Vec3d& direction, double& u, double& v) const
+{
+    Vec2d plane;
+    const uchar status = bend(direction, plane, NULL, NULL);
+    u = fx_*plane[0] + cx_;
+    v = fy_*plane[1] + cy_;
+    return status;
 }
 
 void PlaneLens::unproject(int n, const double* u, const double* v, double* x, double* y, double* z, uchar* status) const

@@ -34,6 +34,8 @@ protected:
     //! @param intrinsics fx, fy, cx, cy and those coefficients that are parameters
     PlaneLens(const String& model, const std::vector<double>& intrinsics);
 
+    //! The pixel of one direction.
+    uchar projectOne(const Vec3d& direction, double& u, double& v) const;
     //! Where in the plane, and its derivatives by the direction and by each coefficient; both may be null.
     virtual uchar bend(const Vec3d& direction, Vec2d& plane, Matx23d* byDirection, Vec2d* byCoefficients) const = 0;
     //! The unit direction that is seen there.
