@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # `cpack -G DEB` in a build directory: one Debian package with library, headers and tools, for the Debian and the OpenCV
 # that it was built on.
 set(CPACK_PACKAGE_NAME opencv-refract)

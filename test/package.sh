@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Makes the Debian package and runs the tools that it holds on the bundled images.
 #
 # Usage: test/package.sh [BUILD_DIRECTORY] [--bare]     build/release by default

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Installs what is missing, builds everything with warnings as errors, runs all tests: once as released, once with the
 # address and undefined-behaviour sanitizers; then the fuzzers, a little. Ends with a line that counts the tests.
 #

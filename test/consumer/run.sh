@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Installs a build into an empty prefix and builds a program on it, by find_package and by pkg-config.
 # Usage: test/consumer/run.sh BUILD_DIRECTORY
 set -eu
