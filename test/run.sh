@@ -72,6 +72,7 @@ run "Python package, its tests and samples" wait $python
 cat build/python.log
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
+run "exported names: those of the committed list" test/exports.sh build/release
 run "Debian package: unpacked, its tools run" test/package.sh build/release
 run "the same hundred values from every build" test/agreement/run.sh build/release
 # OpenCV itself is not compiled here: that takes the whole script, without --short.
