@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # refract_bench of this checkout beside that of another commit: built apart, run in turns, each row's least time of all turns
 # and their ratio. On a shared machine the least is what the machine can do; a few turns more make it so.
 #

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Boards seen with and without the window: what the calibrators are given.
 #ifndef REFRACT_BENCH_BOARDS_HPP
 #define REFRACT_BENCH_BOARDS_HPP

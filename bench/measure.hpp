@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // One row of the table: ours and its peers, run alternately in one process on one pinned thread.
 #ifndef REFRACT_BENCH_MEASURE_HPP
 #define REFRACT_BENCH_MEASURE_HPP

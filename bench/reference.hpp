@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The model once more, one point at a time and as the textbook has it: in long double the reference that errors are
 // measured against, in double the straightforward scalar program that speed is measured against. It shares nothing with
 // the module.

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_bench: ours and its peers run alternately in one process, on one pinned thread; one table of ns per point, ratio
 // to the named call, error against the long double reference, number of answers. doc/performance.md explains the result.
 #include "bundles.hpp"

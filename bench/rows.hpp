@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The rows of the table, by what they work on. Each adds rows that hold all they need.
 #ifndef REFRACT_BENCH_ROWS_HPP
 #define REFRACT_BENCH_ROWS_HPP

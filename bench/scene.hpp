@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The scene that all rows share: the camera of Plate2024 behind 20 mm of tilted glass, and its parts for the reference.
 #ifndef REFRACT_BENCH_SCENE_HPP
 #define REFRACT_BENCH_SCENE_HPP

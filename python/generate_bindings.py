@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Runs OpenCV's bindings generator on refract.hpp, and on core's persistence.hpp for the files that cameras are written to.
 
     generate_bindings.py GENERATOR OUTPUT PERSISTENCE_HEADER HEADER [CUSTOM_HEADER...]

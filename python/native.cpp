@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The extension opencv_refract._native: what OpenCV's generator wrote for refract.hpp, with the conversions of OpenCV's
 // own cv2 (cv2_convert, cv2_numpy, cv2_util), in a module of its own. It stands in the place of OpenCV's cv2.cpp.
 

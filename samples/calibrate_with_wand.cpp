@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Three cameras behind the windows of a tank, calibrated by nothing but a wand of known length that is waved through the water:
 // no board, no image without the window. The wand is simulated; put your own pixels in place of waveWand().
 

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The ordinary OpenCV way from a pair of images to the depth of the scene. Its twin depth_of_scene_behind_glass.cpp is the same
 // program for cameras behind windows (doc/drop_in.md).
 //

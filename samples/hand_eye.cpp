@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // A robot carries a camera behind a window before a board that stays: cv::calibrateHandEye on the board's poses through the
 // window, then the window from all images and the robot's poses together. Both are simulated, with the robot's errors. The
 // +- takes the hand-eye transform as exact: its own errors come on top.

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Compiles for 64-bit ARM with warnings as errors, and runs what it has compiled in an emulator (qemu-user), on the
 # libraries of a Debian of that architecture that is unpacked into build/aarch64 and never started. The kernels first,
 # alone: what NEON computes against what this machine does. Then everything: the tests, the samples, and the tools on the

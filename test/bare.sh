@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Both README commands on a bare Debian 12 (debootstrap minbase, as root): a clean clone of what is committed here, and
 # nothing else of this machine but network, certificates and package registries. Prints the last line of each and how long it
 # took; ends non-zero if one failed. Some GB in TMPDIR and the better part of an hour on two cores; everything is removed.

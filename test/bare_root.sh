@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # A bare Debian 12 to try things in: sourced by test/bare.sh and test/package.sh.
 #
 #   bare_root WORK         makes WORK/root from where this machine's apt gets Debian (debootstrap, as root); $root is its path.

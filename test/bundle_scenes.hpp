@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Seeded scenes without a target: a rig that stands still and sees a wand, or a rig that moves through points.
 #ifndef REFRACT_TEST_BUNDLE_SCENES_HPP
 #define REFRACT_TEST_BUNDLE_SCENES_HPP

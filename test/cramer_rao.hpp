@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The Cramer-Rao bound of a scene from the calibrator's own jacobian, and how often intervals hold the truth.
 #ifndef REFRACT_TEST_CRAMER_RAO_HPP
 #define REFRACT_TEST_CRAMER_RAO_HPP

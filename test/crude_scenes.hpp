@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Random rigs around a tank, of which a calibration knows hardly anything: seeded, with one view of a target in depth.
 #ifndef REFRACT_TEST_CRUDE_SCENES_HPP
 #define REFRACT_TEST_CRUDE_SCENES_HPP

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Calibrates and measures on a copy of the bundled images in ./data, by the tools as they are reached.
 #
 # Usage: test/main_job.sh [RUN...]     RUN is put before every tool: chroot DIRECTORY, say

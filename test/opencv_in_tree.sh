@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Builds modules/refract unchanged inside OpenCV's own tree and tests it there: warnings as errors in the module, its ts
 # tests, one pass of its performance tests, its sample, its Python test, its documentation; and that OpenCV configures
 # without it where Ceres or Eigen is missing. Everything is kept in build/opencv-VERSION: the first run

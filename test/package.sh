@@ -1,12 +1,17 @@
 #!/bin/sh
-# Makes the Debian package and runs the tools that it holds on the bundled images.
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
+# Makes the Debian packages (library, development files, tools), checks them with lintian where that is installed, runs the tools
+# on the bundled images and builds a program on the development files.
 #
 # Usage: test/package.sh [BUILD_DIRECTORY] [--bare]     build/release by default
-#   --bare  installs the package with apt in a bare Debian 12 (debootstrap, root) and runs the tools there, which takes some
-#           minutes; without, the package is only unpacked and its tools run on the libraries of this machine
+#   --bare  installs the packages with apt in a bare Debian 12 (debootstrap, root) and does all that there, which takes some
+#           minutes; without, the packages are only unpacked, and what is in them runs on the libraries of this machine
 set -eu
 cd "$(dirname "$0")/.."
 main_job=$PWD/test/main_job.sh
+consumer=$PWD/test/consumer
 bare=no; build=build/release
 for argument in "$@"; do
   case $argument in
@@ -19,28 +24,55 @@ root=$work/root; home=$root
 trap 'rm -rf "$work"' EXIT
 
 (cd "$build" && cpack -G DEB -B "$work/packages") >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
-package=$(ls "$work"/packages/*.deb)
-dpkg-deb -f "$package" Package Version Depends
+for package in "$work"/packages/*.deb; do
+  dpkg-deb -f "$package" Package Version Depends
+done
+if command -v lintian >/dev/null; then
+  # Of errors and warnings one may be there: programs that have no manual yet.
+  manuals=$(for package in "$work"/packages/*.deb; do dpkg-deb -c "$package" | grep /man1/ || true; done)
+  # shellcheck disable=SC2046
+  lintian --allow-root --tag-display-limit 0 --fail-on error,warning \
+    $([ -n "$manuals" ] || echo "--suppress-tags no-manual-page") "$work"/packages/*.deb
+  echo "lintian: no errors, no warnings"
+else
+  echo "lintian is not installed: the packages' form is not checked"
+fi
 
 if [ $bare = no ]; then
-  dpkg-deb -x "$package" "$root"
+  for package in "$work"/packages/*.deb; do
+    dpkg-deb -x "$package" "$root"
+  done
   cp -r samples/data/stereo "$root/data"
   cd "$root"
-  LD_LIBRARY_PATH=$root/usr/lib PATH=$root/usr/bin:$PATH
-  export LD_LIBRARY_PATH PATH
+  libdir=$(dirname "$(find "$root/usr" -name libopencv_refract.so)")
+  LD_LIBRARY_PATH=$libdir PATH=$root/usr/bin:$PATH PKG_CONFIG_PATH=$libdir/pkgconfig
+  export LD_LIBRARY_PATH PATH PKG_CONFIG_PATH
   "$main_job"
   refract_undistort --version
+  { cmake -S "$consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$root/usr" && cmake --build "$work/consumer"; } \
+    >"$work/consumer.log" 2>&1 || { cat "$work/consumer.log"; exit 1; }
+  "$work/consumer/consumer"
+  pkg-config --print-errors --modversion opencv_refract
 else
   . test/bare_root.sh
   bare_root "$work"
   home=$root/srv
-  cp "$package" "$home/package.deb"
+  mkdir "$home/packages"
+  cp "$work"/packages/*.deb "$home/packages"
   cp "$main_job" "$home/main_job.sh"
   cp -r samples/data/stereo "$home/data"
-  in_root sh -ec 'export DEBIAN_FRONTEND=noninteractive
-    apt-get update -qq && apt-get install -y -qq --no-install-recommends /srv/package.deb' >"$work/install.log" 2>&1 ||
-    { tail -20 "$work/install.log"; exit 1; }
+  cp -r "$consumer" "$home/consumer"
+  install() {   # install PACKAGE...
+    in_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >"$work/install.log" 2>&1 ||
+      { tail -20 "$work/install.log"; exit 1; }
+  }
+  in_root apt-get update -qq
+  install /srv/packages/"$(cd "$home/packages" && ls libopencv-refract0*.deb)" \
+    /srv/packages/"$(cd "$home/packages" && ls opencv-refract_*.deb)"
   in_root sh -c 'cd /srv && exec ./main_job.sh'
   in_root refract_undistort --version
+  install /srv/packages/"$(cd "$home/packages" && ls libopencv-refract-dev_*.deb)" g++ cmake make pkg-config
+  in_root sh -ec 'cmake -S /srv/consumer -B /srv/build >/dev/null && cmake --build /srv/build >/dev/null && /srv/build/consumer
+    pkg-config --print-errors --modversion opencv_refract'
 fi
 ls -l "$home/calib.yml" "$home/points.csv" "$home/report.html"

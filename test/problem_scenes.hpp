@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // A joint problem at the truth of a scene, with the module's inner types.
 #ifndef REFRACT_TEST_PROBLEM_SCENES_HPP
 #define REFRACT_TEST_PROBLEM_SCENES_HPP

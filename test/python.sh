@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Builds the Python package as a wheel and tests it beside Debian's OpenCV and NumPy, and beside pip's OpenCV 4 and 5
 # with their NumPy 2. Everything is kept in build/python: a second run takes a minute or two.
 #

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Where the real data sets are, and how their files are read.
 #ifndef REFRACT_TEST_REAL_DATA_HPP
 #define REFRACT_TEST_REAL_DATA_HPP

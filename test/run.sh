@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Installs what is missing, builds everything with warnings as errors, runs all tests: once as released, once with the
 # address and undefined-behaviour sanitizers; then the fuzzers, a little. Ends with a line that counts the tests.
 #
@@ -69,7 +72,8 @@ run "Python package, its tests and samples" wait $python
 cat build/python.log
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
-run "Debian package: unpacked, its tools run" test/package.sh build/release
+run "exported names: those of the committed list" test/exports.sh build/release
+run "Debian packages: clean, unpacked, tools and header work" test/package.sh build/release
 run "the same hundred values from every build" test/agreement/run.sh build/release
 # OpenCV itself is not compiled here: that takes the whole script, without --short.
 for version in 4.14.0.94 5.0.0.93; do

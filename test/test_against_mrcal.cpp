@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Against mrcal, which this project did not write. Skipped where mrcal or its data are missing.
 #include "scenes.hpp"
 #include "temporary_file.hpp"

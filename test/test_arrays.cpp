@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Types and shapes of arrays: what calib3d takes, this module takes; what it cannot take it refuses by name.
 #include "arrays/arrays.hpp"
 #include "scenes.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What can be known of windows without a target: the Cramer-Rao bound, and how near the bundle adjustment comes.
 #include "bundle_scenes.hpp"
 

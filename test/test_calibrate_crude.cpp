@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Sealed rigs of which hardly anything is known: whatever the start, the minimum is the one that the truth leads to. The long
 // form is hidden: run with [.crude], TRIALS rigs of each kind.
 #include "crude_scenes.hpp"

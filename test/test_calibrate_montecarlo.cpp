@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Accuracy of the calibrators by simulation, beside what the Cramer-Rao bound allows. The long forms are hidden: run with
 // [.monte-carlo].
 #include "cramer_rao.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // A rig sealed behind its windows: lens, R, T and normals from glass-only views, judged by lengths that it measures, beside
 // the pinhole cameras that the same views give. The long form is hidden: run with [.monte-carlo].
 #include "cramer_rao.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The one order of a window's parameters, and what callers are told of it.
 #include "camera/camera.hpp"
 #include "scenes.hpp"

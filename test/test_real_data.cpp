@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Real images that nobody on this project made, against both baselines: glass ignored, and a pinhole fitted through it.
 // The data stay where they are (REFRACT_DATA_DIR); without them the cases are skipped.
 

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Real rigs of several cameras that see one target once, calibrated in one fit from starts that know hardly anything. The data
 // stay where they are (REFRACT_DATA_DIR); without them the cases are skipped.
 

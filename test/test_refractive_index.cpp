@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Indices by name, against published values that are not those the formulas were fitted to (or that are the maker's promise).
 #include "scenes.hpp"
 

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // One camera used by several threads: what a lens makes at its first use is made once, before anyone reads it.
 #include "scenes.hpp"
 

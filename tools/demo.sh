@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # The main job on the bundled images: calibrates a stereo pair behind two tilted windows, measures fresh boards with it, and
 # compares with what one would do instead. Installs what is missing, builds, runs; ends with a table and a report to look at.
 set -eu

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
 # Usage: tools/install_dependencies.sh [build|test|in-tree|aarch64|fuzz|bare|libraries]
 #   test adds what only the tests use, in-tree what OpenCV's own build needs, aarch64 what compiles for that processor and

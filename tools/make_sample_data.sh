@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Remakes the bundled images and their truth from samples/data/*/rig.yml:  tools/make_sample_data.sh [BUILD_DIR]
 # Leaves the depth of the scene beside its images, too large to be bundled.
 set -eu

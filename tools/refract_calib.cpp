@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The manual: what --help prints first.
 static const char MANUAL[] = R"(Calibrates the flat windows in front of one camera, a stereo pair or a rig of up to 16 cameras.
 

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The manual: what --help prints first.
 static const char MANUAL[] = R"(Checks whether the window has moved since the calibration, from one new pair or a few images through it.
 

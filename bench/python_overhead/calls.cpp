@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // C++ calls of the module for overhead.py: the same arrays, outputs allocated anew as Python's are; each returns seconds.
 #include <opencv2/refract.hpp>
 

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """What Python costs: each call of a million points from Python and, in the same process on the same arrays, from C++.
 
 Usage: overhead.py LIBRARY [POINTS]     LIBRARY is calls.cpp, compiled; run.sh does both"""

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Prints what a call of the module costs from Python, beside the same call from C++ in the same process.
 #
 # Usage: bench/python_overhead/run.sh [BUILD_DIRECTORY [POINTS]]    build/release by default; test/run.sh makes it and

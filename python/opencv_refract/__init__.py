@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Cameras that look through a flat window (glass, a vessel's port, a water surface): cv::refract for Python.
 
 Every call of the C++ module refract is a function here, with NumPy arrays for matrices, as in cv2. Where cv2 is

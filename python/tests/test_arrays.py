@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """NumPy arrays of every layout and type give the same answers; what cannot be understood is refused by name."""
 import numpy as np
 import pytest

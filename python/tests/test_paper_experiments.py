@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """samples/paper_experiments: the paper's method is written down right, what is printed holds, and the page shows it."""
 import importlib.util
 import os

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Section 4.3.1 for every pixel: a textured plane behind the windows of both positions, rectified and matched.
 
 The calibration is exact here, so that what is left is the method's.

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Figure 10: how far the window moves the image points of a board at 610 mm, for both glass attitudes."""
 import figures
 import published

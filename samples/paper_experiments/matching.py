@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Figure 17: matching errors at two positions of the glass, the windows differently tilted and nearly parallel."""
 import numpy as np
 import figures

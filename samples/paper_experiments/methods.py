@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """The methods that are compared, by the names and colours that tables and figures give them."""
 IGNORED = "glass ignored"
 PAPER = "the paper's method, 1 pair"

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Figure 11 and Table 3: the normal and its distortion centre from one pair of images, and from ten."""
 import numpy as np
 import opencv_refract as refract

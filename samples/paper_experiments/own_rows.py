@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Which printed numbers follow from the paper's other numbers, and which do not. No simulation, only arithmetic."""
 import numpy as np
 import normals

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """The paper's own method, written down from its equations (numbers in brackets); nothing here calls cv::refract.
 
 Pixels are ideal ones: the lens is undone before. The image plane stands in front of the camera, at z = f, as in (16);

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Figure 13, Tables 1 and 2: positions and lengths on a measurement plane seen by the left camera.
 
 As in the paper the plane is known from a board in it that is seen without glass; the pinhole that was calibrated

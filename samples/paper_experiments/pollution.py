@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Table 4: the normal from one pair of images when the glass is polluted.
 
 The paper shows its stains and gives no numbers for them. Here: A (sewage) hides each point with a chance of 20 % and

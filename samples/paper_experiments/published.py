@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """What the paper prints: Sensors 2024, 24(1), 66, doi 10.3390/s24010066, section 4 and 5.2. Millimetres and pixels."""
 import numpy as np
 

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Section 4 (and 5.2) of the paper, rebuilt by simulation with its published rig: every table, and the figures.
 
     run.py [--figures=DIRECTORY]      # default: out

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """The published rig, simulated: boards, what cameras see of them with and without glass, how errors are counted.
 
 Noise: the paper states none, but implies one. Its rectified rows differ by 0.2343 px RMS without glass (Figure 17); if

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """The stereo rig behind two windows, calibrated from simulated images with noise; matches and points by every method.
 
 The lenses, R and T come from 25 views without glass (OpenCV); those of the pinholes calibrated through the glass from

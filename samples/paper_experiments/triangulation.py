@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Figure 18: depth and position of points triangulated through two windows; lengths near and far without noise."""
 import numpy as np
 import figures

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """The depth of a scene from a pair of images that were taken through windows.
 
     depth_of_scene.py | depth_of_scene_behind_glass.py [LEFT RIGHT]      # samples/data/scene's by default

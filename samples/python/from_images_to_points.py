@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # %% [markdown]
 # # From images to measured points
 # Two cameras, each behind its own tilted window. Images of a chessboard give first the cameras, then the windows,

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Measures a chessboard with two cameras that look through glass.
 
     measure_stereo.py | measure_stereo_behind_glass.py [DIRECTORY]      # images as in samples/data/stereo, the default

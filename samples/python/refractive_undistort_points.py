@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Measures on a plane with one camera behind a window: raw pixels -> where a camera without lens distortion and window
 would see them -> lengths. In an existing program replace undistortPoints by refractiveUndistortPoints."""
 import os

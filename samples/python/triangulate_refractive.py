@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Points seen by two cameras behind two windows -> 3-D points. In an existing program replace undistortPoints and
 triangulatePoints by triangulateRefractive."""
 import os

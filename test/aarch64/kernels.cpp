@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What the baseline's kernels compute, one "name value" a line, for compare.py of ../agreement. All input is made by exact
 // arithmetic or decimal literals, so that every build starts from the same bits.
 #include "dispatch/kernels.hpp"

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Unpacks the libraries that refract links, and all they stand on, for Debian's arm64. Nothing of it is run or registered:
 # an apt with a state of its own resolves and fetches, from where this machine's apt does, and checks the signatures.
 #

@@ -1,3 +1,6 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Prints one table of the values that several builds of the module gave, and how far each is off the first.
 
 Usage: compare.py FILE...       files of "name value" lines; the columns are called as the files' stems

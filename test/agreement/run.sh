@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Computes the same hundred values with every build of the module that is there (C++ and Python; standalone, and inside
 # OpenCV's tree as test/opencv_in_tree.sh leaves it) and prints them as one table: equal to 1e-12, relative.
 #

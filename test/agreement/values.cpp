@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // A hundred values from the module's calls, one "name value" a line; values.py prints the same. All input is made by
 // exact arithmetic or decimal literals, so that both programs start from the same bits.
 #include <opencv2/refract.hpp>

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Feeds every parser and every public call with made-up input (libFuzzer, address and undefined-behaviour sanitizers): first the
 # inputs that once were findings, each once, then the corpus and what is mutated from it. A crash, a sanitizer's report, an
 # exception that no caller expects, an answer that breaks a promise of refract.hpp, or more than ten seconds for one input (a

@@ -1,4 +1,7 @@
 #!/usr/bin/env python3
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 """Reference values for the tests, computed with 60 digits (python3-mpmath).
 
     test/reference/make_reference.py            # writes projection.json beside itself

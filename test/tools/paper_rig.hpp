@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The paper's rig (Table 3) as the tools hold it, and a board before it.
 #ifndef REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 #define REFRACT_TEST_TOOLS_PAPER_RIG_HPP

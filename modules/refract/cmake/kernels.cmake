@@ -1,3 +1,7 @@
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
 # How the kernels are compiled (src/dispatch), for every build that compiles the module's sources.
 #
 # Each level gets the instructions that its name says; a compiler that does not know the flags compiles an empty level.

@@ -1,3 +1,7 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
 // Two cameras behind tilted panes measure a bar of 100 mm: the panes ignored, and taken into account. Then the first pane is
 // calibrated. Needs no images.
 

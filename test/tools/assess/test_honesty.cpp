@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "assess/eigen_matrix.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The stated uncertainty of points measured by one camera, against draws of calibration and pixels.
 #include "assess/consistency.hpp"
 #include "assess/measurement.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Mistakes in what is given, told from images that do not fit.
 #include "assess/misfit.hpp"
 #include "calibrate/image_fit.hpp"

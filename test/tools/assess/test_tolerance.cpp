@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What a wrong value does to measured points, against calibrations from observations that are wrong in that way.
 #include "assess/tolerance.hpp"
 #include "calibrate/image_fit.hpp"

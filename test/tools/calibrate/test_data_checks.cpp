@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What is wrong with images before a fit: names that pair nothing, one image under two names, parallel boards.
 #include "calibrate/data_checks.hpp"
 #include "paper_rig.hpp"

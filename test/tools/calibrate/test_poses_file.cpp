@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Known poses: units, forms of a rotation, what a deviation about each axis is of a rotation vector, what is refused.
 #include "calibrate/poses_file.hpp"
 #include "scenes.hpp"

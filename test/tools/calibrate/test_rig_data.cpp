@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What belongs together: points of files by their coordinates, views by their names, cameras by what they see in common.
 #include "calibrate/rig_data.hpp"
 #include "target/points_csv.hpp"

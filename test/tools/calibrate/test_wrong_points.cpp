@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // dropWrongPoints: what the robust fit takes out of the data, and what it says if it cannot.
 #include "calibrate/wrong_points.hpp"
 #include "paper_rig.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Numbers in options and point files mean the same where people write a decimal comma.
 #include "console/cli.hpp"
 #include "console/point_file.hpp"

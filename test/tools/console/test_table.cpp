@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Table: what is too wide for a terminal is broken between words.
 #include "console/table.hpp"
 #include <catch2/catch.hpp>

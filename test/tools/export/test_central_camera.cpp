@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The central camera nearest to one behind a window, against calib3d's own projection.
 #include "export/central_camera.hpp"
 #include <catch2/catch.hpp>

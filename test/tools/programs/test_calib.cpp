@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_calib as a user runs it: on corners files with known truth, on wrong input, on real images.
 #include "run_tool.hpp"
 #include "scenes.hpp"

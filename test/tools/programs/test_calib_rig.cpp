@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_calib and refract_measure of more than two cameras, as a user runs them: points of any target, walls, known poses.
 #include "run_tool.hpp"
 #include "scenes.hpp"

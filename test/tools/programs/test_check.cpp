@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_check as a user runs it: on the bundled images, whose truth is known.
 #include "run_tool.hpp"
 #include <catch2/catch.hpp>

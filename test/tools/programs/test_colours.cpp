@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Colours that a window in front of water draws apart, and what brings them together again.
 #include "run_tool.hpp"
 #include "truth_file.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_export as a user runs it: what it writes is read by others, or as they would.
 #include "run_tool.hpp"
 #include <opencv2/refract.hpp>

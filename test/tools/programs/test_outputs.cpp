@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What the tools write never takes the place of what they read.
 #include "run_tool.hpp"
 #include <catch2/catch.hpp>

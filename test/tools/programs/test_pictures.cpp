@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_undistort and refract_epilines as a user runs them, on the bundled images.
 #include "run_tool.hpp"
 #include "truth_file.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // refract_simulate as a user runs it: what it renders is where it says, for every pattern, and found again in every image.
 #include "run_tool.hpp"
 #include "truth_file.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What refract_simulate says about its images, and the points.csv that refract_measure writes.
 #ifndef REFRACT_TEST_TRUTH_FILE_HPP
 #define REFRACT_TEST_TRUTH_FILE_HPP

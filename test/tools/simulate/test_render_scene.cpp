@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Depth of scenes against other ways to compute it, through every window and every lens; what two cameras see of one point.
 #include "scenes.hpp"
 #include "simulate/render_scene.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The texture of scenes: made of its seed alone, textured at every scale, and without what samples cannot show.
 #include "scenes.hpp"
 #include "simulate/solid_texture.hpp"

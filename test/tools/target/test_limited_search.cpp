@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // A search that would never end, and the progress that is told meanwhile.
 #include "console/progress.hpp"
 #include "target/limited_search.hpp"

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What modules/refract/test needs of OpenCV's test module, over googletest: distributions do not ship opencv_ts. With it
 // the module's own tests run standalone too.
 #ifndef REFRACT_TS_SHIM_HPP

@@ -179,18 +179,18 @@ air's absolute index (1.000272 at 550 nm) they become relative to vacuum. One ab
 
 | material | source | nm | stated accuracy | tolerance |
 |---|---|---|---|---|
-| `N-BK7` (`BK7`) | Schott, data sheet | 300-2500 | formula 5e-6 | 0.0005: as delivered |
-| `K9` (`H-K9L`) | CDGM, data sheet | 365-1711 | formula 5e-6 | 0.0005: as delivered |
-| `B270` | fit to Schott's data sheet B 270, 1993 | 435-657 | 1e-4 (its last digit; the fit 4e-5) | 0.001: as delivered |
-| `soda-lime` | Rubin 1985, clear window glass | 310-4600 | none stated | 0.005: kinds of float glass |
-| `borosilicate` (`Borofloat`) | refractiveindex.info's fit to Schott BOROFLOAT 33, 2021 | 240-1550 | 1e-4 | 0.003: Borofloat, Duran, Pyrex |
-| `fused-silica` | Malitson 1965 | 210-3710 | 1e-5 | 0.00003: specimens |
-| `sapphire`, ordinary ray | Malitson and Dodge 1972 | 200-5000 | 1e-4 | 0.0002 (the extraordinary ray: 0.008 less) |
-| `PMMA` | Beadie et al. 2015 | 420-1620 | 5e-4 | 0.002: kinds, 10 C |
-| `polycarbonate` | refractiveindex.info's fit to Sultanova et al. 2009 | 437-1052 | 1e-3 | 0.003: kinds, 10 C |
-| `water`: `T` 0-30 C (20) | Quan and Fry 1995 | 400-700 | 1.5e-5 on average | 0.0005: 5 C |
-| `seawater`: `T` 0-30 C (20), `S` 0-35 g/kg (35) | Quan and Fry 1995 | 400-700 | 1.5e-5 on average | 0.0009: 5 C and 2 g/kg |
-| `air`: `T` -40-100 C (20), `P` 1e4-1.4e5 Pa (101325), `RH` 0-100 % (0) | Ciddor 1996 | 300-1690 | 5e-8 | 0.00002: 10 C, 3 kPa |
+| `N-BK7` (`BK7`) | @cite Schott_NBK7 | 300-2500 | formula 5e-6 | 0.0005: as delivered |
+| `K9` (`H-K9L`) | @cite CDGM_HK9L | 365-1711 | formula 5e-6 | 0.0005: as delivered |
+| `B270` | fit to @cite Schott_B270 | 435-657 | 1e-4 (its last digit; the fit 4e-5) | 0.001: as delivered |
+| `soda-lime` | @cite Rubin1985, clear window glass | 310-4600 | none stated | 0.005: kinds of float glass |
+| `borosilicate` (`Borofloat`) | the fit of @cite Polyanskiy2024 to @cite Schott_BOROFLOAT33 | 240-1550 | 1e-4 | 0.003: Borofloat, Duran, Pyrex |
+| `fused-silica` | @cite Malitson1965 | 210-3710 | 1e-5 | 0.00003: specimens |
+| `sapphire`, ordinary ray | @cite MalitsonDodge1972 | 200-5000 | 1e-4 | 0.0002 (the extraordinary ray: 0.008 less) |
+| `PMMA` | @cite Beadie2015 | 420-1620 | 5e-4 | 0.002: kinds, 10 C |
+| `polycarbonate` | the fit of @cite Polyanskiy2024 to @cite Sultanova2009 | 437-1052 | 1e-3 | 0.003: kinds, 10 C |
+| `water`: `T` 0-30 C (20) | @cite QuanFry1995 | 400-700 | 1.5e-5 on average | 0.0005: 5 C |
+| `seawater`: `T` 0-30 C (20), `S` 0-35 g/kg (35) | @cite QuanFry1995 | 400-700 | 1.5e-5 on average | 0.0009: 5 C and 2 g/kg |
+| `air`: `T` -40-100 C (20), `P` 1e4-1.4e5 Pa (101325), `RH` 0-100 % (0) | @cite Ciddor1996 | 300-1690 | 5e-8 | 0.00002: 10 C, 3 kPa |
 
 Glasses at 20 C. Water at atmospheric pressure: 100 m deep its index is 1.4e-4 more. Air warmer or thinner than at 20 C and
 101325 Pa has an index below 1, which GlassWindow refuses: divide all indices of the window by it, as only their ratios count.
@@ -1007,7 +1007,7 @@ a known length.
 One view: the rig stands still, as in motion capture and particle tracking; each point is one place where something was seen, so
 that a wand of known length at M/2 moments gives M points, and M/2 lengths between them. Several views: the rig (or one camera)
 moves through a static scene. All of it is one maximum-likelihood fit under equal isotropic pixel noise, which is estimated; the
-points are eliminated (Schur complement), as in Triggs et al., Bundle adjustment - a modern synthesis, 2000.
+points are eliminated (Schur complement), as in @cite Triggs2000.
 
 The scene's frame is that of the first view, whose pose stays; with one view and without rvecs, tvecs that is camera 1's. Its
 scale comes from lengths, from R and T of several cameras if they are not free, or from the poses with GLASS_USE_POSES; without

@@ -15,7 +15,7 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! Quantile of chi^2 (Wilson and Hilferty).
+//! Quantile of chi^2 (@cite WilsonHilferty1931).
 double chiSquareQuantile(double normalQuantile, int freedom)
 {
     const double a = 2./(9*freedom);

@@ -5,7 +5,7 @@
 #include "lens/plane_lens.hpp"
 #include "math/monotone.hpp"
 
-/* mrcal's LENSMODEL_CAHVOR and, with a centre that does not move (E = 0), LENSMODEL_CAHVORE_linearity=L (Gennery 2006). theta is
+/* mrcal's LENSMODEL_CAHVOR and, with a centre that does not move (E = 0), LENSMODEL_CAHVORE_linearity=L (@cite Gennery2006). theta is
 the angle to the optical axis o = (sin(alpha) cos(beta), sin(beta), cos(alpha) cos(beta)):
 
     chi = tan(L theta)/L for L > 0 (CAHVOR: L = 1),  sin(L theta)/L for L < 0,  theta for L = 0

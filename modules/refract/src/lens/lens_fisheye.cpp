@@ -6,7 +6,7 @@
 #include "lens/kernel_lens.hpp"
 #include "math/monotone.hpp"
 
-/* cv::fisheye's model (Kannala and Brandt), theta = angle to the z axis:
+/* cv::fisheye's model (@cite KannalaBrandt2006), theta = angle to the z axis:
 
     theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
     u = fx (x + alpha y) + cx,  v = fy y + cy,  (x, y) = theta_d (X, Y)/|(X, Y)|

@@ -211,7 +211,7 @@ inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
     return first;
 }
 
-//! Two unit vectors across d and each other (Duff et al., Building an orthonormal basis, revisited, JCGT 2017).
+//! Two unit vectors across d and each other (@cite Duff2017).
 inline void vectorsAcross(const Vector& d, Vector& a, Vector& b)
 {
     const Lanes sign = select(d.z < 0, all(-1), all(1)), k = -1/(sign + d.z), xy = d.x*d.y*k;

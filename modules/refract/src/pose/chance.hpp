@@ -18,7 +18,7 @@ struct Sampling
 };
 
 /** Whether as many of `count` would agree with some answer if all were strewn: the expected number of sets of so many, of which a
-sample gives an answer that the others agree with (Moisan & Stival, IJCV 2004), is one or more. All of them are no chance. */
+sample gives an answer that the others agree with (@cite MoisanStival2004), is one or more. All of them are no chance. */
 bool isChance(int count, int agreeing, const Sampling& sampling);
 
 //! Width and height of the part of an image that has these pixels.

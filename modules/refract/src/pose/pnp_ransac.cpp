@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 /* Pose of a target among wrong matches. Random samples of three points give poses (three_rays.hpp); all points judge a pose by
-their squared distances from its images, cut off at the limit (MSAC: Torr & Zisserman, CVIU 2000). A pose that is better than
-all before is refined on the points that agree with it (LO-RANSAC: Chum, Matas & Kittler, DAGM 2003). */
+their squared distances from its images, cut off at the limit (MSAC: @cite TorrZisserman2000). A pose that is better than
+all before is refined on the points that agree with it (LO-RANSAC: @cite ChumMatasKittler2003). */
 
 #include "pose/chance.hpp"
 #include "pose/poses.hpp"

@@ -27,8 +27,8 @@ problem), before their origins. With X_i = o_i + s_i d_i the three distances bet
 
     |X_i - X_j|^2 = D_ij^2
 
-in s. Newton's method begins at the solutions for rays from the mean origin: Grunert's quartic (Haralick et al., "Review and
-analysis of solutions of the three point perspective pose estimation problem", IJCV 1994). What is found is exact; where the
+in s. Newton's method begins at the solutions for rays from the mean origin: Grunert's quartic
+(@cite Haralick1994). What is found is exact; where the
 rays are far from central a solution may be missed (one in fifty behind 100 mm of tilted glass).
 @return how many of `motions` were found */
 int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4]);

@@ -7,8 +7,8 @@
 
 namespace cv { namespace refract {
 
-/** Index of air relative to vacuum, with 450 ppm of CO2: P. E. Ciddor, Refractive index of air: new equations for the visible
-and near infrared, Applied Optics 35, 1566 (1996). Stated accuracy 2 to 5e-8.
+/** Index of air relative to vacuum, with 450 ppm of CO2: @cite Ciddor1996, whose stated
+accuracy is 2 to 5e-8.
 @param um wavelength in vacuum, micrometres
 @param celsius temperature
 @param pascal pressure

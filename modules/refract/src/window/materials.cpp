@@ -27,52 +27,52 @@ double sellmeier(double um, std::initializer_list<Resonance> resonances)
     return std::sqrt(sum);
 }
 
-// Schott, data sheet N-BK7: nd 1.51680 +- 0.0005 as delivered (step 3), the formula within 5e-6 of the melt's.
+// @cite Schott_NBK7: nd 1.51680 +- 0.0005 as delivered (step 3), the formula within 5e-6 of the melt's.
 double nBk7(double um, const Values&)
 {
     return sellmeier(um, {{1.03961212, 0.00600069867}, {0.231792344, 0.0200179144}, {1.01046945, 103.560653}});
 }
 
-// CDGM, data sheet H-K9L, tolerance as above.
+// @cite CDGM_HK9L, tolerance as above.
 double hK9l(double um, const Values&)
 {
     return sellmeier(um, {{0.614555251, 0.0145987884}, {0.656775017, 0.00287769588}, {1.02699346, 107.653051}});
 }
 
-// Least squares to the eight lines, 435.8 to 656.3 nm, of Schott's data sheet B 270 (1993), which has four digits: within 4e-5.
+// Least squares to the eight lines, 435.8 to 656.3 nm, of @cite Schott_B270, which has four digits: within 4e-5.
 double b270(double um, const Values&)
 {
     return sellmeier(um, {{1.27995, 0.010325}});
 }
 
-// M. Rubin, Optical properties of soda lime silica glasses, Solar Energy Materials 12, 275 (1985): clear window glass.
+// @cite Rubin1985: clear window glass.
 double sodaLime(double um, const Values&)
 {
     return 1.5130 - 0.003169*um*um + 0.003962/(um*um);
 }
 
-// Schott, BOROFLOAT 33 - Optical Properties (2021), as fitted in refractiveindex.info (M. Polyanskiy).
+// @cite Schott_BOROFLOAT33, as fitted in @cite Polyanskiy2024.
 double borosilicate(double um, const Values&)
 {
     return std::sqrt(0.3542 + std::pow(sellmeier(um, {{0.78657, 0.10856*0.10856}, {0.18285, 4.427*4.427}}), 2));
 }
 
-// I. H. Malitson, Interspecimen comparison of the refractive index of fused silica, J. Opt. Soc. Am. 55, 1205 (1965), 20 C.
+// @cite Malitson1965, 20 C.
 double fusedSilica(double um, const Values&)
 {
     return sellmeier(um, {{0.6961663, 0.0684043*0.0684043}, {0.4079426, 0.1162414*0.1162414},
                           {0.8974794, 9.896161*9.896161}});
 }
 
-// I. H. Malitson, M. J. Dodge, Refractive index and birefringence of synthetic sapphire, J. Opt. Soc. Am. 62, 1405 (1972),
-// 20 C; the ordinary ray.
+// @cite MalitsonDodge1972, 20 C; the ordinary ray, which all light is in a window cut square to the crystal's axis, seen
+// straight through.
 double sapphire(double um, const Values&)
 {
     return sellmeier(um, {{1.4313493, 0.0726631*0.0726631}, {0.65054713, 0.1193242*0.1193242},
                           {5.3414021, 18.028251*18.028251}});
 }
 
-// G. Beadie et al., Refractive index measurements of poly(methyl methacrylate) from 0.4-1.6 um, Applied Optics 54, F139 (2015).
+// @cite Beadie2015.
 double pmma(double um, const Values&)
 {
     const double l2 = um*um, s2 = 1./l2;
@@ -80,15 +80,15 @@ double pmma(double um, const Values&)
                      + s2*(2.3678e-2 + s2*(-4.2137e-3 + s2*(7.3417e-4 - s2*4.5042e-5))));
 }
 
-// N. Sultanova et al., Dispersion properties of optical polymers, Acta Physica Polonica A 116, 585 (2009), 20 C, as fitted in
-// refractiveindex.info (M. Polyanskiy).
+// @cite Sultanova2009, 20 C,
+// as fitted in @cite Polyanskiy2024.
 double polycarbonate(double um, const Values&)
 {
     return sellmeier(um, {{1.4182, 0.021304}});
 }
 
-// X. Quan, E. S. Fry, Empirical equation for the index of refraction of seawater, Applied Optics 34, 3477 (1995): relative to
-// air, as the measurements selected by Austin and Halikas (1976), which it reproduces within 1.5e-5 on average.
+// @cite QuanFry1995: relative to air,
+// as the measurements selected by @cite AustinHalikas1976, which it reproduces within 1.5e-5 on average.
 double quanFry(double um, double T, double S)
 {
     const double nm = 1000.*um;

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Installed OpenCVs have no private headers. This is all that the NumPy conversions want of this one.
 #ifndef REFRACT_CONFIGURATION_PRIVATE_HPP
 #define REFRACT_CONFIGURATION_PRIVATE_HPP
