@@ -36,6 +36,14 @@ With the unit normal n, the inner direction w, c = n.w and \f$p = n_{inner}\sin\
 keeps through all layers, and \f$q_i = \sqrt{n_i^2 - p^2}\f$, the outgoing ray meets the axis at
 \f[ \tau(p) = \sum_i h_i \left(1 - q_{out}/q_i\right) \f]
 (inner gap and all layers). For one pane in air this is equations (12) and (16) of @cite Plate2024.
+
+@{
+    @defgroup refract_camera Windows and cameras
+    @defgroup refract_points Pixels, rays and points
+    @defgroup refract_stereo Dense stereo
+    @defgroup refract_calibrate Calibration
+    @defgroup refract_pose Poses
+@}
 */
 
 namespace cv { namespace refract {
@@ -57,16 +65,31 @@ enum RefractiveStatus {
     REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than two cameras saw the point (9: what refract_measure finds contradictory)
 };
 
+//! @}
+
+//! @addtogroup refract_points
+//! @{
+
 //! Flags of triangulateRefractive
 enum TriangulateFlags {
     TRIANGULATE_OPTIMAL = 0,        //!< maximum likelihood under equal isotropic pixel noise in all images
     TRIANGULATE_MIDPOINT = 1        //!< least squared distance from all rays; of two, the midpoint of the shortest segment
 };
 
+//! @}
+
+//! @addtogroup refract_stereo
+//! @{
+
 //! Flags of refractiveStereoRectify
 enum RectifyFlags {
     RECTIFY_ZERO_DISPARITY = 1024   //!< both new images have one principal point; cv::CALIB_ZERO_DISPARITY's value
 };
+
+//! @}
+
+//! @addtogroup refract_calibrate
+//! @{
 
 /** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust; the normal is free
 but for GLASS_FIX_NORMAL.
@@ -117,6 +140,11 @@ enum GlassImageStatus {
     GLASS_IMAGE_UNUSABLE = 3        //!< left out: fewer than a third of its points, or fewer than 4, fit one pose
 };
 
+//! @}
+
+//! @addtogroup refract_camera
+//! @{
+
 /** @brief A flat window: parallel layers that share one normal.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
@@ -163,11 +191,13 @@ public:
     //! Throws cv::Exception that names the first field that is wrong, and its value.
     CV_WRAP void check() const;
 
-    void write(FileStorage& fs) const;
-    void read(const FileNode& node);
+    void write(FileStorage& fs) const;      //!< as a map; fs << window calls it
+    void read(const FileNode& node);        //!< what write() wrote; throws as check() does
 };
 
+//! fs << window
 CV_EXPORTS void write(FileStorage& fs, const String& name, const GlassWindow& window);
+//! node >> window; defaultValue where the node is empty
 CV_EXPORTS void read(const FileNode& node, GlassWindow& window, const GlassWindow& defaultValue = GlassWindow());
 
 /** @brief Index of refraction of a material by its name.
@@ -285,7 +315,8 @@ public:
     CV_WRAP virtual Mat cameraMatrix() const = 0;        //!< 3x3 CV_64F
     CV_WRAP virtual Mat distCoeffs() const = 0;          //!< Nx1 CV_64F, as given
     CV_WRAP virtual String lensModel() const = 0;        //!< `opencv`, `fisheye` or mrcal's name
-    CV_WRAP virtual GlassWindow window() const = 0;
+    CV_WRAP virtual GlassWindow window() const = 0;      //!< a copy: see setWindow()
+    /** @brief Throws as GlassWindow::check() does. */
     CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
     //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
@@ -293,9 +324,9 @@ public:
     //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the jacobian's
     //! columns, Nx1 CV_64F.
     CV_WRAP virtual Mat lensParameters() const = 0;
-    CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;
+    CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;   //!< as many as lensParameters() gives
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
-    CV_WRAP virtual void setImageSize(Size size) = 0;
+    CV_WRAP virtual void setImageSize(Size size) = 0;    //!< 0x0: unknown
 
 private:
     friend class Camera;
@@ -349,6 +380,11 @@ be empty for one camera.
 CV_EXPORTS_W void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >& cameras,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, const std::vector<int>& windowOfCamera = std::vector<int>(),
         InputArray covariance = noArray());
+
+//! @}
+
+//! @addtogroup refract_points
+//! @{
 
 /** @brief Projects object points through lens and window.
 
@@ -655,6 +691,11 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         OutputArray points3D, OutputArray status, int flags,
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
 
+//! @}
+
+//! @addtogroup refract_stereo
+//! @{
+
 /** @brief cv::stereoRectify for cameras behind windows, in any mix: in air, in water, one shared wall, none.
 
 Each camera is replaced by a pinhole at its *virtual centre*, a point of the axis through its centre of projection along the
@@ -793,6 +834,11 @@ CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImag
         InputArray R1, InputArray R2, InputArray P1, InputArray P2, InputArray depth1, InputArray depth2,
         bool handleMissingValues, int ddepth, OutputArray status,
         InputArray disparitySigma, InputArray calibrationCovariance, OutputArray covariance);
+
+//! @}
+
+//! @addtogroup refract_calibrate
+//! @{
 
 /** @brief The window's normal from image pairs taken without and with the window, the board not moved
 (@cite Plate2024, section 3.1.1).
@@ -1073,6 +1119,11 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         InputOutputArray points3D, InputArray lengths, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+//! @}
+
+//! @addtogroup refract_pose
+//! @{
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
 @param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess).
