@@ -15,22 +15,28 @@ tools/install_dependencies.sh test
 
 launcher=""
 command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+begun=$(date +%s)
+after() { echo "$(($(date +%s) - begun)) s"; }      # since the beginning: what takes long shows
 build() {   # build DIRECTORY OPTIONS...
   directory=$1; shift
   cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON $launcher "$@" >"$directory.log" 2>&1 ||
     { cat "$directory.log"; exit 1; }
   cmake --build "$directory"
+  echo "built after $(after): $directory"
 }
 
 passed=0; failed=0; skipped=0; failures=""; failing_logs=""
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
   name=$1; shift
   code=0
-  "$@" || code=$?
+  step=build/step$((passed + failed + skipped)).log
+  "$@" >"$step" 2>&1 || code=$?
+  cat "$step"
   case $code in
-    0) passed=$((passed + 1)); echo "passed: $name" ;;
-    77) skipped=$((skipped + 1)); echo "skipped: $name" ;;
-    *) failed=$((failed + 1)); failures="$failures; $name"; echo "FAILED: $name" ;;
+    0) passed=$((passed + 1)); echo "passed after $(after): $name" ;;
+    77) skipped=$((skipped + 1)); echo "skipped after $(after): $name" ;;
+    *) failed=$((failed + 1)); failures="$failures; $name"; failing_logs="$failing_logs $step"
+       echo "FAILED after $(after): $name" ;;
   esac
 }
 suites=""
@@ -54,6 +60,7 @@ count_suites() {    # waits for all suites, shows what they printed, counts thei
     fi
     [ -n "$p" ] && [ -z "$f" ] || failing_logs="$failing_logs $log"
   done
+  echo "suites done after $(after)"
   suites=""
 }
 
@@ -61,6 +68,12 @@ mkdir -p build
 build build/release
 test/python.sh "$@" >build/python.log 2>&1 &     # one thread as well, most of the time
 python=$!
+python_package() {
+  result=0
+  wait $python || result=$?
+  cat build/python.log
+  return $result
+}
 suite tests build/release/bin/refract_tests
 suite tools_tests build/release/bin/refract_tools_tests
 count_suites
@@ -68,8 +81,7 @@ count_suites
 OPENCV_CPU_DISABLE=AVX512-SKX suite tests_avx2 build/release/bin/refract_tests '~[slow]~[.]'
 OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 suite tests_baseline build/release/bin/refract_tests '~[slow]~[.]'
 count_suites
-run "Python package, its tests and samples" wait $python
-cat build/python.log
+run "Python package, its tests and samples" python_package
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 run "exported names: those of the committed list" test/exports.sh build/release
@@ -109,7 +121,7 @@ fi
 for log in $failing_logs; do
   echo "From $log:"
   grep -B 12 -A 8 'FAILED:\|ERROR: AddressSanitizer\|runtime error' "$log" | head -200
-  tail -5 "$log"
+  tail -20 "$log"
 done
 [ -z "$failures" ] || echo "FAILED: ${failures#; }"
 echo "$passed passed, $failed failed, $skipped skipped"
