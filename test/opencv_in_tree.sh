@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Builds modules/refract unchanged inside OpenCV's own tree and tests it there: warnings as errors in the module, its ts
-# tests, one pass of its performance tests, its sample, its Python test, its documentation; and that OpenCV configures
-# without it where Ceres or Eigen is missing. Everything is kept in build/opencv-VERSION: the first run
+# tests, one pass of its performance tests, its sample, its Python test, its documentation; the same tests where Ceres and
+# Eigen are missing. Everything is kept in build/opencv-VERSION: the first run
 # compiles OpenCV (some 15 minutes on two cores), the next ones only what has changed.
 #
 # Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93 [--short]
@@ -60,28 +60,43 @@ configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds
     "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
 }
 
-# A build without one of the two says that the module is unavailable, and goes on.
+commands() {    # commands DIRECTORY: what compiles the module's files there, one a line
+  # Ninja would build what these stand on first, so the compiler is called directly; it only looks, so without -O3.
+  ninja -C "$1" -t compdb | "$python" -c 'import json, sys
+for unit in json.load(sys.stdin):
+    if "/modules/refract/" in unit["file"] and unit["output"].endswith(".o"): print(unit["command"].replace("-O3", "-O0"))'
+}
+compile() {     # compile DIRECTORY COMMANDS
+  [ -s "$2" ] || { echo "FAILED: no file of the module is to be compiled" >&2; exit 1; }
+  (cd "$1" && tr '\n' '\0' <"$2" | xargs -0 -n 1 -P "$(nproc)" sh -ec)
+}
+without_ceres() {   # without_ceres DIRECTORY: that it is built, without the calibrators
+  grep -q "^-- *To be built:.* refract" "$1.log" && grep -q "refract: without Ceres, so calibrateGlass" "$1.log" ||
+    { echo "FAILED: without Ceres OpenCV does not build refract: $1.log" >&2; exit 1; }
+  commands "$1" >"$work/commands_without.txt"
+  if grep "calibrate_rig\|/test_calibration" "$work/commands_without.txt"; then
+    echo "FAILED: without Ceres calibrators are compiled" >&2; exit 1
+  fi
+  grep REFRACT_WITHOUT_CERES "$work/commands_without.txt" >"$work/commands_without_only.txt"
+}
+
+# Where one of the two is missing the module is built all the same. What is compiled there as in the main build is not again.
 for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
   configure "$work/without" $missing
-  grep -q "^-- *Unavailable:.* refract" "$work/without.log" ||
-    { echo "FAILED: with $missing OpenCV does not report refract as unavailable: $work/without.log" >&2; exit 1; }
+  without_ceres "$work/without"
+  compile "$work/without" "$work/commands_without_only.txt"
   rm -rf "$work/without"
-  echo "passed: unavailable with $missing"
+  echo "passed: built with $missing"
 done
 
 configure "$build"
 if [ $short = yes ]; then
-  # Ninja would build what these targets stand on first, so the compiler is called directly; it only looks, so without -O3.
-  commands=$work/commands.txt
-  ninja -C "$build" -t compdb | "$python" -c 'import json, sys
-for unit in json.load(sys.stdin):
-    if "/modules/refract/" in unit["file"] and unit["output"].endswith(".o"): print(unit["command"].replace("-O3", "-O0"))' >"$commands"
-  [ -s "$commands" ] || { echo "FAILED: no file of the module is to be compiled" >&2; exit 1; }
-  (cd "$build" && tr '\n' '\0' <"$commands" | xargs -0 -n 1 -P "$(nproc)" sh -ec)
+  commands "$build" >"$work/commands.txt"
+  compile "$build" "$work/commands.txt"
   # OpenCV warns, at length, that a tree without its other modules has no typing stubs.
   ninja -C "$build" gen_opencv_python_source >"$work/python.log" 2>&1 || { cat "$work/python.log"; exit 1; }
   grep -q triangulateRefractive "$build/modules/python_bindings_generator/pyopencv_generated_funcs.h"
-  echo "passed: OpenCV $version compiles $(wc -l <"$commands") files of the module and generates its Python bindings"
+  echo "passed: OpenCV $version compiles $(wc -l <"$work/commands.txt") files of the module and generates its Python bindings"
   exit 0
 fi
 ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example_refract_measure_behind_glass
@@ -91,6 +106,17 @@ ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example
 "$build/bin/example_refract_measure_behind_glass"
 PYTHONPATH=$build/python_loader:$source/modules/python/test \
   "$python" -B modules/refract/misc/python/test/test_refract.py
+
+# The same OpenCV with the module without Ceres.
+configure "$build" -DREFRACT_WITH_CERES=OFF
+without_ceres "$build"
+ninja -C "$build" opencv_test_refract opencv_python3
+"$build/bin/opencv_test_refract"
+PYTHONPATH=$build/python_loader:$source/modules/python/test \
+  "$python" -B modules/refract/misc/python/test/test_refract.py
+configure "$build" -DREFRACT_WITH_CERES=AUTO
+ninja -C "$build" opencv_test_refract opencv_python3
+echo "passed: tests without Ceres"
 
 # Typing stubs: OpenCV writes them only where all of its own modules are wrapped, too. That takes their headers alone.
 rm -rf "$work/stubs"

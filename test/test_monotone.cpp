@@ -59,7 +59,7 @@ TEST_CASE("The first positive root is found among others, real and complex, near
                 p = times(p, (kind == 0 ? 1 : -1)/size);
         }
         CAPTURE(root, p.size());
-        CHECK(rootOf(p) == Approx(root).epsilon(p.size() <= 4 ? 1e-9 : 1e-6));      // eigenvalues lose digits
+        CHECK(rootOf(p) == Approx(root).epsilon(1e-9));
     }
 }
 

@@ -6,9 +6,11 @@
 
 #include <opencv2/calib3d.hpp>
 #include <bitset>
-#include <ceres/tiny_solver.h>
 #include <cstring>
 #include <functional>
+#ifndef REFRACT_WITHOUT_CERES
+#include <ceres/tiny_solver.h>
+#endif
 
 using namespace cv;
 using namespace cv::refract;
@@ -114,6 +116,7 @@ std::vector<Vec3d> solve(const Rig& rig, std::vector<uchar>& status, int flags =
     return points;
 }
 
+#ifndef REFRACT_WITHOUT_CERES
 //! Sum of squared pixel errors of X in all images that see point i, and its gradient by differences, for Ceres.
 struct PixelErrors
 {
@@ -162,6 +165,7 @@ Vec3d optimumByCeres(const Rig& rig, int i, const Vec3d& start)
     solver.Solve(errors, &X);
     return Vec3d(X[0], X[1], X[2]);
 }
+#endif
 
 //! The point with the least squared distance from the rays, as linear least squares in the frame of camera 1.
 Vec3d nearestToRays(const Rig& rig, int i)
@@ -251,6 +255,7 @@ TEST_CASE("Two of any number of cameras are the pair", "[triangulate_rig]")
             REQUIRE(norm(C.row(i), CPair.row(i)) <= 1e-9*norm(CPair.row(i)));
 }
 
+#ifndef REFRACT_WITHOUT_CERES
 TEST_CASE("With noise the optimum is Ceres's, whoever sees the point", "[triangulate_rig]")
 {
     CAPTURE(seed());
@@ -279,6 +284,7 @@ TEST_CASE("With noise the optimum is Ceres's, whoever sees the point", "[triangu
         printNumber("optimum of several cameras, largest distance from Ceres's, of a range of 700", worst, "");
     }
 }
+#endif
 
 TEST_CASE("The midpoint of several rays has the least squared distance from them", "[triangulate_rig]")
 {

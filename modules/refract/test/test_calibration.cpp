@@ -8,36 +8,8 @@ namespace opencv_test { namespace {
 
 using namespace scene;
 
-Ptr<RefractiveCamera> bare1() { return RefractiveCamera::create(K1(), D1()); }
-Ptr<RefractiveCamera> bare2() { return RefractiveCamera::create(K2(), D2()); }
 // The pane as its data sheet has it, straight ahead.
 GlassWindow straight(const GlassWindow& window) { return GlassWindow(Vec3d(0, 0, 1), 20, 1.5437, window.distance); }
-
-TEST(Refract_CalibrateGlassNormal, from_pairs)
-{
-    Vec3d normal;
-    Vec2d center;
-    Matx33d covariance;
-    const double rms = calibrateGlassNormal(views(bare1()), views(camera1()), K1(), D1(), normal, center, covariance);
-    const Vec3d n = window1().normal;
-    EXPECT_NEAR(0, rms, 1e-6);
-    EXPECT_NEAR(0, angle(normal, n), 1e-8);
-    EXPECT_NEAR(K1()(0, 2) + K1()(0, 0)*n[0]/n[2], center[0], 1e-3);
-    EXPECT_NEAR(K1()(1, 2) + K1()(1, 1)*n[1]/n[2], center[1], 1e-3);
-
-    Vec3d same;
-    calibrateGlassNormal(views(bare1()), views(camera1()), bare1(), same);
-    EXPECT_EQ(normal, same);
-}
-
-TEST(Refract_CalibrateGlassNormal, refuses_views_that_do_not_differ)
-{
-    Vec3d normal;
-    EXPECT_REFUSED(calibrateGlassNormal(views(bare1()), views(bare1()), K1(), D1(), normal),
-                   "the normal is undetermined");
-    EXPECT_REFUSED(calibrateGlassNormal(PixelViews(2), views(camera1()), K1(), D1(), normal),
-                   "imagePointsDirect has 2 views");
-}
 
 TEST(Refract_CalibrateGlass, from_pairs)
 {
@@ -148,41 +120,6 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
     windows.resize(1);
     EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                      covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");
-}
-
-TEST(Refract_SolvePnP, finds_the_pose)
-{
-    const Vec3d rvec(0, 0.2, 0), tvec(10, -5, 620);
-    const std::vector<Point2d> pixels = project(board(), camera1(), rotation(0, 0.2), tvec);
-    Vec3d r, t, r2 = rvec, t2 = tvec;
-    std::vector<double> error;
-    EXPECT_TRUE(refractiveSolvePnP(board(), pixels, K1(), D1(), window1(), r, t, false, error));
-    EXPECT_NEAR(0, error[0], 1e-6);
-    EXPECT_NEAR(0, cv::norm(r - rvec), 1e-6);
-    EXPECT_NEAR(0, cv::norm(t - tvec), 1e-4);
-    EXPECT_TRUE(refractiveSolvePnP(board(), pixels, camera1(), r2, t2, true));
-    EXPECT_NEAR(0, cv::norm(t2 - tvec), 1e-4);
-}
-
-TEST(Refract_SolvePnPGeneric, finds_both_poses_of_a_board)
-{
-    const Vec3d rvec(0, 0.3, 0), tvec(10, -5, 1200);
-    const std::vector<Point2d> pixels = project(board(), camera1(), rotation(0, 0.3), tvec);
-    std::vector<Vec3d> rvecs, tvecs;
-    std::vector<double> errors;
-    EXPECT_EQ(2, refractiveSolvePnPGeneric(board(), pixels, camera1(), rvecs, tvecs, false, noArray(), noArray(), errors));
-    EXPECT_NEAR(0, cv::norm(rvecs[0] - rvec), 1e-5);
-    EXPECT_GT(errors[1], errors[0]);
-    EXPECT_EQ(2, refractiveSolvePnPGeneric(board(), pixels, K1(), D1(), window1(), rvecs, tvecs));
-}
-
-TEST(Refract_SolvePnP, no_pose_is_false)
-{
-    const std::vector<Point2d> unseen(board().size(), Point2d(NaN, NaN));
-    Vec3d r, t(1, 2, 3);
-    EXPECT_FALSE(refractiveSolvePnP(board(), unseen, camera1(), r, t));
-    EXPECT_EQ(Vec3d(1, 2, 3), t);
-    EXPECT_REFUSED(refractiveSolvePnP(board(), std::vector<Point2d>(3), camera1(), r, t), "imagePoints 3");
 }
 
 }} // namespace

@@ -24,6 +24,9 @@ inline GlassWindow window1() { return GlassWindow(Vec3d(-0.2483, 0.0961, 1), 20,
 inline GlassWindow window2() { return GlassWindow(Vec3d(0.1846, 0.0312, 1), 20, 1.5437, 40); }
 inline Ptr<RefractiveCamera> camera1() { return RefractiveCamera::create(K1(), D1(), window1()); }
 inline Ptr<RefractiveCamera> camera2() { return RefractiveCamera::create(K2(), D2(), window2()); }
+// Without their windows.
+inline Ptr<RefractiveCamera> bare1() { return RefractiveCamera::create(K1(), D1()); }
+inline Ptr<RefractiveCamera> bare2() { return RefractiveCamera::create(K2(), D2()); }
 
 inline Matx33d rotation(double x, double y)
 {

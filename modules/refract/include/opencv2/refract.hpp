@@ -26,6 +26,8 @@ matches, triangulates and calibrates such cameras, with the calls that calib3d h
   its neighbours.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
   index < 1) throws cv::Exception whose text names the argument and the value. Empty input gives empty output.
+- **Without Ceres**: a build without Ceres has all but calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and
+  refractiveBundleAdjust, which then throw with the code Error::StsNotImplemented; the text says what to install.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, std::vector;
   float32 or float64; non-continuous views included. Computation is in double. Outputs are Nx1 with channels and
   have the input's depth unless the caller fixed the type.
@@ -858,6 +860,7 @@ need not be known.
 @return RMS in pixels of the points' distance to the lines through the centre.
 
 Throws if the data do not determine the normal (no displacement between the views, or all lines the same).
+Needs no Ceres.
 */
 CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         InputArray cameraMatrix, InputArray distCoeffs,
@@ -891,6 +894,7 @@ sealed camera's is looked for from many starts, so that its focal length need be
 a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
 Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
 same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
+Throws Error::StsNotImplemented in a build without Ceres, as do the other forms of it.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
@@ -959,6 +963,8 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 normal and distance follow from R and T.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels over all observed points.
+
+Throws as calibrateGlass.
 */
 CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
@@ -1022,7 +1028,7 @@ within it, and starts at the known value; a lens parameter with the variance 0 i
 they say, and so are window parameters without a variance (rows of the normal are not used). noArray(): nothing is known.
 @return RMS reprojection error in pixels over all points that were used.
 
-Throws as calibrateGlass, and with GLASS_ROBUST if fewer than half of all points fit.
+Throws as calibrateGlass, also without Ceres, and with GLASS_ROBUST if fewer than half of all points fit.
 */
 CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -1088,7 +1094,7 @@ noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop, as calibrateGlass.
 @return RMS reprojection error in pixels over all points that were used.
 
-Throws where the data cannot determine what is free, naming it.
+Throws where the data cannot determine what is free, naming it; Error::StsNotImplemented in a build without Ceres.
 */
 CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         const std::vector<std::vector<Mat> >& imagePoints,

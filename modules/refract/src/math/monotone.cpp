@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "math/monotone.hpp"
-#include <Eigen/Eigenvalues>
 
 namespace cv { namespace refract {
 
@@ -29,21 +28,79 @@ static double largestRootOfCubic(const double* c, int degree)
     return y;
 }
 
-//! The same for any degree up to 6: the eigenvalues of the companion matrix.
+//! c[0] y^degree + ... + c[degree]
+static double valueAt(const double* c, int degree, double y, double& slope)
+{
+    double value = c[0];
+    slope = 0;
+    for (int i = 1; i <= degree; i++)
+    {
+        slope = slope*y + value;
+        value = value*y + c[i];
+    }
+    return value;
+}
+
+//! The root between two places where the polynomial has different signs: Newton's steps, and halves where they are slow.
+static double rootBetween(const double* c, int degree, double below, double above, bool risesThrough)
+{
+    double y = 0.5*(below + above), width = above - below;
+    for (int i = 0; i < 200; i++)
+    {
+        double slope;
+        const double value = valueAt(c, degree, y, slope);
+        ((value > 0) == risesThrough ? above : below) = y;
+        double next = y - value/slope;
+        if (!(next > below && next < above) || std::abs(next - y) > 0.5*width)
+            next = 0.5*(below + above);
+        width = std::abs(next - y);
+        y = next;
+        if (width <= 2*DBL_EPSILON*y)
+            break;
+    }
+    return y;
+}
+
+/* The positive roots up to `most`, the largest first: between two neighbouring extrema, which are the derivative's roots and as
+far from zero at most (Gauss, Lucas), there is one at most. One that only touches zero is there within rounding. */
+static int positiveRoots(const double* c, int degree, double most, double* roots)
+{
+    if (degree == 1)
+    {
+        roots[0] = -c[1]/c[0];
+        return roots[0] > 0;
+    }
+    double derivative[6], extrema[6];
+    for (int i = 0; i < degree; i++)
+        derivative[i] = c[i]*(degree - i);
+    const int extremaCount = positiveRoots(derivative, degree - 1, most, extrema);
+    extrema[extremaCount] = 0;
+    int count = 0;
+    double above = most, valueAbove = c[0];             // its sign
+    for (int i = 0; i <= extremaCount; i++)
+    {
+        const double below = extrema[i];
+        double slope, bend;
+        const double value = valueAt(c, degree, below, slope);
+        valueAt(derivative, degree - 1, below, bend);
+        if (value*valueAbove < 0)
+            roots[count++] = rootBetween(c, degree, below, above, valueAbove > 0);
+        else if (below > 0 && std::abs(value) <= 1e-14*below*below*std::abs(bend))
+            roots[count++] = below;
+        above = below;
+        valueAbove = value;
+    }
+    return count;
+}
+
+//! The same for any degree up to 6.
 static double largestRoot(const double* c, int degree)
 {
-    typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> Companion;   // not on the heap
-    CV_Assert(degree <= Companion::MaxRowsAtCompileTime);
-    Companion companion = Companion::Zero(degree, degree);
-    for (int i = 0; i < degree; i++)
-        companion(0, i) = -c[i + 1]/c[0];
-    companion.diagonal(-1).setOnes();
-    const auto roots = companion.eigenvalues();
-    double y = 0;
-    for (int i = 0; i < degree; i++)
-        if (std::abs(roots[i].imag()) <= 1e-7*std::abs(roots[i]))
-            y = std::max(y, roots[i].real());
-    return y;
+    CV_Assert(degree <= 6);
+    double most = 0, roots[7];
+    for (int i = 1; i <= degree; i++)
+        most = std::max(most, 2*std::pow(std::abs(c[i]/c[0]), 1./i));      // Fujiwara's bound
+    return positiveRoots(c, degree, most, roots) > 0 ? roots[0] : 0;
 }
 
 double firstPositiveRoot(const double* c, int terms)

@@ -9,8 +9,8 @@ namespace cv { namespace refract {
 uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images,
                      std::vector<std::vector<double> >* parameters)
 {
-    images.errors.setZero();
-    images.byPoint.setZero();
+    std::fill(images.errors.begin(), images.errors.end(), 0);
+    std::fill(images.byPoint.begin(), images.byPoint.end(), Vec3d());
     for (int c = 0; c < (int)cameras.size(); c++)
     {
         if (!block.isSeen(c, i))
@@ -25,7 +25,7 @@ uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int 
         for (int k = 0; k < 2; k++)
         {
             images.errors[2*c + k] = pixel[k] - block.pixel(2*c + k)[i];
-            images.byPoint.row(2*c + k) << J(k, 0), J(k, 1), J(k, 2);
+            images.byPoint[2*c + k] = Vec3d(J.val + 3*k);
         }
     }
     return REFRACT_OK;

@@ -7,7 +7,6 @@
 
 #include "arrays/extrinsics.hpp"
 #include "camera/camera.hpp"
-#include <Eigen/Core>
 
 /* What cameras of a rig see of points: a block of them on its way from pixels to points, and one of them in all images. */
 
@@ -43,9 +42,9 @@ private:
 //! One point's pixels in all images: two rows a camera, 0 where the camera does not see it.
 struct PointImages
 {
-    explicit PointImages(int cameras) : errors(2*cameras), byPoint(2*cameras, 3) {}
-    Eigen::VectorXd errors;                                 //!< predicted - observed
-    Eigen::Matrix<double, Eigen::Dynamic, 3> byPoint;       //!< of the predicted pixels, in the frame of camera 1
+    explicit PointImages(int cameras) : errors(2*cameras), byPoint(2*cameras) {}
+    std::vector<double> errors;         //!< predicted - observed
+    std::vector<Vec3d> byPoint;         //!< of the predicted pixels, in the frame of camera 1
 };
 
 /** Where X would be seen by the cameras that see point i; the first reason why one cannot.

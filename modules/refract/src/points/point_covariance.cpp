@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "points/triangulate.hpp"
+#include "math/least_squares.hpp"
 #include "math/rotation.hpp"
-#include <Eigen/Dense>
 #include <array>
 
 /* Covariance of the maximum-likelihood point: J^+ S J^+^T from the pixels' covariance S, plus G C G^T, G = -J^+ J_parameters,
@@ -14,11 +14,11 @@ namespace cv { namespace refract {
 
 struct PointCovariance::Calibration
 {
-    Eigen::MatrixXd covariance;                     //!< empty: exact
+    std::vector<double> covariance;                 //!< by rows; empty: exact
     std::vector<std::array<Matx33d, 3> > dR;        //!< of each camera, by its rotation vector
     std::vector<int> first;                         //!< column of each camera's first parameter, then of the first extrinsics
-    Eigen::MatrixXd jacobian(const PlacedCameras& cameras, const Vec3d& X, const PointImages& images,
-                             const std::vector<std::vector<double> >& parameters) const;
+    std::vector<Vec3d> pointBy(const PlacedCameras& cameras, const Vec3d& X, const PointImages& images,
+                               const std::vector<Vec3d>& byPixel, const std::vector<std::vector<double> >& parameters) const;
 };
 
 PointCovariance::PointCovariance(const PlacedCameras& cameras, InputArray calibration)
@@ -36,40 +36,52 @@ PointCovariance::PointCovariance(const PlacedCameras& cameras, InputArray calibr
     calibration_->first.push_back(count);
     count += 6*((int)cameras.size() - 1);
     const std::vector<double> c = readNumbers(calibration, "calibrationCovariance");
-    if (c.empty())
-        return;
-    if (c.size() != (size_t)count*count)
+    if (!c.empty() && c.size() != (size_t)count*count)
         CV_Error_(Error::StsBadSize, ("calibrationCovariance has %d values; it must be %dx%d", (int)c.size(), count, count));
-    calibration_->covariance = Eigen::Map<const Eigen::MatrixXd>(c.data(), count, count);
+    calibration_->covariance = c;
 }
 
-//! All pixels by all parameters of the calibration.
-Eigen::MatrixXd PointCovariance::Calibration::jacobian(const PlacedCameras& cameras, const Vec3d& X, const PointImages& images,
-                                                       const std::vector<std::vector<double> >& parameters) const
+//! The point by each parameter of the calibration, but for the sign.
+std::vector<Vec3d> PointCovariance::Calibration::pointBy(const PlacedCameras& cameras, const Vec3d& X, const PointImages& images,
+                                                         const std::vector<Vec3d>& byPixel,
+                                                         const std::vector<std::vector<double> >& parameters) const
 {
     const int count = (int)cameras.size();
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2*count, covariance.cols());
+    std::vector<Vec3d> columns(first[count] + 6*(count - 1));
     for (int c = 0; c < count; c++)
         for (int k = 0; k < 2; k++)
         {
-            const int row = 2*c + k, own = first[c + 1] - first[c];
+            const int own = first[c + 1] - first[c];
+            const Vec3d& by = byPixel[2*c + k];
             for (int p = 0; p < own; p++)
-                J(row, first[c] + p) = parameters[c][k*own + p];
-            const Vec3d D = cameras[c].place.R*Vec3d(images.byPoint(row, 0), images.byPoint(row, 1),
-                                                          images.byPoint(row, 2));
+                columns[first[c] + p] += parameters[c][k*own + p]*by;
+            const Vec3d D = cameras[c].place.R*images.byPoint[2*c + k];
             for (int p = 0; p < 3 && c > 0; p++)
             {
-                J(row, first[count] + 6*(c - 1) + p) = D.dot(dR[c][p]*X);
-                J(row, first[count] + 6*(c - 1) + 3 + p) = D[p];
+                columns[first[count] + 6*(c - 1) + p] += D.dot(dR[c][p]*X)*by;
+                columns[first[count] + 6*(c - 1) + 3 + p] += D[p]*by;
             }
         }
-    return J;
+    return columns;
+}
+
+//! G C G^T, from G's columns and a symmetric C.
+static Matx33d carried(const std::vector<Vec3d>& columns, const double* covariance)
+{
+    Matx33d sum;
+    for (size_t i = 0; i < columns.size(); i++, covariance += columns.size())
+    {
+        Vec3d row;
+        for (size_t j = 0; j < columns.size(); j++)
+            row += covariance[j]*columns[j];
+        sum += row*columns[i].t();
+    }
+    return sum;
 }
 
 void PointCovariance::evaluate(const PixelBlock& block, int i, const double* pixels, double* covariance) const
 {
-    const int rows = 2*(int)cameras_.size();
-    const bool isUncertain = calibration_->covariance.size() > 0;
+    const bool isUncertain = !calibration_->covariance.empty();
     const Vec3d X(block.x[i], block.y[i], block.z[i]);
     PointImages images((int)cameras_.size());
     std::vector<std::vector<double> > parameters;
@@ -80,15 +92,17 @@ void PointCovariance::evaluate(const PixelBlock& block, int i, const double* pix
         std::fill(covariance, covariance + 9, std::numeric_limits<double>::quiet_NaN());
         return;
     }
-    const auto& J = images.byPoint;
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> pseudoInverse = (J.transpose()*J).inverse()*J.transpose();
-    Eigen::Matrix3d C = pseudoInverse*Eigen::Map<const Eigen::MatrixXd>(pixels, rows, rows)*pseudoInverse.transpose();
+    SumOfSquares<3> sum;
+    for (size_t row = 0; row < images.errors.size(); row++)
+        sum.add(images.errors[row], images.byPoint[row].val);
+    const Matx33d inverse = inverseOfPositive(sum.curvature);
+    std::vector<Vec3d> byPixel;
+    for (const Vec3d& row : images.byPoint)
+        byPixel.push_back(inverse*row);
+    Matx33d C = carried(byPixel, pixels);
     if (isUncertain)
-    {
-        const Eigen::MatrixXd G = pseudoInverse*calibration_->jacobian(cameras_, X, images, parameters);
-        C += G*calibration_->covariance*G.transpose();
-    }
-    std::copy(C.data(), C.data() + 9, covariance);
+        C += carried(calibration_->pointBy(cameras_, X, images, byPixel, parameters), calibration_->covariance.data());
+    std::copy(C.val, C.val + 9, covariance);
 }
 
 }} // namespace

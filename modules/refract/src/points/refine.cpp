@@ -4,7 +4,6 @@
 
 #include "points/point_kernels.hpp"
 #include "points/triangulate.hpp"
-#include <Eigen/QR>
 
 /* The maximum-likelihood point minimises the sum of squared pixel errors in all raw images, by Gauss-Newton with exact
 derivatives: many points side by side, and the few that this leaves one by one. */
@@ -12,6 +11,16 @@ derivatives: many points side by side, and the few that this leaves one by one. 
 namespace cv { namespace refract {
 
 namespace {
+
+//! The least squares of linear errors, also where rays are so parallel that the normal equations would not know.
+Vec3d gaussNewtonStep(const PointImages& images)
+{
+    const int rows = (int)images.errors.size();
+    const Mat J(rows, 3, CV_64F, const_cast<Vec3d*>(images.byPoint.data()));
+    Vec3d step;
+    solve(J, Mat(rows, 1, CV_64F, const_cast<double*>(images.errors.data())), step, DECOMP_SVD);
+    return -step;
+}
 
 /* Far from the minimum a step must reduce the cost; near it full Gauss-Newton steps converge, and the cost, whose
 changes drown in rounding there, is not asked. */
@@ -25,14 +34,16 @@ uchar refine(const PlacedCameras& cameras, const PixelBlock& block, int i, Vec3d
     double last = DBL_MAX;
     for (int iteration = 0; iteration < 100; iteration++)
     {
-        const Eigen::Vector3d step = -here.byPoint.colPivHouseholderQr().solve(here.errors);
-        Vec3d move(step[0], step[1], step[2]);
-        const double moved = (here.byPoint*step).norm();
+        Vec3d move = gaussNewtonStep(here);
+        double square = 0;
+        for (const Vec3d& row : here.byPoint)
+            square += row.dot(move)*row.dot(move);
+        const double moved = std::sqrt(square);
         bool taken = false;
         for (int cut = 0; cut < 40 && !taken; cut++, move *= 0.5)
         {
             taken = projectIntoAll(cameras, block, i, X + move, there) == REFRACT_OK
-                    && (moved < NEAR || there.errors.squaredNorm() < here.errors.squaredNorm());
+                    && (moved < NEAR || norm(there.errors) < norm(here.errors));
             if (taken)
             {
                 X += move;

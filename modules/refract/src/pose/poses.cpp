@@ -10,9 +10,9 @@ and moved by the mean origin. A planar target has two such poses (IPPE gives bot
 
 #include "pose/poses.hpp"
 #include "arrays/arrays.hpp"
-#include "math/rotation.hpp"
 #include "arrays/views.hpp"
-#include <ceres/tiny_solver.h>
+#include "math/least_squares.hpp"
+#include "math/rotation.hpp"
 
 namespace cv { namespace refract {
 
@@ -118,21 +118,16 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
     return poses;
 }
 
-//! Reprojection errors of one image by the pose, for ceres::TinySolver.
+//! Reprojection errors of one image by the pose (rvec, tvec).
 struct PoseErrors
 {
-    typedef double Scalar;
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
     const Camera& camera;
     const ImagePoints& points;
 
-    int NumResiduals() const { return 2*(int)points.pixel.size(); }
-
-    //! The jacobian is column-major. Where a point has no image the errors are infinite: no step is taken there.
-    bool operator()(const double* pose, double* errors, double* jacobian) const
+    //! False where a point has no image.
+    bool operator()(const Vec6d& pose, SumOfSquares<6>& sum) const
     {
-        const Rotation object(pose);
-        Eigen::Map<Eigen::MatrixXd> byPose(jacobian, NumResiduals(), jacobian ? 6 : 0);
+        const Rotation object(pose.val);
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], derivatives[6*BLOCK];
         uchar status[BLOCK];
         const Columns byPoint = { derivatives, 3, BLOCK }, none = { nullptr, camera.parameterCount(), BLOCK };
@@ -141,34 +136,28 @@ struct PoseErrors
             const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
             for (int k = 0; k < n; k++)
             {
-                const Vec3d X = object.R*Vec3d(points.object[begin + k]) + Vec3d(pose + 3);
+                const Vec3d X = object.R*Vec3d(points.object[begin + k]) + Vec3d(pose.val + 3);
                 x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
                 status[k] = REFRACT_OK;
             }
-            if (jacobian)
-                camera.projectJacobian(n, x, y, z, u, v, byPoint, none, status);
-            else
-                camera.project(n, x, y, z, nullptr, u, v, status);
+            camera.projectJacobian(n, x, y, z, u, v, byPoint, none, status);
             if (std::any_of(status, status + n, [](uchar s) { return s != REFRACT_OK; }))
-            {
-                std::fill(errors, errors + NumResiduals(), std::numeric_limits<double>::infinity());
                 return false;
-            }
             for (int k = 0; k < n; k++)
             {
-                const int i = begin + k;
-                errors[2*i] = u[k] - points.pixel[i].x;
-                errors[2*i + 1] = v[k] - points.pixel[i].y;
-                if (!jacobian)
-                    continue;
-                const Matx33d byRvec = object.derivativeOf(Vec3d(points.object[i]));
+                const Matx33d byRvec = object.derivativeOf(Vec3d(points.object[begin + k]));
+                const Point2d &seen = points.pixel[begin + k];
                 for (int r = 0; r < 2; r++)
+                {
+                    double byPose[6];
                     for (int c = 0; c < 3; c++)
                     {
-                        byPose(2*i + r, 3 + c) = byPoint.at(r, c)[k];
-                        byPose(2*i + r, c) = byPoint.at(r, 0)[k]*byRvec(0, c) + byPoint.at(r, 1)[k]*byRvec(1, c) +
-                                             byPoint.at(r, 2)[k]*byRvec(2, c);
+                        byPose[3 + c] = byPoint.at(r, c)[k];
+                        byPose[c] = byPoint.at(r, 0)[k]*byRvec(0, c) + byPoint.at(r, 1)[k]*byRvec(1, c) +
+                                    byPoint.at(r, 2)[k]*byRvec(2, c);
                     }
+                    sum.add(r == 0 ? u[k] - seen.x : v[k] - seen.y, byPose);
+                }
             }
         }
         return true;
@@ -179,23 +168,15 @@ struct PoseErrors
 
 double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations)
 {
-    const PoseErrors errors = { camera, points };
-    Eigen::Matrix<double, 6, 1> six;
-    six << pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2];
-    std::vector<double> atStart(errors.NumResiduals());
-    if (!errors(six.data(), atStart.data(), nullptr))       // a start that gives some point no image is none
+    const double count = (double)points.pixel.size();
+    const LeastSquaresEnd end = { iterations, 2e-15*count, 1e-14 };         // square pixels
+    Vec6d six(pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2]);
+    const double sum = minimizeSquares(PoseErrors{ camera, points }, end, six);
+    if (std::isnan(sum))            // a start that gives some point no image is none
         return NaN;
-    ceres::TinySolver<PoseErrors> solver;
-    solver.options.max_num_iterations = iterations;
-    solver.options.function_tolerance = 1e-15*errors.NumResiduals();        // square pixels
-    solver.options.parameter_tolerance = 1e-14;
-    solver.options.gradient_tolerance = solver.options.cost_threshold = 0;
-    const double cost = solver.Solve(errors, &six).final_cost;
-    if (!six.allFinite() || !std::isfinite(cost))
-        return NaN;
-    pose.rvec = Vec3d(six.data());
-    pose.tvec = Vec3d(six.data() + 3);
-    return std::sqrt(2*cost/(double)points.pixel.size());
+    pose.rvec = Vec3d(six.val);
+    pose.tvec = Vec3d(six.val + 3);
+    return std::sqrt(sum/count);
 }
 
 std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,

@@ -11,6 +11,7 @@ only in how the rays miss the mean origins; its likelihood has one parameter, th
 #include "pose/relative_pose.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
+#include "math/least_squares.hpp"
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
 #include <array>
@@ -298,7 +299,7 @@ struct Estimate
 {
     RelativePose pose;
     Vec3d T;
-    Eigen::Matrix<double, 6, 6> covariance;
+    Matx66d covariance;
     Vec2d interval;
     std::vector<int> agreeing;
 };
@@ -310,17 +311,25 @@ double quantile95(double freedom)
     return z*z*(1 + (z*z + 1)/(2*freedom));
 }
 
-Eigen::Matrix<double, 6, 6> covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose,
-                                         const Vec3d& T, double variance, bool atLength)
+//! Of N parameters that move rotation vector and T as the columns of `motion` say.
+template<int N>
+Matx66d covarianceOf(const std::vector<double>& errors, const std::vector<Matx16d>& byPose, const Matx<double, 6, N>& motion,
+                     double variance)
+{
+    SumOfSquares<N> sum;
+    for (size_t i = 0; i < errors.size(); i++)
+        sum.add(errors[i], (byPose[i]*motion).val);
+    return variance*(motion*inverseOfPositive(sum.curvature)*motion.t());
+}
+
+Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose, const Vec3d& T,
+                     double variance, bool atLength)
 {
     std::vector<double> errors;
-    Eigen::MatrixXd J;
-    sampsonErrors(pair, matches, pose.R, T, errors, &J);
-    if (!atLength)
-        return variance*(J.transpose()*J).inverse();
-    const Eigen::Matrix<double, 6, 5> motion = motionAtLength(pair, pose);
-    J = J*motion;
-    return variance*motion*(J.transpose()*J).inverse()*motion.transpose();
+    std::vector<Matx16d> byPose;
+    sampsonErrors(pair, matches, pose.R, T, errors, &byPose);
+    return atLength ? covarianceOf(errors, byPose, motionAtLength(pair, pose), variance)
+                    : covarianceOf(errors, byPose, Matx66d::eye(), variance);
 }
 
 //! The matches that agree, without those that stand out among them.
@@ -471,10 +480,7 @@ int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<Refr
     Estimate e;
     const int count = recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, e);
     scaleInterval = count > 0 ? e.interval : Vec2d(NaN, NaN);
-    Mat known(6, 6, CV_64F, Scalar(NaN));
-    for (int i = 0; i < 36 && count > 0; i++)
-        known.at<double>(i/6, i % 6) = e.covariance(i/6, i % 6);
-    known.copyTo(covariance);
+    Mat(count > 0 ? e.covariance : Matx66d::all(NaN)).copyTo(covariance);
     return count;
 }
 

@@ -3,15 +3,15 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "pose/relative_pose.hpp"
+#include "math/least_squares.hpp"
 #include "math/rotation.hpp"
 #include "points/epipolar_distance.hpp"
-#include <ceres/tiny_solver.h>
 
 namespace cv { namespace refract {
 
 namespace {
 
-typedef Eigen::Matrix<double, 5, 1> Five;       // three of a rotation, two of the baseline's direction
+typedef Vec<double, 5> Vec5d;                   // three of a rotation, two of the baseline's direction
 
 Matx<double, 3, 2> tangents(const Vec3d& u)
 {
@@ -20,12 +20,12 @@ Matx<double, 3, 2> tangents(const Vec3d& u)
 }
 
 //! The pose moved by five parameters, and how the baseline moves by the last two.
-RelativePose moved(const RelativePose& pose, const double* five, Matx<double, 3, 2>& byDirection)
+RelativePose moved(const RelativePose& pose, const Vec5d& five, Matx<double, 3, 2>& byDirection)
 {
     const Matx<double, 3, 2> across = tangents(pose.baseline);
     const Vec3d sum = pose.baseline + across*Vec2d(five[3], five[4]), u = normalize(sum);
     byDirection = (1/norm(sum))*((Matx33d::eye() - u*u.t())*across);
-    return { rotationMatrix(rotationVector(pose.R) + Vec3d(five)), u, pose.length };
+    return { rotationMatrix(rotationVector(pose.R) + Vec3d(five.val)), u, pose.length };
 }
 
 //! T without the baseline, and q.
@@ -39,7 +39,7 @@ bool parts(const MatchedCameras& pair, const RelativePose& pose, Vec3d& offset, 
 }
 
 //! dT = dOffset + dq u + q du, and T dT = 0 says what dq is.
-Eigen::Matrix<double, 6, 5> motion(const MatchedCameras& pair, const RelativePose& pose, const Matx<double, 3, 2>& byDirection)
+Matx<double, 6, 5> motion(const MatchedCameras& pair, const RelativePose& pose, const Matx<double, 3, 2>& byDirection)
 {
     Vec3d offset;
     double q;
@@ -49,44 +49,38 @@ Eigen::Matrix<double, 6, 5> motion(const MatchedCameras& pair, const RelativePos
     const Matx33d turned = Rotation(rotationVector(pose.R).val).derivativeOf(pair.centre1);
     const Matx33d byRotation = -1*(keepsLength*turned);
     const Matx<double, 3, 2> byBaseline = q*(keepsLength*byDirection);
-    Eigen::Matrix<double, 6, 5> both = Eigen::Matrix<double, 6, 5>::Zero();
-    both.topLeftCorner<3, 3>().setIdentity();
+    Matx<double, 6, 5> both = Matx<double, 6, 5>::eye();
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 5; c++)
             both(3 + r, c) = c < 3 ? byRotation(r, c) : byBaseline(r, c - 3);
     return both;
 }
 
-//! Errors of all matches at one length, for ceres::TinySolver.
+//! Errors of all matches at one length, without the gradient's own change, which is of second order in the noise.
 struct ErrorsAtLength
 {
-    typedef double Scalar;
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 5 };
     const MatchedCameras& pair;
     const PixelMatches& matches;
     const RelativePose& start;
 
-    int NumResiduals() const { return (int)matches.size(); }
-
-    /* The jacobian is column-major, without the gradient's own change, which is of second order in the noise. Where a match has
-    no distance the errors are infinite: no step is taken there. */
-    bool operator()(const double* five, double* errors, double* jacobian) const
+    //! False where a match has no distance.
+    bool operator()(const Vec5d& five, SumOfSquares<5>& sum) const
     {
         Matx<double, 3, 2> byDirection;
         const RelativePose pose = moved(start, five, byDirection);
         Vec3d T;
-        std::vector<double> found;
-        Eigen::MatrixXd byPose;
-        if (translation(pair, pose, T))
-            sampsonErrors(pair, matches, pose.R, T, found, jacobian ? &byPose : nullptr);
-        if (found.empty() || std::any_of(found.begin(), found.end(), [](double e) { return std::isnan(e); }))
-        {
-            std::fill_n(errors, NumResiduals(), std::numeric_limits<double>::infinity());
+        if (matches.size() == 0 || !translation(pair, pose, T))
             return false;
+        std::vector<double> errors;
+        std::vector<Matx16d> byPose;
+        sampsonErrors(pair, matches, pose.R, T, errors, &byPose);
+        const Matx<double, 6, 5> byFive = motion(pair, pose, byDirection);
+        for (size_t i = 0; i < errors.size(); i++)
+        {
+            if (std::isnan(errors[i]))
+                return false;
+            sum.add(errors[i], (byPose[i]*byFive).val);
         }
-        std::copy(found.begin(), found.end(), errors);
-        if (jacobian)
-            Eigen::Map<Eigen::MatrixXd>(jacobian, NumResiduals(), 5) = byPose*motion(pair, pose, byDirection);
         return true;
     }
 };
@@ -103,19 +97,19 @@ bool translation(const MatchedCameras& pair, const RelativePose& pose, Vec3d& T)
     return true;
 }
 
-Eigen::Matrix<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose)
+Matx<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose)
 {
     return motion(pair, pose, tangents(pose.baseline));
 }
 
 void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const Matx33d& R, const Vec3d& T,
-                   std::vector<double>& errors, Eigen::MatrixXd* byPose)
+                   std::vector<double>& errors, std::vector<Matx16d>* byPose)
 {
     const EpipolarDistance distance(pair.camera1, pair.camera2, R, T, 1, DepthRange{ 0, DBL_MAX });
     const int count = (int)matches.size();
     errors.resize(count);
     if (byPose)
-        byPose->resize(count, 6);
+        byPose->resize(count);
     forEachBlock(count, [&](int begin, int n)
     {
         Matches block;
@@ -134,31 +128,21 @@ void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, cons
             const bool ok = block.status[i] == REFRACT_OK && gradient > 0;
             errors[begin + i] = ok ? block.distance[i]/gradient : std::numeric_limits<double>::quiet_NaN();
             for (int c = 0; c < 6 && byPose; c++)
-                (*byPose)(begin + i, c) = J(4 + c)/gradient;
+                (*byPose)[begin + i](c) = J(4 + c)/gradient;
         }
     });
 }
 
 double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RelativePose& pose, int iterations)
 {
-    const double NaN = std::numeric_limits<double>::quiet_NaN();
     const RelativePose start = pose;
-    const ErrorsAtLength errors = { pair, matches, start };
-    Five five = Five::Zero();
-    std::vector<double> atStart(matches.size());
-    if (!errors(five.data(), atStart.data(), nullptr))
-        return NaN;
-    ceres::TinySolver<ErrorsAtLength> solver;
-    solver.options.max_num_iterations = iterations;
-    solver.options.function_tolerance = 1e-7;       // square pixels
-    solver.options.parameter_tolerance = 1e-12;
-    solver.options.gradient_tolerance = solver.options.cost_threshold = 0;
-    const double cost = solver.Solve(errors, &five).final_cost;
-    if (!five.allFinite() || !std::isfinite(cost))
-        return NaN;
+    const LeastSquaresEnd end = { iterations, 1e-7, 1e-12 };        // square pixels
+    Vec5d five;
+    const double sum = minimizeSquares(ErrorsAtLength{ pair, matches, start }, end, five);
     Matx<double, 3, 2> byDirection;
-    pose = moved(start, five.data(), byDirection);
-    return 2*cost;
+    if (!std::isnan(sum))
+        pose = moved(start, five, byDirection);
+    return sum;
 }
 
 }} // namespace

@@ -6,7 +6,6 @@
 #define OPENCV_REFRACT_RELATIVE_POSE_HPP
 
 #include "camera/camera.hpp"
-#include <Eigen/Dense>
 
 namespace cv { namespace refract {
 
@@ -38,15 +37,15 @@ struct RelativePose
 //! False if no baseline of this direction gives T this length.
 bool translation(const MatchedCameras& pair, const RelativePose& pose, Vec3d& T);
 
-//! Of each match, NaN where it has no distance; rows of byPose, if it is wanted, by the rotation vector (3) and by T (3).
+//! Of each match, NaN where it has no distance; byPose, if it is wanted, by the rotation vector (3) and by T (3).
 void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const Matx33d& R, const Vec3d& T,
-                   std::vector<double>& errors, Eigen::MatrixXd* byPose);
+                   std::vector<double>& errors, std::vector<Matx16d>* byPose);
 
 //! Most likely R and baseline for the pose's length: the sum of squared errors, NaN if there is none.
 double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RelativePose& pose, int iterations);
 
 /** Columns: how the rotation vector and T move by the five parameters that refineAtLength estimates. */
-Eigen::Matrix<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose);
+Matx<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose);
 
 }} // namespace
 

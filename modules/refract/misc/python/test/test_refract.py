@@ -3,6 +3,7 @@
 # It is subject to the license terms in the LICENSE file found in the top-level directory
 # of this distribution and at http://opencv.org/license.html.
 
+import functools
 import math
 import os
 import tempfile
@@ -44,6 +45,19 @@ def make_views(camera, second=False):
         assert not status.any()
         views.append(pixels)
     return views
+
+
+def needs_ceres(test):
+    """Skips where the module was built without Ceres."""
+    @functools.wraps(test)
+    def run(self):
+        try:
+            test(self)
+        except cv.error as error:
+            if 'needs the library Ceres' not in str(error):
+                raise
+            self.skipTest('no Ceres')
+    return run
 
 
 class refract_test(NewOpenCVTests):
@@ -242,6 +256,7 @@ class refract_test(NewOpenCVTests):
         with self.assertRaisesRegex(cv.error, 'the normal is undetermined'):
             cv.refract.calibrateGlassNormal(direct, direct, K, D)
 
+    @needs_ceres
     def test_calibrate_glass(self):
         boards = [make_board()]*5
         direct, refracted = make_views(cv.refract.RefractiveCamera.create(K, D)), make_views(self.camera1)
@@ -260,6 +275,7 @@ class refract_test(NewOpenCVTests):
         self.assertClose(make_window().normal, camera.window().normal, 1e-6)
         self.assertEqual(((16, 1), (16, 16), (5, 2)), (deviations.shape, covariance.shape, per_view.shape))
 
+    @needs_ceres
     def test_calibrate_stereo(self):
         boards = [make_board()]*5
         bare = cv.refract.RefractiveCamera.create(K, D)
@@ -272,6 +288,7 @@ class refract_test(NewOpenCVTests):
         self.assertClose(make_window().normal, first.window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, second.window().normal, 1e-6)
 
+    @needs_ceres
     def test_calibrate_rig(self):
         bare = cv.refract.RefractiveCamera.create(K, D)
         cameras = [cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
