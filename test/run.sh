@@ -87,6 +87,7 @@ run "installed package: find_package and pkg-config" test/consumer/run.sh build/
 run "exported names: those of the committed list" test/exports.sh build/release
 run "Debian packages: clean, unpacked, tools and header work" test/package.sh build/release
 run "documentation: the site builds, its links lead somewhere, its figure computes as the library" test/site.sh build/release
+run "documentation: its commands run and print what it says; the quick ones" test/doc_blocks.py --short build/release/bin
 run "the same hundred values from every build" test/agreement/run.sh build/release
 # OpenCV itself is not compiled here: that takes the whole script, without --short.
 for version in 4.14.0.94 5.0.0.93; do
