@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // The solver of a handful of parameters.
 #include "math/least_squares.hpp"
 #include "scenes.hpp"

@@ -1,4 +1,7 @@
 #!/bin/sh
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
 # Builds the module where neither Ceres nor Eigen is found, and runs the tests of all that does without them.
 #
 # Usage: test/without_ceres.sh [--short]

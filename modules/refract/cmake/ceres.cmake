@@ -1,3 +1,7 @@
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
 # Which sources are compiled, for every build that compiles the module's: all of them with Ceres (2.1 is the first with manifolds)
 # and the Eigen that it brings; without it all but the calibrators, in whose place src/calibrate/without_ceres.cpp says what is
 # missing.
