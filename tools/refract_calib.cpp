@@ -287,7 +287,8 @@ void readWindow(const Options& o, RigOptions& rig)
 
     const bool equalMedia = window.innerIndex == window.outerIndex;
     if (window.thickness.size() != window.index.size())
-        throw Failure("--thickness and --index must have one number for each layer: give both");
+        throw Failure(format("--thickness has %d, --index %d: both must have one number for each layer, with commas between layers and "
+                             "points for decimals", (int)window.thickness.size(), (int)window.index.size()));
     requireMaterials(o, window);
     if (window.thickness.empty() && equalMedia)
         throw Failure("there is no window to calibrate: give --thickness and --index, or an --outer-index that differs from "
@@ -420,6 +421,14 @@ void checkOutputs(const Options& o)
                         inputs);
 }
 
+//! Whoever reads the file must know what was thought of it.
+Calibration judged(Calibration file, const Findings& findings)
+{
+    file.verdict = findings.verdict();
+    file.contradictions = findings.contradictions;
+    return file;
+}
+
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)
 {
     Calibration pinhole = calibratePinholeRig(calibration.data, allMoments(calibration.data),
@@ -445,7 +454,7 @@ int main(int argc, char** argv)
             writeText(options.summary, summaryJson(calibration, assessment, findings, command.line()));
         if (!options.report.empty())
             writeText(options.report, makeReport(calibration, assessment, findings, command.line(), command.quiet()));
-        writeCalibration(options.out, toFile(calibration, command.line()));
+        writeCalibration(options.out, judged(toFile(calibration, command.line()), findings));
         if (!command.quiet())
             printSummary(std::cout, calibration, assessment, findings);
         for (const LimitCheck& limit : findings.limits)

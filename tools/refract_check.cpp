@@ -218,6 +218,7 @@ int main(int argc, char** argv)
         const Target target(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, false, "");
+        warnOfContradictions(calibration, options.calibration, command);
         requireSameUnit(calibration, target.square(), options.unit);
         std::vector<std::string> inputs = options.images.all();
         inputs.push_back(options.calibration);

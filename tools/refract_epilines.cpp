@@ -178,6 +178,7 @@ int main(int argc, char** argv)
 
         Calibration rig = readCalibration(options.calibration);
         requireWindows(rig, options.calibration, options.noWindow);
+        warnOfContradictions(rig, options.calibration, command);
         checkOutputs({{"--out", options.out, OUTPUT_PICTURE}},
                      {options.calibration, options.image1, options.image2, options.points});
         if (rig.single())

@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "calibrate/calib_file.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
@@ -99,21 +100,21 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
     return plain.error.rms <= NEARLY*rational.error.rms ? plain : rational;
 }
 
-CentralRig centralRigOf(const Options& options, const cv::Vec2d& range)
+CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Command& command)
 {
-    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
-    std::vector<cv::Mat> Rs, Ts;
-    cv::refract::readRig(options.calibration, cameras, Rs, Ts);
-    CentralRig rig = {{}, fs::path(options.calibration).filename().string(), range, ""};
-    for (size_t c = 0; c < cameras.size(); c++)
+    const Calibration calibration = readCalibration(options.calibration);
+    warnOfContradictions(calibration, options.calibration, command);
+    CentralRig rig = {{}, fs::path(options.calibration).filename().string(), range, calibration.unit};
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
+        const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
+        const cv::Matx33d R = calibration.Rs[c];
+        const cv::Vec3d T = calibration.Ts[c];
         const std::string name = format("camera%d", (int)c + 1);
-        if (cameras[c]->imageSize().empty())
+        if (camera->imageSize().empty())
             throw Failure("'" + options.calibration + "' does not say image_width and image_height of " + name + ": add them");
-        const CentralCamera central = bestCentralCamera(options, cameras[c], range, name);
-        const cv::Matx33d R(Rs[c].ptr<double>());
-        const cv::Vec3d T(Ts[c].ptr<double>());
-        rig.cameras.push_back({name, cameras[c], R, T, central, central.R*R, central.R*T + central.T});
+        const CentralCamera central = bestCentralCamera(options, camera, range, name);
+        rig.cameras.push_back({name, camera, R, T, central, central.R*R, central.R*T + central.T});
     }
     return rig;
 }
@@ -155,7 +156,7 @@ int main(int argc, char** argv)
         const Options options = parsed(command, addOptions);
         const cv::Vec2d range = parseRange(options.range);
         checkCombination(options);
-        const CentralRig rig = centralRigOf(options, range);
+        const CentralRig rig = centralRigOf(options, range, command);
         write(options, rig);
         if (!command.quiet())
             printTable(rig);

@@ -466,6 +466,7 @@ int main(int argc, char** argv)
             target = std::make_unique<Target>(options.target);
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
+        warnOfContradictions(calibration, options.calibration, command);
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);

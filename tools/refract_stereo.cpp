@@ -105,13 +105,16 @@ void checkCombination(const Options& options)
         throw Failure("--depth-map=" + options.depthMap + ": its numbers need a .tiff; --picture is for looking at");
 }
 
-Calibration readPair(const Options& options)
+Calibration readPair(const Options& options, const Command& command)
 {
     const Calibration rig = readCalibration(options.calibration);
     if (rig.single())
         throw Failure("'" + options.calibration + "' has one camera; depth needs a calibrated pair (refract_calib --direct2 "
                       "--glass2)");
     requireWindows(rig, options.calibration, options.noWindow);
+    warnOfContradictions(rig, options.calibration, command);
+    if (rig.cameras.size() > 2)
+        command.warn(format("'%s' has %d cameras: depth is that of cameras 1 and 2", options.calibration.c_str(), (int)rig.cameras.size()));
     return firstPair(rig);
 }
 
@@ -441,7 +444,7 @@ int main(int argc, char** argv)
             parseDepthRange(options.depth);
         if (!options.channels.empty())
             parseChannels(options.channels);
-        const Calibration rig = readPair(options);
+        const Calibration rig = readPair(options, command);
         Frames first(options.left), second(options.right);
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);

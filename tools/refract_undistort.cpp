@@ -171,6 +171,7 @@ int main(int argc, char** argv)
         const ChannelWavelengths wavelengths = byColour ? parseChannels(options.channels) : ChannelWavelengths();
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
+        warnOfContradictions(calibration, options.calibration, command);
         if (options.camera > (int)calibration.cameras.size())
             throw Failure("--camera=2: '" + options.calibration + "' has one camera");
         std::vector<Frames> sources;

@@ -73,6 +73,8 @@ TEST_CASE("A file of observed points that is none is refused with its line", "[p
     CHECK_THROWS_WITH(readText(heading + "a,1,2,,4,5\n"), Contains("line 2") && Contains("z is empty"));
     CHECK_THROWS_WITH(readText(heading + ",1,2,3,4,5\n"), Contains("line 2") && Contains("view is empty"));
     CHECK_THROWS_WITH(readText(heading + "a,1,2,3,4,5\nb,1,2,3,4,5\na,1,2,3,6,7\n"), Contains("line 4") && Contains("already"));
+    CHECK_THROWS_WITH(readText(heading + "a,1,2,3,4,nan\n"), Contains("line 2") && Contains("both be numbers, or both empty"));
+    CHECK_THROWS_WITH(readPointsCsv("/tmp"), Contains("/tmp") && Contains("folder"));
     CHECK_THROWS_WITH(readPointsCsv("/nowhere/points.csv"), Contains("/nowhere/points.csv"));
 }
 

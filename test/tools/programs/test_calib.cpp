@@ -451,9 +451,17 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
             CHECK_FALSE(mentions(r.out, "Good"));
             CHECK_FALSE(mentions(r.out, "take pairs"));
         }
+    // Whoever uses what came of it is told.
+    const std::string use = "refract_export " + f / "calib.yml" + " --to=opencv --range=400,900 --out=" + f / "central.yml";
+    const ToolResult user = runTool(use);
+    INFO(user.out << user.err);
+    CHECK(user.code == 0);
+    CHECK(mentions(user.err, "not usable"));
+    CHECK(mentions(user.err, "contradict --thickness=26"));
     const ToolResult right = runTool(inputs(f, std::string(PANE) + " --lens=opencv4"));
     INFO(right.out << right.err);
     CHECK(right.code == 0);
+    CHECK(runTool(use).err.empty());
     CHECK_FALSE(mentions(right.out, "contradict"));
     CHECK(mentions(right.out, "refined"));
 }
@@ -528,7 +536,8 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, lens(f) + PANE + " --outer-index=0.9"), "--outer-index=0.9: no medium"},
         {inputs(f, lens(f) + " --thickness=20 --index=N-BK8"), "--index=N-BK8: material is 'N-BK8', which is not known; "
             "nearest is 'N-BK7', of N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water"},
-        {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "from 300 to 2500 nm"},
+        {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "--wavelength=200: the index of N-BK7 is known from 300 to 2500 nm; give nm"},
+        {inputs(f, lens(f) + " --thickness=20 --index=1,5"), "--thickness has 1, --index 2"},
         {inputs(f, lens(f) + " --thickness=20 --index=water:T=12"), "without parameters"},
         {inputs(f, lens(f) + PANE + " --outer-index=seawater:T=99"), "T of seawater must be from 0 to 30"},
         {inputs(f, lens(f) + PANE + " --outer-index=1.3,1.4"), "give one number"},

@@ -252,6 +252,10 @@ Calibration readCalibration(const std::string& filename)
     if (fs["channel"].isString())
         calibration.channel = channelOf(fs["channel"]);
     calibration.label = readLabel(fs);
+    if (fs["verdict"].isString())
+        fs["verdict"] >> calibration.verdict;
+    if (fs["contradictions"].isSeq())
+        fs["contradictions"] >> calibration.contradictions;
     if (fs["calibration_time"].isString())
         fs["calibration_time"] >> calibration.time;
     if (fs["command"].isString())
@@ -274,6 +278,13 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
             throw Failure("'" + filename + "': the normal" + which + format(" has the length %g in place of 1: was the file "
                           "edited? Calibrate again, or divide its three numbers by that", camera.normalLength));
     }
+}
+
+void warnOfContradictions(const Calibration& calibration, const std::string& filename, const Command& command)
+{
+    if (!calibration.contradictions.empty())
+        command.warn("'" + filename + "' was found not usable when it was made, and what comes of it may be off by more than its +-: "
+                     + calibration.contradictions[0] + "; calibrate again with what is right");
 }
 
 void writeRig(FileStorage& fs, const Calibration& calibration)
@@ -305,6 +316,10 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
         throw Failure("cannot write '" + filename + "'");
     fs << "command" << calibration.command << "refract_version" << REFRACT_VERSION << "opencv_version" << CV_VERSION
        << "calibration_time" << calibration.time;
+    if (!calibration.verdict.empty())
+        fs << "verdict" << calibration.verdict;
+    if (!calibration.contradictions.empty())
+        fs << "contradictions" << calibration.contradictions;
     writeLabel(fs, calibration.label);
     if (calibration.square > 0)
         fs << "unit" << calibration.unit << "target_square" << calibration.square;

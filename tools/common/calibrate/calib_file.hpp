@@ -16,8 +16,11 @@ and so on; window_of_camera where some share a window: equal numbers look throug
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
 thickness, index, inner_index, outer_index, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index, outer_index},
 rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
-board), channel (of colour images, that it is for), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+board), channel (of colour images, that it is for), verdict, contradictions (what the data say against
+what was given, a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
+
+class Command;
 
 //! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
 struct WindowStd
@@ -57,6 +60,8 @@ struct Calibration
     std::string unit;       //!< of length; empty where unknown
     double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
     Channel channel = BRIGHTNESS;   //!< of colour images, in which the points were found: it is valid for that one
+    std::string verdict;    //!< of those who made it; empty where unknown
+    std::vector<std::string> contradictions;    //!< of the images to what was given, a sentence each: points may be off by more than their +-
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()
@@ -76,6 +81,9 @@ was written by hand may have any length.
 @param option that says so, for the text; empty if the tool has none */
 void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow,
                     const std::string& option = "--no-window");
+
+//! Whoever uses a calibration that its own images contradict is told so.
+void warnOfContradictions(const Calibration& calibration, const std::string& filename, const Command& command);
 
 //! A lens that a file tells, and how well.
 struct KnownLens

@@ -34,6 +34,8 @@ GivenIndex named(const std::string& name, const Light& light, const std::string&
     }
     catch (const cv::Exception& e)
     {
+        if (e.code == Error::StsOutOfRange && e.err.find("wavelengthNm") == 0)
+            throw Failure(format("--wavelength=%g: ", light.wavelength) + e.err.substr(e.err.find("; ") + 2) + "; give nm, as 550");
         throw Failure(option + "=" + name + ": " + e.err);
     }
 }

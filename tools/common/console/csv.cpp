@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -52,6 +53,8 @@ std::string joined(const std::vector<std::string>& names)
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what) : path_(path)
 {
     std::ifstream in(path);
+    if (std::filesystem::is_directory(path))
+        throw Failure("'" + path + "' is a folder: " + what + " is wanted");
     if (!in)
         throw Failure("there is no file '" + path + "' that can be read");
     char separator = ',';
