@@ -7,7 +7,7 @@
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
-  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev"
+  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev libexif-dev"
 test_libraries="catch2 libgtest-dev libmrcal-dev"
 test_programs="file locales"      # cpack makes the Debian package with file; a test makes a locale
 build="build-essential cmake ninja-build pkg-config gnuplot-nox $libraries"

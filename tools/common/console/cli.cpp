@@ -1,4 +1,5 @@
 #include "console/cli.hpp"
+#include "console/exif.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
@@ -80,7 +81,11 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     std::string error;
     try
     {
-        return body(command);
+        const int code = body(command);
+        const std::string turned = takeTurnedImagesNotice();
+        if (!turned.empty())
+            command.warn(turned);
+        return code;
     }
     catch (const CLI::Success& e)       // --help, --version
     {
