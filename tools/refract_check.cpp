@@ -217,7 +217,7 @@ int main(int argc, char** argv)
         requireWindows(calibration, options.calibration, false, "");
         requireSameUnit(calibration, target.square(), options.unit);
         std::vector<std::string> inputs = options.images.all();
-        inputs.push_back(options.calibration);
+        inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
         const CheckBasis basis = basisOf(options, calibration);
         const std::vector<Moment> moments = readMoments(options, calibration, target, command);

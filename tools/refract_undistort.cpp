@@ -94,10 +94,11 @@ std::vector<Job> listJobs(const Options& options, const std::vector<Frames>& sou
     return jobs;
 }
 
-void refuseOverwriting(const Options& options, const std::vector<Frames>& sources, const std::vector<Job>& jobs)
+void refuseOverwriting(const Options& options, const std::string& settings, const std::vector<Frames>& sources,
+                       const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs;
-    std::vector<std::string> inputs = {options.calibration};
+    std::vector<std::string> inputs = {options.calibration, settings};
     for (const Frames& frames : sources)
         if (frames.isVideo())
             inputs.push_back(frames.source());
@@ -175,7 +176,7 @@ int main(int argc, char** argv)
         for (const std::string& source : options.sources)
             sources.emplace_back(source);
         const std::vector<Job> jobs = listJobs(options, sources);
-        refuseOverwriting(options, sources, jobs);
+        refuseOverwriting(options, command.settings(), sources, jobs);
         const auto camera = calibration.cameras[options.camera - 1].camera;
         Corrector corrector(byColour ? camerasInColours(camera, wavelengths, options.calibration) : std::vector{camera}, depth);
         Progress progress("correcting images", (int)jobs.size(), command.quiet());
