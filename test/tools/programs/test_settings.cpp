@@ -61,7 +61,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const std::string calib = STEREO + "/truth.yml", left = STEREO + "/measure1/z600_1.jpg", right = STEREO + "/measure2/z600_1.jpg";
     const std::string rig = STEREO + "/rig.yml", file = folder / "run.yml";
     const std::string target = " --size=6x5 --square=39";
-    const std::string tools[] = {"refract_calib", "refract_check", "refract_epilines", "refract_export",
+    const std::string tools[] = {"refract_board", "refract_calib", "refract_check", "refract_epilines", "refract_export",
                                  "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
@@ -83,9 +83,14 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
         CHECK(none.code == 1);
         CHECK(mentions(none.err, "--config: there is no such file"));
     }
+    writeFile(file, "size = \"6by5\"\n");
+    const ToolResult value = runTool("refract_board --square=20 --out=" + (folder / "b.pdf") + " --config=" + file);
+    CHECK(value.code == 1);
+    CHECK(mentions(value.err, "--size=6by5"));
 
     // An extension that all of them write.
     const std::string quiet = "quiet = true\n";
+    writeFile(folder / "run.pdf", quiet);
     writeFile(folder / "run.png", quiet);
     std::filesystem::create_directory(folder / "d");
     for (const std::string name : {"truth.yml", "cameras.txt", "z600_1.jpg", "cloud.ply"})
@@ -93,6 +98,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     writeFile(file, quiet);
     const std::string d = folder / "d";
     const std::string commands[] = {
+        "refract_board" + target + " --out=" + (folder / "run.pdf") + " --config=" + (folder / "run.pdf"),
         "refract_calib" + target + " --thickness=20 --index=1.5 --glass=" + left + " --camera=" + calib + " --out=" + file
             + " --config=" + file,
         "refract_check " + calib + target + " --glass=" + left + " --summary=" + file + " --config=" + file,
