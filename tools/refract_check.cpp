@@ -17,6 +17,7 @@ not show a tilt of --detect degrees with a probability of 95 %.)";
 #include "assess/measurement.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/units.hpp"
+#include "console/colour.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
@@ -228,7 +229,8 @@ int main(int argc, char** argv)
             writeText(options.summary, jsonOf(result, options, basis, verdict, why));
         if (!command.quiet())
         {
-            std::cout << verdict << "\n\n";
+            const Tone tone = !why.empty() ? Tone::DOUBTFUL : moved ? Tone::BAD : Tone::GOOD;
+            std::cout << toned(std::cout, verdict, tone) << "\n\n";
             print(result, options, basis);
         }
         if (!why.empty())
