@@ -6,7 +6,7 @@
 #           minutes; without, the package is only unpacked and its tools run on the libraries of this machine
 set -eu
 cd "$(dirname "$0")/.."
-main_job=$PWD/test/main_job.sh
+main_job=$PWD/test/main_job.sh completion=$PWD/test/completion.sh
 bare=no; build=build/release
 for argument in "$@"; do
   case $argument in
@@ -30,6 +30,11 @@ if [ $bare = no ]; then
   export LD_LIBRARY_PATH PATH
   "$main_job"
   refract_undistort --version
+  for tool in usr/bin/refract_*; do
+    page=usr/share/man/man1/${tool##*/}.1.gz
+    gzip -dc "$page" | grep -q '^\.SH OPTIONS' || { echo "$page is not the man page of $tool" >&2; exit 1; }
+  done
+  "$completion" usr/bin usr/share/bash-completion/completions/refract_calib
 else
   . test/bare_root.sh
   bare_root "$work"
