@@ -12,6 +12,7 @@ set -eu
 cd "$(dirname "$0")/.."
 main_job=$PWD/test/main_job.sh
 consumer=$PWD/test/consumer
+completion=$PWD/test/completion.sh
 bare=no; build=build/release
 for argument in "$@"; do
   case $argument in
@@ -28,11 +29,7 @@ for package in "$work"/packages/*.deb; do
   dpkg-deb -f "$package" Package Version Depends
 done
 if command -v lintian >/dev/null; then
-  # Of errors and warnings one may be there: programs that have no manual yet.
-  manuals=$(for package in "$work"/packages/*.deb; do dpkg-deb -c "$package" | grep /man1/ || true; done)
-  # shellcheck disable=SC2046
-  lintian --allow-root --tag-display-limit 0 --fail-on error,warning \
-    $([ -n "$manuals" ] || echo "--suppress-tags no-manual-page") "$work"/packages/*.deb
+  lintian --allow-root --tag-display-limit 0 --fail-on error,warning "$work"/packages/*.deb
   echo "lintian: no errors, no warnings"
 else
   echo "lintian is not installed: the packages' form is not checked"
@@ -53,6 +50,11 @@ if [ $bare = no ]; then
     >"$work/consumer.log" 2>&1 || { cat "$work/consumer.log"; exit 1; }
   "$work/consumer/consumer"
   pkg-config --print-errors --modversion opencv_refract
+  for tool in usr/bin/refract_*; do
+    page=usr/share/man/man1/${tool##*/}.1.gz
+    gzip -dc "$page" | grep -q '^\.SH OPTIONS' || { echo "$page is not the man page of $tool" >&2; exit 1; }
+  done
+  "$completion" usr/bin usr/share/bash-completion/completions/refract_calib
 else
   . test/bare_root.sh
   bare_root "$work"

@@ -10,9 +10,9 @@
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
-  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev"
+  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev libexif-dev libcairo2-dev"
 test_libraries="catch2 libgtest-dev libmrcal-dev"
-test_programs="file locales"      # cpack makes the Debian package with file; a test makes a locale
+test_programs="file locales poppler-utils"     # cpack makes the Debian package with file; tests make a locale, and see PDFs
 build="build-essential cmake ninja-build pkg-config gnuplot-nox $libraries"
 in_tree="python3-pip python3-dev python3-numpy"
 

@@ -409,13 +409,13 @@ RigCalibration calibrate(const Options& o, bool quiet)
 }
 
 //! What would fail at the end, after all the work.
-void checkOutputs(const Options& o)
+void checkOutputs(const Options& o, const std::string& settings)
 {
     if (!o.report.empty())
         Plot::checkAvailable();
     std::vector<std::string> inputs = o.images.all();
     inputs.insert(inputs.end(), o.camera.begin(), o.camera.end());
-    inputs.push_back(o.poses);
+    inputs.insert(inputs.end(), {o.poses, settings});
     tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
                          {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
                         inputs);
@@ -444,7 +444,7 @@ int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parseOptions(command);
-        checkOutputs(options);
+        checkOutputs(options, command.settings());
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Assessment assessment = assess(calibration, command.quiet());
         const Findings findings = judge(calibration, assessment);

@@ -20,6 +20,7 @@ not show a tilt of --detect degrees with a probability of 95 %.)";
 #include "assess/measurement.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/units.hpp"
+#include "console/colour.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
@@ -221,7 +222,7 @@ int main(int argc, char** argv)
         warnOfContradictions(calibration, options.calibration, command);
         requireSameUnit(calibration, target.square(), options.unit);
         std::vector<std::string> inputs = options.images.all();
-        inputs.push_back(options.calibration);
+        inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
         const CheckBasis basis = basisOf(options, calibration);
         const std::vector<Moment> moments = readMoments(options, calibration, target, command);
@@ -232,7 +233,8 @@ int main(int argc, char** argv)
             writeText(options.summary, jsonOf(result, options, basis, verdict, why));
         if (!command.quiet())
         {
-            std::cout << verdict << "\n\n";
+            const Tone tone = !why.empty() ? Tone::DOUBTFUL : moved ? Tone::BAD : Tone::GOOD;
+            std::cout << toned(std::cout, verdict, tone) << "\n\n";
             print(result, options, basis);
         }
         if (!why.empty())

@@ -180,7 +180,7 @@ int main(int argc, char** argv)
         requireWindows(rig, options.calibration, options.noWindow);
         warnOfContradictions(rig, options.calibration, command);
         checkOutputs({{"--out", options.out, OUTPUT_PICTURE}},
-                     {options.calibration, options.image1, options.image2, options.points});
+                     {options.calibration, options.image1, options.image2, options.points, command.settings()});
         if (rig.single())
             throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
                           "(refract_calib --direct2 --glass2)");

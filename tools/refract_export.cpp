@@ -60,7 +60,7 @@ cv::Vec2d parseRange(const std::string& text)
     return cv::Vec2d(numbers[0], numbers[1]);
 }
 
-void checkCombination(const Options& options)
+void checkCombination(const Options& options, const std::string& settings)
 {
     const bool isFile = options.target == "opencv";
     if ((isFile ? options.out : options.folder).empty() || !(isFile ? options.folder : options.out).empty())
@@ -69,7 +69,7 @@ void checkCombination(const Options& options)
     if (!options.points.empty() && options.target != "colmap")
         throw Failure("--points: only COLMAP's model has points; give --to=colmap, or leave it out");
     if (isFile)
-        checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}}, {options.calibration});
+        checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}}, {options.calibration, settings});
 }
 
 //! OpenCV's lens models that the other program knows, by their coefficients; 0: fisheye.
@@ -119,7 +119,7 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
     return rig;
 }
 
-void write(const Options& options, const CentralRig& rig)
+void write(const Options& options, const std::string& settings, const CentralRig& rig)
 {
     if (options.target == "opencv")
         return writeOpenCV(options.out, rig);
@@ -130,7 +130,7 @@ void write(const Options& options, const CentralRig& rig)
     std::vector<Output> outputs;
     for (const ExportFile& file : files)
         outputs.push_back({"--out-dir", options.folder + "/" + file.name, OUTPUT_IN_FOLDER});
-    checkOutputs(outputs, {options.calibration, options.points});
+    checkOutputs(outputs, {options.calibration, options.points, settings});
     makeFolder(options.folder);
     for (const ExportFile& file : files)
         writeText(options.folder + "/" + file.name, file.text);
@@ -155,9 +155,9 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
         const cv::Vec2d range = parseRange(options.range);
-        checkCombination(options);
+        checkCombination(options, command.settings());
         const CentralRig rig = centralRigOf(options, range, command);
-        write(options, rig);
+        write(options, command.settings(), rig);
         if (!command.quiet())
             printTable(rig);
         double worst = 0;

@@ -470,7 +470,7 @@ int main(int argc, char** argv)
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);
-        std::vector<std::string> inputs = {options.calibration, options.points};
+        std::vector<std::string> inputs = {options.calibration, options.points, command.settings()};
         inputs.insert(inputs.end(), options.images.begin(), options.images.end());
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);

@@ -214,7 +214,8 @@ void renderAll(const std::string& folder, const Scene& scene, const Target* targ
 }
 
 //! DIR/truth.yml is a scene too, and may be the one that is read.
-void refuseOverwriting(const std::string& rig, const Scene& scene, const std::string& folder, const std::vector<Job>& jobs)
+void refuseOverwriting(const std::vector<std::string>& files, const Scene& scene, const std::string& folder,
+                       const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs = {{"--out-dir", folder + "/truth.yml", OUTPUT_IN_FOLDER}};
     if (scene.target.given())
@@ -226,7 +227,7 @@ void refuseOverwriting(const std::string& rig, const Scene& scene, const std::st
             outputs.push_back({"--out-dir", folder + "/" + job.depthPath, OUTPUT_IN_FOLDER});
     }
     std::vector<std::string> inputs = scene.meshes;
-    inputs.push_back(rig);
+    inputs.insert(inputs.end(), files.begin(), files.end());
     checkOutputs(outputs, inputs);
 }
 
@@ -250,7 +251,7 @@ int main(int argc, char** argv)
         if (scene.target.given())
             target = std::make_unique<Target>(scene.target);
         std::vector<Job> jobs = listJobs(scene, extension);
-        refuseOverwriting(rig, scene, folder, jobs);
+        refuseOverwriting({rig, command.settings()}, scene, folder, jobs);
         traceDepths(rig, scene, jobs);
         for (const Job& job : jobs)
             makeFolder(folder + "/" + job.path.substr(0, job.path.find('/')));

@@ -138,9 +138,10 @@ std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePa
     return files;
 }
 
-void refuseOverwriting(const Options& options, const Frames& first, const Frames& second, const std::vector<PairFiles>& files)
+void refuseOverwriting(const Options& options, const std::string& settings, const Frames& first, const Frames& second,
+                       const std::vector<PairFiles>& files)
 {
-    std::vector<std::string> inputs = {options.calibration, options.truth};
+    std::vector<std::string> inputs = {options.calibration, options.truth, settings};
     for (const Frames* frames : {&first, &second})
         if (frames->isVideo())
             inputs.push_back(frames->source());
@@ -448,7 +449,7 @@ int main(int argc, char** argv)
         Frames first(options.left), second(options.right);
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
-        refuseOverwriting(options, first, second, files);
+        refuseOverwriting(options, command.settings(), first, second, files);
         sayAlone(frames.alone1, 1, command);
         sayAlone(frames.alone2, 2, command);
 

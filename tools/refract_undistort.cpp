@@ -23,7 +23,8 @@ static const char MANUAL[] = R"(Turns images taken through the window into those
 
 The correction depends on where the scene is: exact for points on the plane z = depth (or a x + b y + c z = d, in the
 camera's frame); --depth=inf for scenes far away. The new images have the old names, size and camera matrix; pixels that
-the old image does not show are black.
+the old image does not show are black, and transparent where the image has an alpha channel. Depth and channels stay; pixels
+are taken as they are stored, whatever the EXIF data say of the camera's orientation.
 
 --channels corrects each colour of a colour image for its own wavelength, as a window in front of water bends blue more than red;
 calib.yml must say what the window is made of (refract_calib --index=N-BK7 --outer-index=water). Without it, all colours are
@@ -96,10 +97,11 @@ std::vector<Job> listJobs(const Options& options, const std::vector<Frames>& sou
     return jobs;
 }
 
-void refuseOverwriting(const Options& options, const std::vector<Frames>& sources, const std::vector<Job>& jobs)
+void refuseOverwriting(const Options& options, const std::string& settings, const std::vector<Frames>& sources,
+                       const std::vector<Job>& jobs)
 {
     std::vector<Output> outputs;
-    std::vector<std::string> inputs = {options.calibration};
+    std::vector<std::string> inputs = {options.calibration, settings};
     for (const Frames& frames : sources)
         if (frames.isVideo())
             inputs.push_back(frames.source());
@@ -121,7 +123,7 @@ public:
     cv::Mat correct(const cv::Mat& image, const std::string& name)
     {
         requireSize(image, name, cameras_[0]->imageSize());
-        if (cameras_.size() > 1 && image.channels() != (int)cameras_.size())
+        if (cameras_.size() > 1 && image.channels() < (int)cameras_.size())
             throw Failure("'" + name + "' is a grey image: --channels is for colours, leave it out");
         if (maps_.empty() || maps_[0].size() != image.size())
             makeMaps(image.size());
@@ -178,7 +180,7 @@ int main(int argc, char** argv)
         for (const std::string& source : options.sources)
             sources.emplace_back(source);
         const std::vector<Job> jobs = listJobs(options, sources);
-        refuseOverwriting(options, sources, jobs);
+        refuseOverwriting(options, command.settings(), sources, jobs);
         const auto camera = calibration.cameras[options.camera - 1].camera;
         Corrector corrector(byColour ? camerasInColours(camera, wavelengths, options.calibration) : std::vector{camera}, depth);
         Progress progress("correcting images", (int)jobs.size(), command.quiet());
@@ -186,7 +188,7 @@ int main(int argc, char** argv)
         {
             Frames& frames = sources[job.source];
             progress.at(frames.name(job.frame));
-            const cv::Mat corrected = corrector.correct(frames.read(job.frame), frames.name(job.frame));
+            const cv::Mat corrected = corrector.correct(frames.read(job.frame, true), frames.name(job.frame));
             makeFolder(options.folder);     // now that there is something to write
             writeImage(job.output, corrected);
             progress.step();

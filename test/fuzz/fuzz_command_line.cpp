@@ -11,6 +11,7 @@
 /* The tools as they are started: the input is a command line, one argument a line, the tool's name first. They run in a folder
 of their own, with a small file of each kind; arguments that could lead out of it are not tried. */
 
+int refract_board_main(int argc, char** argv);
 int refract_calib_main(int argc, char** argv);
 int refract_check_main(int argc, char** argv);
 int refract_epilines_main(int argc, char** argv);
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
-    {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main},
+    {"refract_board", refract_board_main}, {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main},
     {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main},
     {"refract_stereo", refract_stereo_main}, {"refract_undistort", refract_undistort_main}};
 
@@ -65,7 +66,7 @@ public:
         for (int i = 0; i < 3; i++)
             points += cv::format("%d,%d\n", 8 + i, 9);
         files_ = {{"pair.yml", pair}, {"one.yml", head + one}, {"rig.yml", pair + RENDERING}, {"corners.vnl", vnl},
-                  {"points.txt", points}};
+                  {"points.txt", points}, {"run.toml", "size = \"3x3\"\nsquare = [20]\n"}};
         std::vector<uchar> image;
         cv::imencode(".png", cv::Mat(24, 32, CV_8U, cv::Scalar(90)), image);
         files_["a.png"] = files_["b.png"] = std::string(image.begin(), image.end());

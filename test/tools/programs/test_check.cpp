@@ -97,6 +97,32 @@ TEST_CASE("refract_check finds the window that moved, and no other", "[tools][ch
     CHECK(far.code == 2);
 }
 
+TEST_CASE("A verdict has a colour on a terminal alone", "[tools][check]")
+{
+    const TemporaryFolder folder;
+    writeCalibration(folder / "same.yml", 0.);
+    writeCalibration(folder / "moved.yml", 0.1);
+    const std::string arguments = TARGET + pair("pair3.jpg") + " --summary=" + folder / "check.json";
+    const std::string green = "\033[1;32munchanged\033[0m", red = "\033[1;31mmoved\033[0m";
+    // script gives a program a terminal, and writes what it says.
+    const auto onTerminal = [&](const std::string& environment, const std::string& file) {
+        const std::string command = environment + " " + REFRACT_BIN_DIR "/refract_check " + folder/file + arguments;
+        REQUIRE(std::system(("script -qec \"" + command + "\" /dev/null </dev/null >" + folder / "typescript").c_str()) != -1);
+        return readFile(folder / "typescript");
+    };
+    CHECK(mentions(onTerminal("env -u NO_COLOR TERM=xterm", "same.yml"), green));
+    CHECK(mentions(onTerminal("env -u NO_COLOR TERM=xterm", "moved.yml"), red));
+    CHECK(!mentions(readFile(folder / "check.json"), "\033"));
+    CHECK(mentions(onTerminal("env -u NO_COLOR TERM=xterm NO_COLOR=", "same.yml"), green));
+    for (const std::string environment : {"env TERM=xterm NO_COLOR=1", "env -u NO_COLOR TERM=dumb"})
+    {
+        const std::string plain = onTerminal(environment, "same.yml");
+        CHECK(mentions(plain, "unchanged"));
+        CHECK(!mentions(plain, "\033"));
+    }
+    CHECK(!mentions(runTool("refract_check " + folder / "same.yml" + arguments, "env -u NO_COLOR TERM=xterm").out, "\033"));
+}
+
 TEST_CASE("refract_check says when it cannot tell, and why", "[tools][check]")
 {
     const TemporaryFolder folder;

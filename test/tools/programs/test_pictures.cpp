@@ -100,6 +100,102 @@ TEST_CASE("refract_undistort takes videos and numbered images", "[tools][undisto
     CHECK(both.err.find("same name") != std::string::npos);
 }
 
+//! Four bytes, the checksum of a PNG's chunk.
+std::string crcOf(const std::string& bytes)
+{
+    uint32_t crc = 0xffffffff;
+    for (const unsigned char byte : bytes)
+    {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc & 1 ? 0xedb88320 ^ crc >> 1 : crc >> 1;
+    }
+    crc = ~crc;
+    return {(char)(crc >> 24), (char)(crc >> 16), (char)(crc >> 8), (char)crc};
+}
+
+//! EXIF data with nothing but the orientation, in a JPEG or in a chunk of a PNG.
+void addOrientation(const std::string& path, unsigned char orientation)
+{
+    using namespace std::string_literals;
+    const std::string tiff = "II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0"s + (char)orientation + "\0\0\0\0\0\0\0"s;
+    std::string file = readFile(path);
+    if (file[0] == '\xff')
+    {
+        const std::string exif = "Exif\0\0"s + tiff;
+        file.insert(2, "\xff\xe1\0"s + (char)(exif.size() + 2) + exif);
+    }
+    else
+        file.insert(33, "\0\0\0"s + (char)tiff.size() + "eXIf" + tiff + crcOf("eXIf" + tiff));      // after IHDR
+    writeFile(path, file);
+}
+
+TEST_CASE("refract_undistort keeps alpha and 16 bits", "[tools][undistort]")
+{
+    const TemporaryFolder folder;
+    const cv::Mat grey = cv::imread(image("measure1/z600_1"), cv::IMREAD_GRAYSCALE);
+    cv::Mat opaque, colours, deep;
+    cv::merge(std::vector<cv::Mat>{grey, 255 - grey, grey, cv::Mat(grey.size(), CV_8U, cv::Scalar(255))}, opaque);
+    opaque(cv::Rect(600, 500, 80, 60)).setTo(cv::Scalar(90, 90, 90, 0));
+    opaque.convertTo(deep, CV_16U, 257);
+    cv::cvtColor(opaque, colours, cv::COLOR_BGRA2BGR);
+    cv::imwrite(folder / "alpha.png", opaque);
+    cv::imwrite(folder / "deep.png", deep);
+    cv::imwrite(folder / "colours.png", colours);
+    cv::imwrite(folder / "grey.tif", deep.reshape(1).colRange(0, 1280));
+    const ToolResult result = runTool("refract_undistort " + STEREO + "/truth.yml " + (folder / "*.png") + " " + (folder / "grey.tif")
+                                      + " --depth=300 --out-dir=" + (folder / "out"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    CHECK(result.err.empty());
+    const auto corrected = [&](const std::string& name) { return cv::imread(folder/("out/" + name), cv::IMREAD_UNCHANGED); };
+    const cv::Mat four = corrected("alpha.png"), sixteen = corrected("deep.png"), three = corrected("colours.png");
+    REQUIRE(four.type() == CV_8UC4);
+    REQUIRE(sixteen.type() == CV_16UC4);
+    REQUIRE(three.type() == CV_8UC3);
+    CHECK(corrected("grey.tif").type() == CV_16UC1);
+    cv::Mat back, alpha;
+    sixteen.convertTo(back, CV_8U, 1/257.);
+    CHECK(cv::norm(back, four, cv::NORM_INF) <= 1);
+    cv::cvtColor(four, back, cv::COLOR_BGRA2BGR);
+    CHECK(cv::norm(back, three, cv::NORM_INF) == 0);
+    cv::extractChannel(four, alpha, 3);
+    CHECK(alpha.at<uchar>(300, 300) == 255);
+    CHECK(cv::countNonZero(alpha == 0) > 60*50);        // the hole
+    // What the old image does not show is transparent.
+    const int outside = cv::countNonZero(alpha(cv::Rect(0, 0, 1280, 1)) == 0) + cv::countNonZero(alpha(cv::Rect(0, 1023, 1280, 1)) == 0)
+                        + cv::countNonZero(alpha.col(0) == 0) + cv::countNonZero(alpha.col(1279) == 0);
+    CHECK(outside > 500);
+}
+
+TEST_CASE("Images are used as stored, and a rotation that EXIF data ask for is named", "[tools][undistort]")
+{
+    const TemporaryFolder folder;
+    std::filesystem::copy_file(image("measure1/z600_1"), folder / "plain.jpg");
+    const cv::Mat picture = cv::imread(folder / "plain.jpg", cv::IMREAD_GRAYSCALE);
+    cv::imwrite(folder / "plain.png", picture);
+    const std::string call = "refract_undistort " + STEREO + "/truth.yml --quiet --depth=600 --out-dir=" + (folder / "out") + " ";
+    for (const std::string type : {".jpg", ".png"})
+        for (const int orientation : {1, 3, 6, 8})
+        {
+            const std::string name = "turned" + std::to_string(orientation) + type;
+            std::filesystem::copy_file(folder/("plain" + type), folder/name);
+            addOrientation(folder/name, (unsigned char)orientation);
+            const ToolResult plain = runTool(call + (folder/("plain" + type))), turned = runTool(call + (folder/name));
+            CAPTURE(name, turned.err);
+            CHECK(plain.err.empty());
+            REQUIRE(turned.code == 0);
+            CHECK(cv::norm(cv::imread(folder/("out/plain" + type)), cv::imread(folder/("out/" + name)), cv::NORM_INF) == 0);
+            CHECK(mentions(turned.err, "'" + (folder/name) + "' asks for a turned picture") == (orientation != 1));
+            CHECK(std::count(turned.err.begin(), turned.err.end(), '\n') == (orientation != 1));
+        }
+    const ToolResult both = runTool("refract_measure " + STEREO + "/truth.yml " + (folder / "turned6.jpg") + " " + image("measure2/z600_1")
+                                    + TARGET + " --pixel-sigma=0.014 --quiet --out=" + (folder / "points.csv"));
+    CAPTURE(both.err);
+    CHECK(both.code == 0);
+    CHECK(mentions(both.err, "turned6.jpg' asks for a turned picture"));
+}
+
 TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tools][epilines]")
 {
     const TemporaryFolder folder;
@@ -173,7 +269,7 @@ TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and w
 TEST_CASE("every tool explains itself", "[tools]")
 {
     for (const std::string tool : {"refract_simulate", "refract_measure", "refract_undistort", "refract_epilines",
-                                   "refract_stereo"})
+                                   "refract_stereo", "refract_board", "refract_calib", "refract_check", "refract_export"})
     {
         const ToolResult help = runTool(tool + " --help"), version = runTool(tool + " --version");
         CHECK(help.code == 0);

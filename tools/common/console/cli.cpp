@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/cli.hpp"
+#include "console/exif.hpp"
+#include "console/settings_file.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
@@ -57,6 +59,10 @@ Command::Command(int argc, char** argv, const std::string& manual)
         arguments_.push_back(argv[i]);
     app.set_version_flag("--version", app.get_name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
     app.add_flag("--quiet", quiet_, "no progress, no table: errors and warnings only");
+    settingsFile_ = std::make_shared<SettingsFile>(app);
+    app.config_formatter(settingsFile_);
+    app.set_config("--config", "", "settings file (TOML): options without dashes, as size = \"6x5\", one a line; the command line goes "
+                   "first")->type_name("FILE");
     app.get_formatter()->column_width(34);
 }
 
@@ -67,7 +73,17 @@ std::string Command::stripFolder(const std::string& path)
 
 void Command::parse()
 {
-    app.parse(arguments_);
+    try
+    {
+        app.parse(arguments_);
+    }
+    catch (const CLI::FileError&)
+    {
+        throw Failure("--config: there is no such file, or it cannot be read: check folder and name");
+    }
+    settings_ = app.get_config_ptr()->count() ? app.get_config_ptr()->as<std::string>() : "";
+    for (const std::string& argument : settingsFile_->arguments())
+        line_ += " " + quoted(argument);
 }
 
 void Command::warn(const std::string& text) const
@@ -83,7 +99,11 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     std::string error;
     try
     {
-        return body(command);
+        const int code = body(command);
+        const std::string turned = takeTurnedImagesNotice();
+        if (!turned.empty())
+            command.warn(turned);
+        return code;
     }
     catch (const CLI::Success& e)       // --help, --version
     {

@@ -7,11 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-/* What every tool shares: exit codes, errors as one plain sentence, --help, --version, --quiet.
+/* What every tool shares: exit codes, errors as one plain sentence, --help, --version, --quiet, --config.
 
     static const char MANUAL[] = R"(What the tool does. ...)";
 
@@ -33,6 +34,8 @@ enum ExitCode {
     LIMIT_NOT_MET = 2   //!< done, but a limit that the caller set was not met, or the result is not to be trusted
 };
 
+class SettingsFile;
+
 //! Could not do it. what() is one sentence that says what is wrong and what to do.
 class Failure : public std::runtime_error
 {
@@ -49,7 +52,8 @@ public:
     void parse();       //!< to be called by the body once, after the options are added
 
     bool quiet() const { return quiet_; }                   //!< after parse()
-    const std::string& line() const { return line_; }       //!< the command line, quoted for a shell
+    const std::string& line() const { return line_; }       //!< the command line, quoted for a shell, with what --config says
+    const std::string& settings() const { return settings_; }   //!< the file that --config names, which is an input; or empty
 
     //! One line on stderr, with --quiet too: what was done is not quite what was asked.
     void warn(const std::string& text) const;
@@ -58,7 +62,8 @@ private:
     static std::string stripFolder(const std::string& path);
 
     std::vector<std::string> arguments_;
-    std::string line_;
+    std::string line_, settings_;
+    std::shared_ptr<SettingsFile> settingsFile_;
     bool quiet_ = false;
 };
 

@@ -136,9 +136,9 @@ std::string Frames::name(int i) const
     return isVideo() ? source_ + cv::format(", frame %d", i + 1) : files_[i];
 }
 
-cv::Mat Frames::read(int i)
+cv::Mat Frames::read(int i, bool withAlpha)
 {
-    return isVideo() ? readVideo(i) : readImage(files_[i]);
+    return isVideo() ? readVideo(i) : readImage(files_[i], withAlpha);
 }
 
 cv::Mat Frames::readVideo(int i)

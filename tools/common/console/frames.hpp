@@ -28,8 +28,8 @@ public:
     std::string stem(int i) const;
     //! As read() takes it, for a sentence: the file's name, or "left.avi, frame 12".
     std::string name(int i) const;
-    //! With all channels and bits. Frames in turn are fast; one before the last needs a video from its start again.
-    cv::Mat read(int i);
+    //! With all colours and bits. Frames in turn are fast; one before the last needs a video from its start again.
+    cv::Mat read(int i, bool withAlpha = false);
 
     const std::string& source() const { return source_; }
     const std::vector<std::string>& files() const { return files_; }    //!< empty: a video

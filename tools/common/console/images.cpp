@@ -3,6 +3,7 @@
 
 #include "console/images.hpp"
 #include "console/cli.hpp"
+#include "console/exif.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -58,7 +59,8 @@ cv::Mat decode(const std::string& path, int flags)
     cv::Mat image;
     try
     {
-        image = cv::imdecode(bytes, flags | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+        image = cv::imdecode(bytes, flags == cv::IMREAD_UNCHANGED ? flags
+                                                                  : flags | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
     }
     catch (const cv::Exception&)
     {
@@ -66,6 +68,8 @@ cv::Mat decode(const std::string& path, int flags)
     }
     if (image.empty())
         throw Failure("'" + path + "' is not an image that can be read, or is cut short: take or copy it again");
+    if (exifOrientation(bytes) != 1)
+        noteTurnedImage(path);
     return image;
 }
 
@@ -100,9 +104,19 @@ cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, in
     }
     std::vector<cv::Mat> channels;
     cv::split(image, channels);
-    CV_Assert(channels.size() == maps.size());
+    const bool hasAlpha = channels.size() == maps.size() + 1;
+    CV_Assert(hasAlpha || channels.size() == maps.size());
+    cv::Mat alpha;
     for (size_t i = 0; i < maps.size(); i++)
+    {
+        cv::Mat ofColour;
+        if (hasAlpha)
+            cv::remap(channels.back(), ofColour, maps[i], cv::noArray(), interpolation);
+        alpha = alpha.empty() ? ofColour : cv::Mat(cv::min(alpha, ofColour));
         cv::remap(channels[i].clone(), channels[i], maps[i], cv::noArray(), interpolation);
+    }
+    if (hasAlpha)
+        channels.back() = alpha;
     cv::merge(channels, result);
     return result;
 }
@@ -146,8 +160,14 @@ cv::Mat readGrey(const std::string& path, Channel channel)
     return image;
 }
 
-cv::Mat readImage(const std::string& path)
+cv::Mat readImage(const std::string& path, bool withAlpha)
 {
+    if (withAlpha)
+    {
+        const cv::Mat image = decode(path, cv::IMREAD_UNCHANGED);
+        if (image.channels() != 2)          // grey with alpha, which few formats can be written with
+            return image;
+    }
     return decode(path, cv::IMREAD_ANYCOLOR);
 }
 

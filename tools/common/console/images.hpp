@@ -21,7 +21,8 @@ Channel channelOf(const std::string& name);
 //! One channel; of a grey image, itself.
 cv::Mat greyOf(const cv::Mat& image, Channel channel);
 
-/** As cv::remap, each channel by a map of its own; one map serves all.
+/** As cv::remap, each channel by a map of its own; one map serves all. Where there is a fourth channel and three maps, it is
+alpha: a pixel is as opaque as the least of its colours.
 @param maps CV_32FC2 */
 cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, int interpolation);
 
@@ -35,8 +36,9 @@ std::vector<std::string> expandGlob(const std::string& glob);
 the file if it is missing, cut or not an image. */
 cv::Mat readGrey(const std::string& path, Channel channel = BRIGHTNESS);
 
-//! The same with the file's channels (1 or 3) and depth.
-cv::Mat readImage(const std::string& path);
+/** The same with the file's channels (1 or 3) and depth.
+@param withAlpha four channels where the file has them: how opaque a pixel is, the last */
+cv::Mat readImage(const std::string& path, bool withAlpha = false);
 
 //! Throws Failure if the calibration's image size is known (not empty) and the image has another.
 void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated);

@@ -3,6 +3,7 @@
 
 #include "report/summary.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "console/colour.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -258,12 +259,19 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     return rows;
 }
 
+static Tone toneOf(const Findings& findings)
+{
+    if (!findings.pass() || !findings.contradictions.empty())
+        return Tone::BAD;
+    return findings.weak.empty() && findings.notChecked.empty() ? Tone::GOOD : Tone::DOUBTFUL;
+}
+
 void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& assessment, const Findings& findings)
 {
     std::vector<std::string> limits;
     for (const LimitCheck& limit : findings.limits)
         limits.push_back(limit.sentence());
-    out << findings.verdict() << '\n';
+    out << toned(out, findings.verdict(), toneOf(findings)) << '\n';
     printSentences(out, "Limits:", limits);
     out << '\n';
     std::vector<SummaryRow> rows = windowRows(c);

@@ -81,6 +81,22 @@ cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dic
     return image;
 }
 
+cv::Mat charucoModules(cv::Size innerCorners, int dictionary)
+{
+#if REFRACT_OPENCV_AT_LEAST_4_7
+    const int bits = cv::aruco::getPredefinedDictionary(dictionary).markerSize;
+#else
+    const int bits = cv::aruco::getPredefinedDictionary(dictionary)->markerSize;
+#endif
+    const int perSquare = bits + 4, pixels = 5;         // of a module, whose middle is looked at
+    const cv::Mat image = drawCharuco(innerCorners, perSquare, perSquare - 2, dictionary, perSquare*pixels);
+    cv::Mat modules(squaresOf(innerCorners)*perSquare, CV_8U);
+    for (int row = 0; row < modules.rows; row++)
+        for (int column = 0; column < modules.cols; column++)
+            modules.at<uchar>(row, column) = image.at<uchar>(row*pixels + pixels/2, column*pixels + pixels/2);
+    return modules;
+}
+
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
                                        int dictionary)
 {

@@ -20,6 +20,10 @@ void requireMarkers(cv::Size innerCorners, int dictionary);
 //! The board seen from the front, without margin; dark is 0.
 cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dictionary, int pixelsPerSquare);
 
+/** The same, a pixel a module: markers have their bits and a dark border of one module, and one light module round it, so that a
+square has two modules more than a marker. */
+cv::Mat charucoModules(cv::Size innerCorners, int dictionary);
+
 //! Pixels of all inner corners, NaN where not seen; empty if fewer than four were.
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
                                        int dictionary);

@@ -85,6 +85,11 @@ cv::Mat Target::drawing(int pixelsPerSquare) const
     return pattern_ == CHARUCO ? drawCharuco(size_, square_, marker_, dictionary_, pixelsPerSquare) : Mat();
 }
 
+cv::Mat Target::modules() const
+{
+    return pattern_ == CHARUCO ? charucoModules(size_, dictionary_) : Mat();
+}
+
 std::vector<std::pair<int, int>> Target::neighbours() const
 {
     std::vector<std::pair<int, int>> pairs;

@@ -45,6 +45,11 @@ public:
     //! ChArUco: the board seen from the front, its outer squares' corner at pixel (-0.5, -0.5); else empty.
     cv::Mat drawing(int pixelsPerSquare) const;
 
+    double marker() const { return marker_; }               //!< ChArUco: side of a marker
+
+    //! ChArUco: the board in whole modules, that of a marker's border being one, whatever the true size of markers; else empty.
+    cv::Mat modules() const;
+
     //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 

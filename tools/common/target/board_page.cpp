@@ -1,0 +1,210 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "target/board_page.hpp"
+#include "console/file_output.hpp"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace tools {
+
+using cv::Point2d;
+using cv::Rect2d;
+using cv::Size2d;
+
+namespace {
+
+// Millimetres. What printers leave free, and what the detectors want of light round a board.
+const double MARGIN = 10., FOOTER = 22., TEXT = 3., POINT = 25.4/72;
+
+struct Paper
+{
+    const char* name;
+    double width, height;
+};
+
+const Paper PAPERS[] = {{"A5", 148, 210}, {"A4", 210, 297}, {"A3", 297, 420}, {"A2", 420, 594}, {"A1", 594, 841}, {"A0", 841, 1189}};
+
+using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
+using Context = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
+
+bool isSvg(const std::string& path)
+{
+    std::string end = path.substr(path.find_last_of('.') + 1);
+    std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+    return end == "svg";
+}
+
+Surface makeSurface(const std::string& path, const std::string& as, Size2d paper)
+{
+    const double width = paper.width/POINT, height = paper.height/POINT;
+    if (isSvg(as))
+        return Surface(cairo_svg_surface_create(path.c_str(), width, height), cairo_surface_destroy);
+    Surface surface(cairo_pdf_surface_create(path.c_str(), width, height), cairo_surface_destroy);
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");      // equal input, equal bytes
+    return surface;
+}
+
+void addRectangle(cairo_t* cairo, const Rect2d& r)
+{
+    cairo_rectangle(cairo, r.x, r.y, r.width, r.height);
+}
+
+//! The square between corners (0, 0) and (1, 1) is dark: that tells the first corner.
+void addChessboard(cairo_t* cairo, cv::Size squares, double square, Point2d corner)
+{
+    for (int row = 0; row < squares.height; row++)
+        for (int column = row % 2; column < squares.width; column += 2)
+            addRectangle(cairo, Rect2d(corner.x + column*square, corner.y + row*square, square, square));
+}
+
+//! The picture of modules says which squares are dark, and what the markers in the others are.
+void addCharuco(cairo_t* cairo, const cv::Mat& modules, int perSquare, double square, double marker, Point2d corner)
+{
+    const double module = marker/(perSquare - 2), border = 0.5*(square - marker);
+    for (int row = 0; row < modules.rows; row += perSquare)
+        for (int column = 0; column < modules.cols; column += perSquare)
+        {
+            const Point2d at(corner.x + column/perSquare*square, corner.y + row/perSquare*square);
+            if (modules.at<uchar>(row, column) == 0)
+            {
+                addRectangle(cairo, Rect2d(at.x, at.y, square, square));
+                continue;
+            }
+            for (int v = 1; v < perSquare - 1; v++)
+                for (int u = 1, end; u < perSquare - 1; u = end + 1)       // a run of dark modules is one rectangle
+                {
+                    for (end = u; end < perSquare - 1 && modules.at<uchar>(row + v, column + end) == 0; )
+                        end++;
+                    if (end > u)
+                        addRectangle(cairo, Rect2d(at.x + border + (u - 1)*module, at.y + border + (v - 1)*module, (end - u)*module,
+                                                   module));
+                }
+        }
+}
+
+void drawRuler(cairo_t* cairo, Point2d left)
+{
+    cairo_set_line_width(cairo, 0.15);
+    for (int mm = 0; mm <= (int)BoardPage::RULER; mm++)
+    {
+        cairo_move_to(cairo, left.x + mm, left.y);
+        cairo_rel_line_to(cairo, 0, mm % 10 == 0 ? -5 : mm % 5 == 0 ? -3.5 : -2);
+    }
+    cairo_move_to(cairo, left.x - 0.075, left.y);
+    cairo_rel_line_to(cairo, BoardPage::RULER + 0.15, 0);
+    cairo_stroke(cairo);
+}
+
+//! The font is cairo's own: no file is needed, and each machine writes the same.
+void drawText(cairo_t* cairo, const std::string& text, Point2d at, double width)
+{
+    cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, TEXT);
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo, text.c_str(), &extents);
+    cairo_set_font_size(cairo, TEXT*std::min(1., width/extents.x_advance));
+    cairo_move_to(cairo, at.x, at.y);
+    cairo_show_text(cairo, text.c_str());
+}
+
+} // namespace
+
+BoardPage::BoardPage(const Target& target, double millimetres, const std::string& paper)
+    : target_(target), millimetres_(millimetres)
+{
+    Point2d last;
+    for (const cv::Point3d& p : target.objectPoints())
+        last = Point2d(std::max(last.x, p.x*millimetres), std::max(last.y, p.y*millimetres));
+    board_ = Rect2d(0, 0, last.x + 2*border(), last.y + 2*border());
+    choosePaper(paper, Size2d(std::max(board_.width, RULER + 2) + 2*MARGIN, board_.height + FOOTER + 2*MARGIN));
+    board_.x = 0.5*(paper_.width - board_.width);
+    board_.y = MARGIN + 0.5*(paper_.height - 2*MARGIN - FOOTER - board_.height);
+}
+
+double BoardPage::border() const
+{
+    return !hasDots() ? square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
+}
+
+void BoardPage::choosePaper(const std::string& paper, Size2d needed)
+{
+    const auto fits = [&](double width, double height) { return needed.width <= width && needed.height <= height; };
+    const std::string needs = cv::format("%.0fx%.0f", std::ceil(needed.width), std::ceil(needed.height));
+    for (const Paper& p : PAPERS)
+    {
+        if (paper.empty() ? p.height < 297 : paper != p.name)
+            continue;
+        const bool upright = fits(p.width, p.height);
+        if (!upright && !fits(p.height, p.width))
+            continue;
+        paper_ = upright ? Size2d(p.width, p.height) : Size2d(p.height, p.width);
+        paperName_ = p.name;
+        return;
+    }
+    const bool isNamed = std::any_of(std::begin(PAPERS), std::end(PAPERS), [&](const Paper& p) { return paper == p.name; });
+    if (!paper.empty())
+    {
+        const cv::Size size = isNamed ? cv::Size() : parseSize(paper, "--paper");
+        if (!fits(size.width, size.height))
+            throw Failure("--paper=" + paper + ": the board with its ruler needs " + needs + " mm; take larger paper, or fewer or "
+                          "smaller squares");
+        paper_ = size;
+    }
+    else
+        paper_ = Size2d(std::ceil(needed.width), std::ceil(needed.height));
+    paperName_ = cv::format("%.0fx%.0f mm", paper_.width, paper_.height);
+}
+
+std::vector<Point2d> BoardPage::points() const
+{
+    std::vector<Point2d> points;
+    for (const cv::Point3d& p : target_.objectPoints())
+        points.emplace_back(board_.x + border() + p.x*millimetres_, board_.y + border() + p.y*millimetres_);
+    return points;
+}
+
+void BoardPage::drawBoard(cairo_t* cairo) const
+{
+    const cv::Size squares(target_.size().width + 1, target_.size().height + 1);
+    if (target_.pattern() == Target::CHESSBOARD)
+        addChessboard(cairo, squares, square(), board_.tl());
+    else if (target_.pattern() == Target::CHARUCO)
+    {
+        const cv::Mat modules = target_.modules();
+        addCharuco(cairo, modules, modules.cols/squares.width, square(), target_.marker()*millimetres_, board_.tl());
+    }
+    else
+        for (const Point2d& p : points())
+        {
+            cairo_new_sub_path(cairo);
+            cairo_arc(cairo, p.x, p.y, border(), 0, 2*CV_PI);
+        }
+    cairo_fill(cairo);
+}
+
+void BoardPage::write(const std::string& path, const std::vector<std::string>& lines) const
+{
+    OutputFile file(path);
+    const Surface surface = makeSurface(file.temporary(), path, paper_);
+    const Context context(cairo_create(surface.get()), cairo_destroy);
+    cairo_t* cairo = context.get();
+    cairo_scale(cairo, 1/POINT, 1/POINT);       // from here on in millimetres
+    drawBoard(cairo);
+    const double bottom = paper_.height - MARGIN;
+    drawRuler(cairo, Point2d(MARGIN + 1, bottom - 12));
+    for (size_t i = 0; i < lines.size(); i++)
+        drawText(cairo, lines[i], Point2d(MARGIN + 1, bottom - 8 + 4*(double)i), paper_.width - 2*MARGIN - 2);
+    cairo_show_page(cairo);
+    cairo_surface_finish(surface.get());
+    for (const cairo_status_t status : {cairo_surface_status(surface.get()), cairo_status(cairo)})
+        if (status != CAIRO_STATUS_SUCCESS)
+            throw Failure("'" + path + "' cannot be written: " + cairo_status_to_string(status));
+    file.commit();
+}
+
+} // namespace tools
