@@ -1,8 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// What the baseline's kernels compute, one "name value" a line, for compare.py of ../agreement. All input is made by exact
-// arithmetic or decimal literals, so that every build starts from the same bits.
+// What the kernels of one level (REFRACT_TESTED_KERNELS) compute, one "name value" a line, for compare.py of ../agreement. All
+// input is made by exact arithmetic or decimal literals, so that every build starts from the same bits.
 #include "dispatch/kernels.hpp"
 
 #include <array>
@@ -121,7 +121,7 @@ void throughLens(const std::string& name, const Model& model, Project project, U
 
 int main()
 {
-    const Kernels& kernels = *kernelsBaseline();
+    const Kernels& kernels = *REFRACT_TESTED_KERNELS();
     const Points directions = throughWindow(kernels, scene(kernels));
 
     OpenCVModel plane = {};

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <locale>
 #include <sstream>
 
@@ -136,8 +137,21 @@ bool parseNumber(const std::string& text, double& number)
 {
     const char* const end = text.data() + text.size();
     const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-');
+#ifdef __cpp_lib_to_chars
     const std::from_chars_result result = std::from_chars(begin, end, number);
     return result.ec == std::errc() && result.ptr == end;
+#else       // libc++: whole numbers only
+    const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [name, value] : { std::make_pair("nan", nan), std::make_pair("inf", inf), std::make_pair("-inf", -inf) })
+        if (std::string(begin, end) == name)
+        {
+            number = value;
+            return true;
+        }
+    std::istringstream in(std::string(begin, end));
+    in.imbue(std::locale::classic());
+    return in >> std::noskipws >> number && in.eof();
+#endif
 }
 
 cv::Size parseSize(const std::string& text, const std::string& option)

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <fstream>
 #ifdef _WIN32
+#ifndef NOMINMAX        // some compilers' own headers have it
 #define NOMINMAX
+#endif
 #include <windows.h>
 #else
 #include <sys/stat.h>
@@ -142,6 +144,12 @@ static void askWhatIsThere(const String& filename, bool& special, bool& readOnly
         return;
     special = !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
     readOnly = S_ISREG(there.st_mode) && (!(there.st_mode & 0222) || access(filename.c_str(), W_OK) != 0);
+#else
+    const DWORD there = GetFileAttributesA(filename.c_str());
+    if (there == INVALID_FILE_ATTRIBUTES)
+        return;
+    special = (there & FILE_ATTRIBUTE_DEVICE) != 0;
+    readOnly = !(there & FILE_ATTRIBUTE_DIRECTORY) && (there & FILE_ATTRIBUTE_READONLY);
 #endif
 }
 
