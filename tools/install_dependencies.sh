@@ -1,9 +1,9 @@
 #!/bin/sh
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
-# Usage: tools/install_dependencies.sh [build|test|in-tree|aarch64|fuzz|bare|libraries]
+# Usage: tools/install_dependencies.sh [build|test|in-tree|aarch64|fuzz|bare|site|libraries]
 #   test adds what only the tests use, in-tree what OpenCV's own build needs, aarch64 what compiles for that processor and
-#   runs it, fuzz the compiler that the fuzzers want; bare: what makes a bare Debian to try things in; libraries installs
-#   nothing, but names what a root of another architecture must hold
+#   runs it, fuzz the compiler that the fuzzers want, site what makes and tests the documentation's site; bare: what
+#   makes a bare Debian to try things in; libraries installs nothing, but names what a root of another architecture must hold
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
@@ -20,8 +20,9 @@ case "${1:-build}" in
   aarch64) wanted="$build g++-aarch64-linux-gnu qemu-user" ;;
   fuzz) wanted="$build clang-14 libclang-rt-14-dev" ;;
   bare) wanted="debootstrap git ca-certificates util-linux" ;;
+  site) wanted="doxygen libjs-mathjax python3 chromium" ;;
   libraries) echo "$libraries $test_libraries"; exit 0 ;;
-  *) echo "usage: $0 [build|test|in-tree|aarch64|fuzz|bare|libraries]" >&2; exit 1 ;;
+  *) echo "usage: $0 [build|test|in-tree|aarch64|fuzz|bare|site|libraries]" >&2; exit 1 ;;
 esac
 
 missing=""

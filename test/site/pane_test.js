@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // Runs in doc/pane.html, after EXPECTED of pane_values: compares its answers with the library's, then moves what can be moved and
 // looks at the drawing. The last line of the page says what was wrong, or "passed".
 "use strict";

@@ -1,3 +1,6 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
 // What doc/pane.html should compute: random configurations of it, and the library's answers, as one JavaScript array.
 //
 //   pane_values [--count=200] > expected.js
