@@ -71,6 +71,7 @@ run "the module's own tests over googletest" build/release/bin/opencv_test_refra
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 run "Debian package: unpacked, its tools run" test/package.sh build/release
 run "documentation: the site builds, its links lead somewhere, its figure computes as the library" test/site.sh build/release
+run "documentation: its commands run and print what it says; the quick ones" test/doc_blocks.py --short build/release/bin
 run "the same hundred values from every build" test/agreement/run.sh build/release
 # OpenCV itself is not compiled here: that takes the whole script, without --short.
 for version in 4.14.0.94 5.0.0.93; do

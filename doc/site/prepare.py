@@ -69,7 +69,9 @@ class Guide:
         self.files = set()          # linked files of the checkout that are no guides
 
     def text(self):
-        parts = [part if code else self.prose(part) for code, part in prose_and_code((ROOT/self.path).read_text())]
+        # Comments are for test/doc_blocks.py.
+        text = re.sub(r"^ *<!--.*?-->\n", "", (ROOT/self.path).read_text(), flags=re.M | re.S)
+        parts = [part if code else self.prose(part) for code, part in prose_and_code(text)]
         return "".join(parts)
 
     def prose(self, text):
