@@ -23,7 +23,7 @@ python3 test/site/links.py build/site
 "$build/bin/pane_values" >"$work/expected.js"
 cp test/site/pane_test.js "$work"
 { cat doc/pane.html; echo '<script src="expected.js"></script><script src="pane_test.js"></script>'; } >"$work/page.html"
-timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --disable-background-networking --no-first-run \
+timeout 300 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --disable-background-networking --no-first-run \
   --disable-sync \
   --user-data-dir="$work/profile" --dump-dom "file://$work/page.html" >"$work/dom.html" 2>"$work/chromium.log" ||
   { tail -5 "$work/chromium.log"; echo "FAILED: chromium did not show the page"; exit 1; }
