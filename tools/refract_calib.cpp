@@ -34,6 +34,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "assess/misfit.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/image_fit.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
@@ -80,7 +81,8 @@ const std::map<std::string, int> FREE = {
     {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}};
 
 const std::map<std::string, int> LENSES = {
-    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14}};
+    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14},
+    {"fisheye", FISHEYE_LENS}};
 
 std::vector<std::string> namesOf(const std::map<std::string, int>& map)
 {
@@ -117,7 +119,8 @@ Options parseOptions(Command& command)
         if (c > 1)
             camera->group("");              // told in the manual
     }
-    app.add_option("--lens", o.lens, "lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
+    app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, or "
+                   "cv::fisheye's four")->check(CLI::IsMember(namesOf(LENSES)))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
