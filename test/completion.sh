@@ -29,6 +29,7 @@ expect refract_board --o is --out
 expect refract_board --pattern = ch is chessboard charuco
 expect refract_board --pattern = is chessboard circles acircles charuco
 expect refract_calib --max- is --max-rms --max-normal-std --max-error-at
+expect refract_calib --lens = fish is fisheye
 expect refract_undistort samples/data/stereo/tru is samples/data/stereo/truth.yml
 expect refract_undistort --config = samples/data/stereo/tru is samples/data/stereo/truth.yml
 for tool in "$tools"/refract_*; do

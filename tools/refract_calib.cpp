@@ -26,6 +26,9 @@ Judge the result by the held-out boards (calibrated on the others in turn), not 
 --summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
 values would do, and what the next images should show.
 
+--watch=FOLDER waits while a camera fills the folder of --direct or --glass, says after each image whether the board was found and
+what the next one should show, and then calibrates: after --watch-count images, or when none has come for --watch-quiet seconds.
+
 Where an index stands, a material may stand: N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate,
 of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=101325,RH=50 (C, Pa, %). The result then says which
 index it took; the wrong value that it tries is what the colours of light and the kinds of the material change it by.
@@ -37,6 +40,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "assess/misfit.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/image_fit.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
@@ -50,6 +54,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
 #include "report/thumbnails.hpp"
+#include "target/live_views.hpp"
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -65,6 +70,7 @@ struct Options
 {
     TargetOptions target;
     RigSources images;
+    WatchOptions watch;
     PerCamera<std::string> camera;
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
     std::string innerIndex = "1", outerIndex = "1";
@@ -83,7 +89,8 @@ const std::map<std::string, int> FREE = {
     {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}};
 
 const std::map<std::string, int> LENSES = {
-    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14}};
+    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14},
+    {"fisheye", FISHEYE_LENS}};
 
 std::vector<std::string> namesOf(const std::map<std::string, int>& map)
 {
@@ -110,6 +117,7 @@ Options parseOptions(Command& command)
     CLI::App& app = command.app;
     o.target.addTo(app, false);
     o.images.addTo(app, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
+    o.watch.addTo(app);
     CLI::Option* glass2 = app.get_option("--glass2");
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
@@ -120,7 +128,8 @@ Options parseOptions(Command& command)
         if (c > 1)
             camera->group("");              // told in the manual
     }
-    app.add_option("--lens", o.lens, "lens model that the images determine")->check(CLI::IsMember(namesOf(LENSES)))
+    app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, or "
+                   "cv::fisheye's four")->check(CLI::IsMember(namesOf(LENSES)))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
@@ -429,6 +438,15 @@ Calibration judged(Calibration file, const Findings& findings)
     return file;
 }
 
+//! Until the images are there.
+void watch(const Options& o, bool quiet)
+{
+    if (!o.target.given())
+        throw Failure("--watch looks for a board: give --size and --square");
+    std::ostream nowhere(nullptr);
+    watchImages(o.watch, o.images.all(), Target(o.target), o.images.channel, quiet ? nowhere : std::cout);
+}
+
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)
 {
     Calibration pinhole = calibratePinholeRig(calibration.data, allMoments(calibration.data),
@@ -445,6 +463,8 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parseOptions(command);
         checkOutputs(options, command.settings());
+        if (!options.watch.folder.empty())
+            watch(options, command.quiet());
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Assessment assessment = assess(calibration, command.quiet());
         const Findings findings = judge(calibration, assessment);

@@ -107,11 +107,12 @@ private:
     std::map<std::string, fs::file_time_type> times_;
 };
 
-//! Not to be tried: what names other folders, and what starts gnuplot.
+//! Not to be tried: what names other folders, what starts gnuplot, and what waits.
 bool leadsOut(const std::string& argument)
 {
     return argument.find('/') != std::string::npos || argument.find("..") != std::string::npos
-           || argument.find('~') != std::string::npos || argument.find("--rep") != std::string::npos;
+           || argument.find('~') != std::string::npos || argument.find("--rep") != std::string::npos
+           || argument.find("--watch") != std::string::npos;
 }
 
 } // namespace

@@ -95,11 +95,61 @@ double calibrateFromFocalLengths(const PinholeViews& views, Size imageSize, int 
     return best;
 }
 
+/** From one focal length: k1 to k4 are 0 at first, as all together leave the right valley from a crude start. */
+double calibrateFisheyeFrom(double focal, const PinholeViews& views, Size imageSize, Matx33d& K, Vec4d& D)
+{
+    K = Matx33d(focal, 0, 0.5*(imageSize.width - 1), 0, focal, 0.5*(imageSize.height - 1), 0, 0, 1);
+    D = Vec4d();
+    const int flags = fisheye::CALIB_USE_INTRINSIC_GUESS | fisheye::CALIB_RECOMPUTE_EXTRINSIC | fisheye::CALIB_FIX_SKEW;
+    const int noBend = fisheye::CALIB_FIX_K1 | fisheye::CALIB_FIX_K2 | fisheye::CALIB_FIX_K3 | fisheye::CALIB_FIX_K4;
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-10);
+    double rms = std::numeric_limits<double>::infinity();
+    for (int stage : {noBend, 0})
+    {
+        std::vector<Mat> rvecs, tvecs;          // it takes none that are not empty
+        rms = fisheye::calibrate(views.object, views.image, imageSize, K, D, rvecs, tvecs, flags | stage, criteria);
+    }
+    return checkRange(K) && checkRange(D) && K(0, 0) > 0 && K(1, 1) > 0 ? rms : std::numeric_limits<double>::infinity();
+}
+
+Ptr<RefractiveCamera> calibrateFisheye(const PinholeViews& views, Size imageSize, double& rms)
+{
+    if (!views.onBoards)
+        CV_Error(Error::StsNotImplemented, "cv::fisheye::calibrate takes flat targets alone: give --camera with a lens to start "
+                                           "from, and --free=intrinsics");
+    Mat cameraMatrix, distCoeffs;
+    rms = std::numeric_limits<double>::infinity();
+    for (double focal : {0.2, 0.3, 0.45, 0.7, 1.1})             // in image widths; 1/pi: a half circle across the image
+        try
+        {
+            Matx33d K;
+            Vec4d D;
+            const double error = calibrateFisheyeFrom(focal*imageSize.width, views, imageSize, K, D);
+            if (error >= rms)
+                continue;
+            rms = error;
+            cameraMatrix = Mat(K, true);
+            distCoeffs = Mat(D, true);
+        }
+        catch (const cv::Exception&) {}         // from there it finds nothing
+    if (cameraMatrix.empty())
+        CV_Error(Error::StsNoConv, "cv::fisheye::calibrate finds no fisheye camera for these points");
+    roundTo(1e-5, cameraMatrix);
+    roundTo(1e-6, distCoeffs);
+    return RefractiveCamera::createFisheye(cameraMatrix, distCoeffs);
+}
+
 } // namespace
 
 Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, double& rms)
 {
     const PinholeViews views = seenViews(targetViews);
+    if (coefficients == FISHEYE_LENS)
+    {
+        const Ptr<RefractiveCamera> camera = calibrateFisheye(views, imageSize, rms);
+        camera->setImageSize(imageSize);
+        return camera;
+    }
     const int flags = calibrateCameraFlags(coefficients);
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13);
     Mat cameraMatrix, distCoeffs, rvecs, tvecs;

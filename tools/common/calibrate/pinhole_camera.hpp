@@ -8,6 +8,9 @@
 
 namespace tools {
 
+//! Where a number of cv::calibrateCamera's coefficients may stand: cv::fisheye's model instead, which has four.
+const int FISHEYE_LENS = -1;
+
 //! What one camera saw of one target.
 struct TargetView
 {
@@ -16,7 +19,7 @@ struct TargetView
 };
 
 /** cv::calibrateCamera on the seen points of all views that are not empty; where a target is not flat, from several focal
-lengths. Throws cv::Exception where it finds nothing. */
+lengths. With FISHEYE_LENS cv::fisheye::calibrate, on flat targets, from several focal lengths too. Throws cv::Exception where it finds nothing. */
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
                                                      int coefficients, double& rms);
 

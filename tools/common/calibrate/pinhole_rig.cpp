@@ -43,6 +43,21 @@ void commonPoints(const RigData& data, const std::vector<int>& moments, int came
     }
 }
 
+bool isFisheye(const refract::RefractiveCamera& camera) { return camera.lensModel() == "fisheye"; }
+
+//! cv::stereoCalibrate knows no fisheye: what a pinhole with the same matrix would see.
+void straighten(const refract::RefractiveCamera& camera, std::vector<std::vector<Point2f>>& images)
+{
+    if (isFisheye(camera))
+        for (std::vector<Point2f>& image : images)
+            fisheye::undistortPoints(image, image, camera.cameraMatrix(), camera.distCoeffs(), noArray(), camera.cameraMatrix());
+}
+
+Mat coefficientsLeft(const refract::RefractiveCamera& camera)
+{
+    return isFisheye(camera) ? Mat() : camera.distCoeffs();
+}
+
 //! R and T of camera 2 from camera 1; returns cv::stereoCalibrate's RMS.
 double placeBeside(const RigData& data, const std::vector<int>& moments, const Calibration& rig, int camera1, int camera2,
                    Matx33d& R, Vec3d& T)
@@ -53,9 +68,11 @@ double placeBeside(const RigData& data, const std::vector<int>& moments, const C
     if (object.empty())
         throw Failure(format("--pinhole-out needs a moment that camera %d and camera %d see through their windows", camera1 + 1,
                              camera2 + 1));
+    straighten(*rig.cameras[camera1].camera, image1);
+    straighten(*rig.cameras[camera2].camera, image2);
     const auto lens = [&](int c) { return rig.cameras[c].camera; };
-    Mat K1 = lens(camera1)->cameraMatrix(), D1 = lens(camera1)->distCoeffs(), K2 = lens(camera2)->cameraMatrix(),
-        D2 = lens(camera2)->distCoeffs(), E, F;
+    Mat K1 = lens(camera1)->cameraMatrix(), D1 = coefficientsLeft(*lens(camera1)), K2 = lens(camera2)->cameraMatrix(),
+        D2 = coefficientsLeft(*lens(camera2)), E, F;
     return stereoCalibrate(object, image1, image2, K1, D1, K2, D2, data.imageSize[camera1], R, T, E, F, CALIB_FIX_INTRINSIC);
 }
 
@@ -65,6 +82,8 @@ int pinholeCoefficients(const refract::RefractiveCamera& camera)
 {
     const int RICHEST = 8;      // that a few views determine
     const String model = camera.lensModel();
+    if (model == "fisheye")
+        return FISHEYE_LENS;
     if (model != "opencv" && model.find("LENSMODEL_") != 0)
         throw Failure("cv::calibrateCamera knows no lens '" + model + "'");
     const bool isOpenCV = model == "opencv" || model == "LENSMODEL_PINHOLE" || model.find("LENSMODEL_OPENCV") == 0;

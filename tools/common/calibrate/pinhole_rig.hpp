@@ -12,14 +12,14 @@ namespace tools {
 /* What a user would do instead: the same images through the window, given to cv::calibrateCamera and
 cv::stereoCalibrate as if there were none. They throw Failure (or cv::Exception) where that cannot be done. */
 
-//! @param coefficients of the lens: 0, 4, 5, 8, 12 or 14
+//! @param coefficients of the lens: 0, 4, 5, 8, 12 or 14, or FISHEYE_LENS
 CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
                                                int coefficients);
 
 //! All cameras, each placed beside the one with most moments in common; rms is that of cv::stereoCalibrate, root mean square.
 Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients);
 
-//! Number of coefficients of a lens as cv::calibrateCamera would find it; throws Failure if it is none of its models.
+//! Number of coefficients of a lens as cv::calibrateCamera would find it, or FISHEYE_LENS; throws Failure if it is none of its models.
 int pinholeCoefficients(const cv::refract::RefractiveCamera& camera);
 
 } // namespace tools

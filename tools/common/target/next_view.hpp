@@ -1,0 +1,42 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_NEXT_VIEW_HPP
+#define REFRACT_TOOLS_NEXT_VIEW_HPP
+
+#include "target/target.hpp"
+
+namespace tools {
+
+/** What the images of a board that were taken so far still lack, before any lens is known: corners in each ninth of the picture,
+boards tilted to four sides, near ones and far ones. */
+class NextView
+{
+public:
+    static const int ENOUGH = 12;           //!< images, if nothing else is missing
+
+    NextView(const Target& target, cv::Size image) : target_(target), image_(image) {}
+
+    //! @param points of the target, NaN where one was not seen
+    void add(const std::vector<cv::Point2d>& points);
+
+    int count() const { return count_; }
+    //! What to show next, the most useful first; empty: enough of all.
+    std::string advice() const;
+
+private:
+    std::string emptyPart() const;
+    std::string missingTilt() const;
+    std::string missingDistance() const;
+
+    const Target& target_;
+    cv::Size image_;
+    int count_ = 0;
+    int corners_[3][3] = {};                //!< rows, columns of the picture
+    bool tilted_[4] = {};                   //!< the left, right, upper, lower edge towards the camera
+    double nearest_ = 0., farthest_ = 0.;   //!< the board's size in the picture, of the picture's
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_NEXT_VIEW_HPP
