@@ -153,6 +153,10 @@ TEST_CASE("Images exchanged, moved or of other moments are found and named", "[m
                 (glass ? stereo.data.moments[(i + 1) % 6].glass : stereo.data.moments[(i + 1) % 6].direct)[1];
     CHECK_THAT(explained(moments), Catch::Contains("not the same moment"));
 
+    Given shared = stereo;
+    shared.options.windows = {0, 0};
+    CHECK_THAT(explained(shared), Catch::Contains("leave --shared-window") && !Catch::Contains("same moment"));
+
     CHECK_THAT(explained(rightlyGiven(1, random, 1)), Catch::Contains("in 3 of 6 pairs") && Catch::Contains("--size"));
 }
 

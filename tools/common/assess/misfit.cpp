@@ -24,6 +24,19 @@ const char* const NOTHING_TRIED = "neither another square, thickness, index or m
     "explain it. Check --pattern and --size, that the images are from this camera with the same zoom and focus, that the target "
     "is flat, and the images themselves";
 
+//! Those that leave less than that, and are about as good as the best of them.
+std::vector<Explanation> bestBelow(double most, const std::vector<Explanation>& tried)
+{
+    double best = most;
+    for (const Explanation& e : tried)
+        best = std::min(best, e.px);
+    std::vector<Explanation> explaining;
+    for (const Explanation& e : tried)
+        if (e.px < most && e.px <= AS_GOOD*best)
+            explaining.push_back(e);
+    return explaining;
+}
+
 std::string joined(const std::vector<std::string>& reasons)
 {
     if (reasons.empty())
@@ -43,15 +56,15 @@ std::vector<std::string> explainMisfit(const Given& given)
     for (const std::string& sentence : {badCorners(given), partOfBoard(given)})
         if (!sentence.empty())
             sentences.push_back(sentence);
-    const std::vector<Explanation> tried = {
-        wrongScale(given), wrongIndex(given), directAndGlassExchanged(given), directAndGlassExchangedOfOne(given),
-        camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given), otherMoments(given), unpaired(given)};
-    double best = NO_FIT;
-    for (const Explanation& e : tried)
-        best = std::min(best, e.px);
-    for (const Explanation& e : tried)
-        if (e.px < EXPLAINS*now && e.px < largestSoundError(given.data) && e.px <= AS_GOOD*best)
-            sentences.push_back(format("the same images fit within %.2g px with ", e.px) + e.sentence);
+    const double most = std::min(EXPLAINS*now, largestSoundError(given.data));
+    std::vector<Explanation> explaining = bestBelow(most, {wrongScale(given), wrongIndex(given), directAndGlassExchanged(given),
+        directAndGlassExchangedOfOne(given), camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given),
+        ownWindows(given), unpaired(given)});
+    // What each camera alone explains, any mistake in what they have in common explains better.
+    if (explaining.empty())
+        explaining = bestBelow(most, {otherMoments(given)});
+    for (const Explanation& e : explaining)
+        sentences.push_back(format("the same images fit within %.2g px with ", e.px) + e.sentence);
     return sentences;
 }
 

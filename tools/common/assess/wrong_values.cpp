@@ -5,6 +5,7 @@
 #include "assess/fit_quality.hpp"
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
+#include <set>
 
 using namespace cv::refract;
 
@@ -96,6 +97,16 @@ Explanation otherMedium(const Given& given)
         return {"", NO_FIT};
     return {format("--outer-index=%g in place of %g (the medium in which the board was)", window.outerIndex,
                    given.options.window.outerIndex), medianErrorOfFit(given.data, options)};
+}
+
+Explanation ownWindows(const Given& given)
+{
+    const std::vector<int>& windows = given.options.windows;
+    if (std::set<int>(windows.begin(), windows.end()).size() == windows.size())
+        return {"", NO_FIT};
+    RigOptions options = given.options;
+    options.windows.clear();
+    return {"a window of its own for each camera: leave --shared-window (--window-of-camera) out", medianErrorOfFit(given.data, options)};
 }
 
 } // namespace tools

@@ -18,6 +18,9 @@ Explanation wrongIndex(const Given& given);
 //! Water taken for air, or air for water.
 Explanation otherMedium(const Given& given);
 
+//! A window for each camera, where some are said to share one.
+Explanation ownWindows(const Given& given);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_WRONG_VALUES_HPP
