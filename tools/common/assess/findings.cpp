@@ -344,7 +344,7 @@ Findings judge(const RigCalibration& calibration, const Assessment& assessment)
     judgeCorrelations(calibration, findings);
     judgeHeldOut(calibration, findings);
     for (const Contradiction& contradiction : assessment.contradictions)
-        findings.contradictions.push_back(contradiction.sentence());
+        findings.contradictions.push_back(contradiction.sentence);
     judgeAssumptions(calibration, findings);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
         mergeCameras(calibration, *list);

@@ -5,6 +5,7 @@
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
+#include <algorithm>
 #include <cmath>
 
 using namespace cv;
@@ -42,39 +43,79 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
          [](const GlassWindow& w) { return w.outerIndex; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
 }
 
-} // namespace
-
-std::string Contradiction::sentence() const
+std::string sentenceOf(const GivenValue& given, const std::string& where, double before, double estimate, double std)
 {
-    return "the images contradict " + option + format("=%.5g: set free, the %s would be ", given, what.c_str())
-        + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - given)/std);
+    return format("the images contradict %s=%.5g: set free, the %s%s would be ", given.option, before, given.word, where.c_str())
+        + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - before)/std);
 }
+
+//! A given value that is set free.
+std::vector<Contradiction> contradictedBy(const RigCalibration& c, const GivenValue& given)
+{
+    std::vector<Contradiction> contradictions;
+    const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
+    const int windows = countWindows(c.fit.rig);
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        if (!c.fit.rig.ownsWindow(k))
+            continue;
+        const double before = given.valueOf(c.fit.rig.cameras[k]->window());
+        const double estimate = given.valueOf(fit.rig.cameras[k]->window());
+        const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
+        const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
+        if (std::abs(estimate - before) > SURE*std)
+            contradictions.push_back({sentenceOf(given, where, before, estimate, std), fit.sigma});
+    }
+    return contradictions;
+}
+
+//! Poses that are taken as exact.
+std::vector<Contradiction> contradictedPoses(const RigCalibration& c)
+{
+    const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags & ~GLASS_USE_POSES);
+    const double ratio = c.fit.sigma/fit.sigma;
+    if (!(ratio*ratio > 1 + SURE*std::sqrt(2/fit.freedom)))
+        return {};
+    return {{format("the images contradict --poses, which are taken as exact: without them the corners agree within %.2g px, with them "
+                    "within %.2g px; give their uncertainty in the columns sigma_deg and sigma, or measure them again", fit.sigma,
+                    c.fit.sigma), fit.sigma}};
+}
+
+bool hasExactPoses(const RigCalibration& c)
+{
+    return (c.options.flags & GLASS_USE_POSES) && std::all_of(c.fit.moments.begin(), c.fit.moments.end(), [&](int m) {
+        return c.data.moments[m].pose && c.data.moments[m].pose->covariance.empty(); });
+}
+
+//! What makes the images agree best comes first; what does so much worse than that is a consequence of it.
+void keepTheBest(std::vector<Contradiction>& contradictions)
+{
+    const double AS_GOOD = 1.2;
+    const auto isBetter = [](const Contradiction& one, const Contradiction& other) { return one.sigma < other.sigma; };
+    std::stable_sort(contradictions.begin(), contradictions.end(), isBetter);
+    const auto isMuchWorse = [&](const Contradiction& one) { return one.sigma > AS_GOOD*contradictions[0].sigma; };
+    contradictions.erase(std::find_if(contradictions.begin(), contradictions.end(), isMuchWorse), contradictions.end());
+}
+
+} // namespace
 
 std::vector<Contradiction> contradictedValues(const RigCalibration& c)
 {
     std::vector<Contradiction> contradictions;
-    for (const GivenValue& given : givenValues(c.options))
-    {
-        if (!given.isGiven || (c.options.flags & given.flag))
-            continue;
+    const auto add = [&](const auto& of) {
         try
         {
-            const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
-            const int windows = countWindows(c.fit.rig);
-            for (int k = 0; k < c.data.cameraCount; k++)
-            {
-                if (!c.fit.rig.ownsWindow(k))
-                    continue;
-                const double before = given.valueOf(c.fit.rig.cameras[k]->window());
-                const double estimate = given.valueOf(fit.rig.cameras[k]->window());
-                const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
-                if (std::abs(estimate - before) > SURE*std)
-                    contradictions.push_back({given.word + (windows == 1 ? std::string()
-                                              : format(" of camera %d's window", k + 1)), given.option, before, estimate, std});
-            }
+            const std::vector<Contradiction> more = of();
+            contradictions.insert(contradictions.end(), more.begin(), more.end());
         }
         catch (const cv::Exception&) {}     // the images do not determine it, so they do not contradict it either
-    }
+    };
+    for (const GivenValue& given : givenValues(c.options))
+        if (given.isGiven && !(c.options.flags & given.flag))
+            add([&] { return contradictedBy(c, given); });
+    if (hasExactPoses(c))
+        add([&] { return contradictedPoses(c); });
+    keepTheBest(contradictions);
     return contradictions;
 }
 
