@@ -94,6 +94,7 @@ for version in 4.14.0.94 5.0.0.93; do
   run "in OpenCV $version's tree: configures, compiles the module, generates bindings" \
     test/opencv_in_tree.sh $version --short
 done
+run "without Ceres and Eigen: the library and its own tests" test/without_ceres.sh --short
 run "the kernels compiled for 64-bit ARM, run in an emulator" test/aarch64.sh --short     # everything: without --short
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do

@@ -14,7 +14,7 @@ the heap. Symmetric matrices are scaled to a diagonal of ones before they are fa
 
 namespace cv { namespace refract {
 
-//! Of errors e at one place: e^T e, J^T e and J^T J, of which the upper triangle is kept.
+//! Of errors e at one place: e^T e, J^T e and J^T J.
 template<int N>
 struct SumOfSquares
 {
@@ -22,14 +22,16 @@ struct SumOfSquares
     Vec<double, N> gradient;
     Matx<double, N, N> curvature;
 
-    //! @param row derivatives of the error by the parameters
-    void add(double error, const double* row)
+    //! @param derivatives of the error by the parameters
+    void add(double error, const double* derivatives)
     {
+        double row[N];          // a copy is no part of the sums, and whole rows are vectors: the compiler can use both
+        std::copy(derivatives, derivatives + N, row);
         value += error*error;
         for (int r = 0; r < N; r++)
         {
             gradient[r] += row[r]*error;
-            for (int c = r; c < N; c++)
+            for (int c = 0; c < N; c++)
                 curvature(r, c) += row[r]*row[c];
         }
     }
