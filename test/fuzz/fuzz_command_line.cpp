@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
-    {"refract_board", refract_board_main}, {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main},
-    {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main},
+    {"refract_board", refract_board_main}, {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main},
+    {"refract_epilines", refract_epilines_main}, {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main},
     {"refract_stereo", refract_stereo_main}, {"refract_undistort", refract_undistort_main}};
 
 const char CAMERA[] = R"(
