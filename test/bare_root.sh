@@ -1,10 +1,11 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-# A bare Debian 12 to try things in: sourced by test/bare.sh and test/package.sh.
+# A bare Debian to try things in: sourced by test/bare.sh, test/package.sh and test/debian13.sh.
 #
-#   bare_root WORK         makes WORK/root from where this machine's apt gets Debian (debootstrap, as root); $root is its path.
-#                          WORK is removed when the script that sources this ends, also if it is interrupted
+#   bare_root WORK [RELEASE]   makes WORK/root of a release, bookworm by default, from where this machine's apt gets Debian
+#                          (debootstrap, as root); $root is its path. WORK is removed when the script that sources this ends, also
+#                          if it is interrupted
 #   in_root COMMAND...     runs it in there: network, names, certificates and package registries as on this machine
 #
 # What is mounted (/proc) is so in a namespace of COMMAND's own and goes with it; nothing is left to unmount.
@@ -13,7 +14,7 @@
 inherited='PIP_[A-Z_]*|[A-Za-z]*_(proxy|PROXY)|SSL_CERT_(FILE|DIR)|(REQUESTS_CA|CURL_CA)_BUNDLE'
 
 bare_root() {
-  work=$1
+  work=$1; release=${2:-bookworm}
   root=$work/root
   command_in_root=""
   trap 'clean_bare_root' EXIT
@@ -26,9 +27,9 @@ bare_root() {
     'Created-By: Packages' 'Origin: Debian' 'Architecture: '"$(dpkg --print-architecture)" | sort -u)
   mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Origin: Debian' 'Release: bookworm' | head -n 1)
   [ -n "$mirror" ] || { echo "this machine's apt knows no source of Debian 12 (bookworm)" >&2; return 1; }
-  debootstrap --variant=minbase --include=ca-certificates bookworm "$root" "$mirror" >"$work/root.log" 2>&1 ||
+  debootstrap --variant=minbase --include=ca-certificates "$release" "$root" "$mirror" >"$work/root.log" 2>&1 ||
     { tail -5 "$work/root.log"; return 1; }
-  echo "$sources" >"$root/etc/apt/sources.list"
+  echo "$sources" | sed "s/bookworm/$release/" >"$root/etc/apt/sources.list"
   for settings in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/apt/apt.conf /etc/apt/apt.conf.d /usr/local/share/ca-certificates; do
     [ ! -e "$settings" ] || cp -rL "$settings" "$root$(dirname "$settings")/"
   done
