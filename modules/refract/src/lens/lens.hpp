@@ -59,11 +59,9 @@ public:
     virtual bool isSmooth() const { return true; }
     //! Of a lens made of control points, how many of them a pixel depends on; 0: it is not such a lens.
     virtual int controlsPerPixel() const { return 0; }
-    //! Which control points those are, and the plane's derivative by each (that of both coordinates, each by its own).
-    virtual uchar controlsOf(const Vec3d& /*direction*/, int* /*which*/, double* /*weights*/) const
-    {
-        return REFRACT_OUTSIDE_LENS_MODEL;
-    }
+    //! Which control points those are of a direction that has a pixel, and the plane's derivative by each (that of both
+    //! coordinates, each by its own).
+    virtual void controlsOf(const Vec3d& /*direction*/, int* /*which*/, double* /*weights*/) const {}
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };

@@ -90,7 +90,7 @@ private:
 
     Vec2d gridAt(const Vec2d& p) const
     {
-        return Vec2d(p[0]*perUnit_ + 0.5*(grid_.nx - 1), p[1]*perUnit_ + 0.5*(grid_.ny - 1));
+        return Vec2d(splineCoordinate(p[0], perUnit_, grid_.nx), splineCoordinate(p[1], perUnit_, grid_.ny));
     }
     template<int ORDER> void weigh(const Vec2d& g, int* which, double* weights) const;
     template<int ORDER, bool WITH_SLOPE> Vec2d added(const Vec2d& g, Vec2d& byX, Vec2d& byY) const;
@@ -120,7 +120,7 @@ public:
     bool isFixed(int) const CV_OVERRIDE { return true; }    // without the control points the others move the wrong way
     bool isSmooth() const CV_OVERRIDE { return surface_->grid().order > 2; }
     int controlsPerPixel() const CV_OVERRIDE { return (surface_->grid().order + 1)*(surface_->grid().order + 1); }
-    uchar controlsOf(const Vec3d& d, int* which, double* weights) const CV_OVERRIDE;
+    void controlsOf(const Vec3d& d, int* which, double* weights) const CV_OVERRIDE;
     Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE
     {
         return makePtr<SplinedLens>(model_, p, surface_);
@@ -350,13 +350,11 @@ uchar SplinedLens::bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2
     return surface_->inDomain(p, slope) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
 
-uchar SplinedLens::controlsOf(const Vec3d& d, int* which, double* weights) const
+void SplinedLens::controlsOf(const Vec3d& d, int* which, double* weights) const
 {
-    Vec2d plane, p;
-    const uchar status = bend(d, plane, nullptr, nullptr);
-    if (status == REFRACT_OK && stereographic(d, p, nullptr) == REFRACT_OK)
-        surface_->weigh(p, which, weights);
-    return status;
+    Vec2d p;
+    stereographic(d, p, nullptr);
+    surface_->weigh(p, which, weights);
 }
 
 uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_SPLINE_SIMD_HPP
 
 #include "lens/spline_model.hpp"
+#include "lens/stereographic_model.hpp"
 #include "simd/lanes.hpp"
 
 /* mrcal's splined lens, see lens_splined.cpp. What a point is to its control points is computed for all lanes at once; the control
@@ -88,12 +89,11 @@ bool projectSpline(const SplineModel& model, int n, const double* px, const doub
     Answers answers;
     eachRegister(n, [&](auto at)
     {
-        // The stereographic projection, without its cancellation behind the camera.
         const Lanes X = load(px, at), Y = load(py, at), Z = load(pz, at), r2 = X*X + Y*Y, length = sqrt(r2 + Z*Z);
-        const Lanes scale = 2/select(Z >= 0, length + Z, r2/(length - Z)), a = X*scale, b = Y*scale;
+        const Lanes scale = 2/stereographicDivisor(r2, length, Z), a = X*scale, b = Y*scale;
         const Mask inside = (absolute(a) <= m.edge[0]) & (absolute(b) <= m.edge[1]);
         const Lanes safeA = select(inside, a, all(0)), safeB = select(inside, b, all(0));
-        const Lanes gx = safeA*m.perUnit + 0.5*(m.nx - 1), gy = safeB*m.perUnit + 0.5*(m.ny - 1);
+        const Lanes gx = splineCoordinate(safeA, m.perUnit, m.nx), gy = splineCoordinate(safeB, m.perUnit, m.ny);
         Lanes moved[2];
         if (m.order == 3)
             addSurface<3>(m, gx, gy, moved);

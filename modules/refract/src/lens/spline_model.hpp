@@ -34,6 +34,9 @@ const SplineKernels& splineKernels();
 
 namespace {
 
+//! A coordinate of the stereographic plane, counted in control points.
+template<typename T> inline T splineCoordinate(T p, double perUnit, int count) { return p*perUnit + 0.5*(count - 1); }
+
 //! The second of the control points that a coordinate needs, as far as there are any.
 template<int ORDER> inline int splineCell(double g, int count)
 {

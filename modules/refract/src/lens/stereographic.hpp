@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_STEREOGRAPHIC_HPP
 
 #include "precomp.hpp"
+#include "lens/stereographic_model.hpp"
 
 /* The stereographic projection 2 tan(theta/2) (X, Y)/|(X, Y)| = 2 (X, Y)/(|d| + Z) and its inverse. */
 
@@ -15,7 +16,7 @@ namespace cv { namespace refract {
 inline uchar stereographic(const Vec3d& d, Vec2d& plane, Matx23d* byDirection)
 {
     const double r2 = d[0]*d[0] + d[1]*d[1], length = std::sqrt(r2 + d[2]*d[2]);
-    const double w = d[2] >= 0 ? length + d[2] : r2/(length - d[2]);    // |d| + Z, without its cancellation behind the camera
+    const double w = stereographicDivisor(r2, length, d[2]);
     plane = Vec2d(d[0], d[1])*(2/w);
     if (byDirection)
     {

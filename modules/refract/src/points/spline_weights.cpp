@@ -38,11 +38,12 @@ void refractiveSplineWeights(InputArray objectPoints, InputArray rvec, InputArra
         {
             int* const row = which.ptr<int>(begin + i);
             if (st[i] == REFRACT_OK)
-                st[i] = lens.controlsOf(Vec3d(x[i], y[i], z[i]), row, weight.ptr<double>(begin + i));
-            if (st[i] == REFRACT_OK)
-                continue;
-            std::fill(row, row + count, -1);
-            weight.row(begin + i).setTo(std::numeric_limits<double>::quiet_NaN());
+                lens.controlsOf(Vec3d(x[i], y[i], z[i]), row, weight.ptr<double>(begin + i));
+            else
+            {
+                std::fill(row, row + count, -1);
+                weight.row(begin + i).setTo(std::numeric_limits<double>::quiet_NaN());
+            }
         }
         outStatus.store(begin, n, st);
     });
