@@ -164,10 +164,7 @@ std::vector<Sight> readPoints(const Options& options, const Calibration& calibra
             const std::string u = format("u%d", c + 1), v = format("v%d", c + 1);
             if (table.find(u) < 0 || table.find(v) < 0)
                 continue;
-            const cv::Point2d pixel(table.numberOrNone(row, u), table.numberOrNone(row, v));
-            if (seen(pixel) != (pixel.x == pixel.x || pixel.y == pixel.y))
-                throw Failure(table.where(row) + ": " + u + " and " + v + " must both be numbers, or both empty");
-            sight.moment.glass[c].push_back(pixel);
+            sight.moment.glass[c].push_back(table.pixelOrNone(row, u, v));
         }
     }
     return {sight};

@@ -126,4 +126,12 @@ double CsvTable::numberOrNone(const Row& row, const std::string& name) const
     return cell.empty() || cell == "nan" || cell == "NaN" ? std::numeric_limits<double>::quiet_NaN() : number(row, name);
 }
 
+cv::Point2d CsvTable::pixelOrNone(const Row& row, const std::string& u, const std::string& v) const
+{
+    const cv::Point2d pixel(numberOrNone(row, u), numberOrNone(row, v));
+    if (std::isnan(pixel.x) != std::isnan(pixel.y))
+        throw Failure(where(row) + ": " + u + " and " + v + " must both be numbers, or both empty");
+    return pixel;
+}
+
 } // namespace tools

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CSV_HPP
 #define REFRACT_TOOLS_CSV_HPP
 
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ public:
     const std::string& text(const Row& row, const std::string& name) const;
     double number(const Row& row, const std::string& name) const;               //!< finite
     double numberOrNone(const Row& row, const std::string& name) const;         //!< NaN where the cell is empty or nan
+    //! Where a point was seen: two numbers, or both NaN.
+    cv::Point2d pixelOrNone(const Row& row, const std::string& u, const std::string& v) const;
 
 private:
     const std::string& cellOf(const Row& row, const std::string& name) const;

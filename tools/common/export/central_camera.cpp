@@ -56,13 +56,10 @@ private:
     int lens_;
 };
 
-/* The true lens, as if the window's outer medium were all round: a flat port makes the focal length longer by the ratio of the
-indices. Distortion begins at zero: that of the lens is another behind a port. */
+//! Distortion begins at zero: that of the lens is another behind a port.
 Ptr<RefractiveCamera> startOf(const Ptr<RefractiveCamera>& camera, int coefficients)
 {
-    const cv::refract::GlassWindow window = camera->window();
-    Mat K = camera->cameraMatrix().clone();
-    K.rowRange(0, 2).colRange(0, 2) *= window.outerIndex/window.innerIndex;
+    const Mat K = startingMatrix(*camera);
     const bool isFisheye = coefficients == 0;
     const Mat none = Mat::zeros(isFisheye ? 4 : coefficients, 1, CV_64F);
     const Ptr<RefractiveCamera> start = isFisheye ? RefractiveCamera::createFisheye(K, none) : RefractiveCamera::create(K, none);

@@ -60,10 +60,8 @@ public:
     SplinedFit(const Ptr<RefractiveCamera>& camera, const Grid& grid, const SeenPoints& seen)
         : seen_(seen), grid_(grid), size_(camera->imageSize()), unknowns_(Eigen::VectorXd::Zero(3 + 2*grid.size()))
     {
-        const cv::refract::GlassWindow window = camera->window();
-        const Mat K = camera->cameraMatrix();
-        const double zoom = window.outerIndex/window.innerIndex;
-        core_ = cv::Vec4d(K.at<double>(0, 0)*zoom, K.at<double>(1, 1)*zoom, K.at<double>(0, 2), K.at<double>(1, 2));
+        const Mat K = startingMatrix(*camera);
+        core_ = cv::Vec4d(K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2));
     }
 
     //! Its length, px or the unit of length, whichever is more.

@@ -44,6 +44,14 @@ void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::st
                                  range[0], range[1]));
 }
 
+cv::Mat startingMatrix(const RefractiveCamera& camera)
+{
+    const cv::refract::GlassWindow window = camera.window();
+    cv::Mat K = camera.cameraMatrix().clone();
+    K.rowRange(0, 2).colRange(0, 2) *= window.outerIndex/window.innerIndex;
+    return K;
+}
+
 CentralError errorOf(const SeenPoints& sample, const CentralCamera& central)
 {
     std::vector<Point2d> seen;

@@ -21,6 +21,10 @@ SeenPoints seenPoints(const cv::Ptr<cv::refract::RefractiveCamera>& camera, cons
 //! Throws where the camera of that name sees next to nothing of the range.
 void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name);
 
+/** Where a fit begins: the true camera matrix, as if the window's outer medium were all round. A flat port makes the focal length
+longer by the ratio of the indices. */
+cv::Mat startingMatrix(const cv::refract::RefractiveCamera& camera);
+
 //! By how much a central camera is off.
 CentralError errorOf(const SeenPoints& seen, const CentralCamera& central);
 

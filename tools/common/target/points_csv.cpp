@@ -21,16 +21,14 @@ std::vector<DetectedView> readPointsCsv(const std::string& path)
     {
         const std::string& name = table.text(row, "view");
         const cv::Point3d X(table.number(row, "x"), table.number(row, "y"), table.number(row, "z"));
-        const cv::Point2d pixel(table.numberOrNone(row, "u"), table.numberOrNone(row, "v"));
-        if (seen(pixel) != (pixel.x == pixel.x || pixel.y == pixel.y))
-            throw Failure(table.where(row) + ": u and v must both be numbers, or both empty");
+        const cv::Point2d pixel = table.pixelOrNone(row, "u", "v");
         if (!known.insert({name, X.x, X.y, X.z}).second)
             throw Failure(table.where(row) + cv::format(": view '%s' has the point (%g, %g, %g) already: each point of a view is "
                           "seen once in a camera", name.c_str(), X.x, X.y, X.z));
         if (viewOf.emplace(name, views.size()).second)
             views.push_back({name, path, {}, {}});
         views[viewOf[name]].objectPoints.push_back(X);
-        views[viewOf[name]].points.push_back(seen(pixel) ? pixel : cv::Point2d(NAN, NAN));
+        views[viewOf[name]].points.push_back(pixel);
     }
     std::sort(views.begin(), views.end(), [](const DetectedView& a, const DetectedView& b) { return a.stem < b.stem; });
     return views;
