@@ -3,12 +3,12 @@
 
 """A hundred values from the module's calls, one "name value" a line; values.cpp prints the same. All input is made by
 exact arithmetic or decimal literals, so that both programs start from the same bits."""
-import cv2
 import numpy as np
 
 try:
+    import cv2
     refract = cv2.refract       # OpenCV's own module
-except AttributeError:
+except (ImportError, AttributeError):
     import opencv_refract as refract
 
 K = np.array([[2438.5, 0, 644.25], [0, 2440.125, 500.5], [0, 0, 1]])
@@ -95,7 +95,7 @@ def show_calibration():
 
     rms, window, rvecs, tvecs = refract.calibrateGlass(
         [board]*4, direct, refracted, K, D, pane(0), flags=refract.GLASS_FREE_THICKNESS,
-        criteria=(cv2.TERM_CRITERIA_COUNT, 50, 0))
+        criteria=(1, 50, 0))        # a count of 50
     show('calibrateGlass.rms', rms, 1)
     show('calibrateGlass.normal', np.array(window.normal), 3)
     show('calibrateGlass.thickness', np.array(window.thickness), 1)
