@@ -17,14 +17,14 @@ cd "$(dirname "$0")/.."
 packaging/wheel/build.sh
 dpkg-query -W python3-opencv >/dev/null 2>&1 || apt-get install -y -qq --no-install-recommends python3-opencv >/dev/null
 wheel=$(ls build/wheel/dist/*.whl)
-work=$PWD/build/wheel/try
-rm -rf "$work"
-mkdir -p "$work/values"
+try=$PWD/build/wheel/try
+rm -rf "$try"
+mkdir -p "$try/values"
 
 # ---- nothing of OpenCV or Ceres can be seen from outside
-mkdir "$work/unpacked"
-python3 -m zipfile -e "$wheel" "$work/unpacked"
-seen=$(nm --dynamic --defined-only "$work"/unpacked/opencv_refract/_native.abi3.so | sed 's/.* //')
+mkdir "$try/unpacked"
+python3 -m zipfile -e "$wheel" "$try/unpacked"
+seen=$(nm --dynamic --defined-only "$try"/unpacked/opencv_refract/_native.abi3.so | sed 's/.* //')
 [ "$seen" = PyInit__native ] || { echo "FAILED: the extension exports $seen" >&2; exit 1; }
 
 # ---- beside every OpenCV
@@ -41,21 +41,22 @@ beside() {              # beside NAME PYTHON PACKAGES...: with exactly these
   [ -n "$interpreter" ] || { echo "left out, as there is no Python $python: $name"; return; }
   system=""
   [ "$name" != debian ] || system=--system-site-packages
-  "$interpreter" -m venv $system "$work/$name"
-  "$work/$name/bin/pip" install -q --disable-pip-version-check pytest "$wheel" "$@" >"$work/$name.log" 2>&1 ||
-    { tail -3 "$work/$name.log"; echo "FAILED: $name does not install"; failed=1; return; }
-  "$work/$name/bin/python" -c "import sys, numpy, opencv_refract as refract
+  "$interpreter" -m venv $system "$try/$name"
+  "$try/$name/bin/pip" install -q --disable-pip-version-check pytest "$wheel" "$@" >"$try/$name.log" 2>&1 ||
+    { tail -3 "$try/$name.log"; echo "FAILED: $name does not install"; failed=1; return; }
+  "$try/$name/bin/python" -c "import sys, numpy, opencv_refract as refract
 try:
     import cv2
     beside = 'cv2 ' + cv2.__version__
 except ImportError:
     beside = 'no cv2'
 print('$name: Python', sys.version.split()[0], 'NumPy', numpy.__version__, beside)"
-  "$work/$name/bin/python" -m pytest -q -p no:cacheprovider --ignore=python/tests/test_samples.py \
-    --ignore=python/tests/test_paper_experiments.py python/tests 2>&1 | tail -4 >"$work/$name.tests"
-  tail -1 "$work/$name.tests"
-  grep -q "failed\|error" "$work/$name.tests" && { cat "$work/$name.tests"; failed=1; }
-  "$work/$name/bin/python" -B test/agreement/values.py >"$work/values/$name.txt"
+  "$try/$name/bin/python" -m pytest -q -p no:cacheprovider --ignore=python/tests/test_samples.py \
+    --ignore=python/tests/test_paper_experiments.py python/tests 2>&1 | tail -4 >"$try/$name.tests"
+  tail -1 "$try/$name.tests"
+  grep -q "failed\|error" "$try/$name.tests" && { cat "$try/$name.tests"; failed=1; }
+  "$try/$name/bin/python" -B test/agreement/values.py >"$try/values/$name.txt" 2>"$try/$name.err"
+  [ ! -s "$try/$name.err" ] || { echo "FAILED: it is not quiet:"; head -3 "$try/$name.err"; failed=1; }
 }
 beside none 3.9 'numpy==1.24.*'
 beside opencv-4.6 3.10 'numpy==1.24.*' 'opencv-python==4.6.*'
@@ -64,26 +65,25 @@ beside opencv-4.14 3.11 'numpy>=2' 'opencv-python==4.14.*'
 beside contrib-4.14 3.12 'numpy>=2' 'opencv-contrib-python==4.14.*'
 beside headless-5.0 3.13 'numpy>=2' 'opencv-python-headless==5.*'
 beside contrib-headless-5.0 3.9 'opencv-contrib-python-headless==5.*'
-python3 -B test/agreement/compare.py "$work"/values/*.txt || failed=1
+python3 -B test/agreement/compare.py "$try"/values/*.txt || failed=1
 
 # ---- on bare machines
-"$work/none/bin/pip" --version >/dev/null      # the packages for Debian's Pythons are loaded by any
 for python in 3.11 3.13; do
-  "$work/none/bin/pip" download -q --disable-pip-version-check --only-binary :all: --python-version $python \
-    --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 --platform manylinux_2_17_x86_64 -d "$work/packages" \
+  "$try/none/bin/pip" download -q --disable-pip-version-check --only-binary :all: --python-version $python \
+    --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 --platform manylinux_2_17_x86_64 -d "$try/packages" \
     "$wheel" 'opencv-python-headless==4.14.*'
 done
 . test/bare_root.sh
 for release in "$@"; do
   roots=$(mktemp -d)
   bare_root "$roots" "$release"
-  in_root sh -ec "apt-get update -qq && apt-get install -y -qq --no-install-recommends python3-venv" >"$work/$release.log" 2>&1 ||
-    { tail -5 "$work/$release.log"; exit 1; }
-  cp -r "$work/packages" samples test/wheel_first_point.sh "$root/srv"
+  in_root sh -ec "apt-get update -qq && apt-get install -y -qq --no-install-recommends python3-venv" >"$try/$release.log" 2>&1 ||
+    { tail -5 "$try/$release.log"; exit 1; }
+  cp -r "$try/packages" samples test/wheel_first_point.sh "$root/srv"
   code=0
   in_root sh /srv/wheel_first_point.sh || code=$?
   [ $code = 0 ] || { echo "FAILED: Debian $release"; failed=1; }
-  cp "$root/srv/out/report.html" "$work/report-$release.html" 2>/dev/null || true
+  cp "$root/srv/out/report.html" "$try/report-$release.html" 2>/dev/null || true
   clean_bare_root
 done
 [ $failed = 0 ] && echo "The wheel works everywhere that it was tried: $wheel"

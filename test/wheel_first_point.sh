@@ -19,7 +19,8 @@ pip install -q --disable-pip-version-check --no-index --find-links packages open
 after "installed on $(python3 --version), Debian $(cat /etc/debian_version)"
 refract_calib --pattern=chessboard --size=6x5 --square=39 --thickness=20 --index=1.5437 \
   --direct="$data/direct1/*" --glass="$data/glass1/*" --direct2="$data/direct2/*" --glass2="$data/glass2/*" \
-  --out=out/calib.yml --report=out/report.html >out/calib.txt
+  --out=out/calib.yml --report=out/report.html >out/calib.txt 2>out/calib.err
+if grep "[.]cc:" out/calib.err; then echo "Ceres talks" >&2; exit 1; fi
 grep -q "<svg" out/report.html
 after "calibrated: $(grep -m 1 -i 'good\|usable' out/calib.txt)"
 refract_measure out/calib.yml "$data/measure1/z600_*" "$data/measure2/z600_*" --pattern=chessboard --size=6x5 --square=39 \
