@@ -11,7 +11,12 @@ cd "$(dirname "$0")/.."
 fast=no
 [ "${1:-}" = --fast ] && fast=yes
 
-tools/install_dependencies.sh test
+# All at once, as what runs side by side must not wait for the other's apt.
+wanted="test in-tree aarch64 site"
+[ $fast = yes ] || wanted="$wanted fuzz"
+for kind in $wanted; do
+  tools/install_dependencies.sh $kind
+done
 
 launcher=""
 command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
@@ -39,40 +44,61 @@ run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
        echo "FAILED after $(after): $name" ;;
   esac
 }
-suites=""
-suite() {   # suite NAME EXECUTABLE [FILTER]: a Catch2 program, in the background, as it takes one thread only
-  log=build/$1.log; shift
-  { echo "$*"; "$@" || true; } >"$log" 2>&1 &
-  suites="$suites $!:$log"
+parts=""
+suite() {   # suite NAME EXECUTABLE [FILTER]: a Catch2 program, which takes one thread only, in parts of every eighth case
+  name=build/$1; program=$2; shift 2
+  rm -f "$name".cases.* "$name".part.*
+  # It ends with how many there are. A comma in a name would end it where names are read.
+  { "$program" "$@" --list-test-names-only || true; } | sed 's/,/\\,/g' >"$name.cases"
+  split -n r/8 --numeric-suffixes "$name.cases" "$name.cases."
+  for cases in "$name".cases.*; do
+    parts="$parts$program $cases $name.part.${cases##*.} OPENCV_CPU_DISABLE=${OPENCV_CPU_DISABLE:-}
+"
+  done
 }
-count_suites() {    # waits for all suites, shows what they printed, counts their cases one by one
-  for suite in $suites; do
-    wait "${suite%%:*}"
-    log=${suite#*:}
+count_suites() {    # runs all parts, shows what they printed, counts their cases one by one
+  printf %s "$parts" | xargs -n 4 -P "$(nproc)" sh -c '{ echo "$3 $0 $1"; env "$3" "$0" --input-file "$1" || true; } >"$2" 2>&1'
+  for log in $(printf %s "$parts" | cut -d " " -f 3); do
     cat "$log"
     # "All tests passed (1234 assertions in 56 test cases)" or "test cases: 56 | 55 passed | 1 failed"
     p=$(sed -n 's/^All tests passed .* in \([0-9]*\) test case.*/\1/p; s/^test cases:.*| *\([0-9]*\) passed.*/\1/p' "$log")
     f=$(sed -n 's/^test cases:.*| *\([0-9]*\) failed.*/\1/p' "$log")
-    passed=$((passed + ${p:-0})); failed=$((failed + ${f:-0}))
-    [ -z "$f" ] || failures="$failures; $f of $log"
-    if [ -z "$p$f" ]; then      # a crash prints no counts
-      failed=$((failed + 1)); failures="$failures; $log ends before its last test"
+    p=${p:-0}; f=${f:-0}
+    passed=$((passed + p)); failed=$((failed + f))
+    [ "$f" = 0 ] || failures="$failures; $f of $log"
+    if [ $((p + f)) != "$(wc -l <"${log%.part.*}.cases.${log##*.}")" ]; then      # a crash prints no counts
+      failed=$((failed + 1)); failures="$failures; $log ends before its last test"; f=1
     fi
-    [ -n "$p" ] && [ -z "$f" ] || failing_logs="$failing_logs $log"
+    [ "$f" = 0 ] || failing_logs="$failing_logs $log"
   done
   echo "suites done after $(after)"
-  suites=""
+  parts=""
 }
 
 mkdir -p build
 build build/release
-test/python.sh "$@" >build/python.log 2>&1 &     # one thread as well, most of the time
-python=$!
-python_package() {
-  result=0
-  wait $python || result=$?
-  cat build/python.log
-  return $result
+# Beside the suites, one after the other: what waits for networks and configures for most of its time.
+beside() {  # beside NAME COMMAND...
+  name=$1; shift
+  code=0
+  "$@" >build/"$name".log 2>&1 || code=$?
+  echo "beside the rest, ended after $(after)" >>build/"$name".log
+  echo $code >build/"$name".code
+}
+rm -f build/*.code
+{
+  beside python test/python.sh "$@"
+  # OpenCV itself is not compiled here: that takes the whole script, without --short.
+  beside opencv4 test/opencv_in_tree.sh 4.14.0.94 --short
+  beside opencv5 test/opencv_in_tree.sh 5.0.0.93 --short
+  beside without_ceres test/without_ceres.sh --short
+  beside aarch64 test/aarch64.sh --short      # everything: without --short
+} &
+lane=$!
+result_of() {   # result_of NAME: what the command of that name printed, and how it ended
+  while [ ! -e build/"$1".code ] && kill -0 $lane 2>/dev/null; do sleep 1; done
+  cat build/"$1".log
+  return "$(cat build/"$1".code)"
 }
 suite tests build/release/bin/refract_tests
 suite tools_tests build/release/bin/refract_tools_tests
@@ -82,21 +108,12 @@ module_only='~[slow]~[.]~[tools]~[calib_tool]~[calib_rig]'
 OPENCV_CPU_DISABLE=AVX512-SKX suite tests_avx2 build/release/bin/refract_tests "$module_only"
 OPENCV_CPU_DISABLE=AVX512-SKX,AVX2 suite tests_baseline build/release/bin/refract_tests "$module_only"
 count_suites
-run "Python package, its tests and samples" python_package
 run "the module's own tests over googletest" build/release/bin/opencv_test_refract --gtest_brief=1
 run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
 run "exported names: those of the committed list" test/exports.sh build/release
 run "Debian packages: clean, unpacked, tools and header work" test/package.sh build/release
 run "documentation: the site builds, its links lead somewhere, its figure computes as the library" test/site.sh build/release
 run "documentation: its commands run and print what it says; the quick ones" test/doc_blocks.py --short build/release/bin
-run "the same hundred values from every build" test/agreement/run.sh build/release
-# OpenCV itself is not compiled here: that takes the whole script, without --short.
-for version in 4.14.0.94 5.0.0.93; do
-  run "in OpenCV $version's tree: configures, compiles the module, generates bindings" \
-    test/opencv_in_tree.sh $version --short
-done
-run "without Ceres and Eigen: the library and its own tests" test/without_ceres.sh --short
-run "the kernels compiled for 64-bit ARM, run in an emulator" test/aarch64.sh --short     # everything: without --short
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do
   run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa
@@ -104,12 +121,17 @@ done
 for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"
 done
+run "Python package, its tests and samples" result_of python
+run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
+run "in OpenCV 5.0's tree: the same" result_of opencv5
+run "without Ceres and Eigen: the library and its own tests" result_of without_ceres
+run "the kernels compiled for 64-bit ARM, run in an emulator" result_of aarch64
+run "the same hundred values from every build" test/agreement/run.sh build/release
 if [ $fast = no ]; then
   # One build for the suites and the fuzzers, which want clang.
-  tools/install_dependencies.sh fuzz
   build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
-    -DREFRACT_BUILD_BENCH=OFF
+    -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
   # One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
   ASAN_OPTIONS=detect_leaks=0; OPENCV_FOR_THREADS_NUM=1; export ASAN_OPTIONS OPENCV_FOR_THREADS_NUM

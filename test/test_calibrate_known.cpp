@@ -122,7 +122,7 @@ TEST_CASE("A thickness known with a tolerance is estimated within it", "[known]"
     CHECK(std::abs(call.cameras[0]->window().thickness[0] - 20) < 4*deviation);
 }
 
-TEST_CASE("Cameras behind one wall, the second nearer to it than the first was thought to be: no crash, an answer", "[known]")
+TEST_CASE("Cameras behind one wall, the second nearer to it than the first was thought to be: no crash, an answer", "[known][slow]")
 {
     // The second camera stands 200 mm in front of the first; a start of 25 mm from the first puts it beyond the wall.
     for (int flags : { 0, (int)GLASS_ROBUST })

@@ -191,7 +191,7 @@ TEST_CASE("A second minimum of a window seen through only is told, with how much
     CHECK(ambiguous > 0);
 }
 
-TEST_CASE("A second minimum of a shared window is told in the frame of its first camera", "[rig_glass]")
+TEST_CASE("A second minimum of a shared window is told in the frame of its first camera", "[rig_glass][slow]")
 {
     int found = 0;
     for (int run = 0; run < 20; run++)

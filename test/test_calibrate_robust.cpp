@@ -68,7 +68,7 @@ TEST_CASE("30 % of the corners displaced: the wrong ones are left out, the norma
     }
 }
 
-TEST_CASE("Clean data lose next to nothing, with pairs and without", "[robust]")
+TEST_CASE("Clean data lose next to nothing, with pairs and without", "[robust][slow]")
 {
     for (bool paired : { true, false })
     {
@@ -168,7 +168,7 @@ TEST_CASE("A wrong constant moves all views alike and is not taken for moved boa
     CHECK(countStatus(call.imageStatus, GLASS_IMAGE_USED) == 32);
 }
 
-TEST_CASE("A start far off does not make boards look moved", "[robust]")
+TEST_CASE("A start far off does not make boards look moved", "[robust][slow]")
 {
     for (unsigned salt : { 0u, 1u, 2u, 3u })
     {

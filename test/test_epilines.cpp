@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // computeRefractiveEpilines: the curve of possible partners in the other raw image.
+#include "quick_require.hpp"
 #include "scenes.hpp"
 
 #include <opencv2/calib3d.hpp>
@@ -102,11 +103,10 @@ TEST_CASE("The true partner lies on the curve, every window and lens, both direc
                         // The paper's lens has no end: a curve that runs out to 1e12 px is mostly rounding.
                         if (seen[i] != REFRACT_OK || endsFarOut(lines[i]))
                             continue;
-                        CAPTURE(i, z, pixels[i], truth[i]);
-                        REQUIRE(status[i] == REFRACT_OK);
+                        QUICK_REQUIRE(status[i] == REFRACT_OK, i, z, pixels[i], truth[i]);
                         const double distance = distanceTo(lines[i], truth[i]);
-                        REQUIRE(distance <= 0.0105);
-                        REQUIRE(distanceTo(fine[i], truth[i]) <= 1.05e-4);
+                        QUICK_REQUIRE(distance <= 0.0105, i, z, pixels[i], truth[i]);
+                        QUICK_REQUIRE(distanceTo(fine[i], truth[i]) <= 1.05e-4, i, z, pixels[i], truth[i]);
                         worst = std::max(worst, distance);
                         worstFine = std::max(worstFine, distanceTo(fine[i], truth[i]));
                         partners++;

@@ -79,7 +79,7 @@ TEST_CASE("Perfect matches have no distance, whatever lens and window", "[epipol
     printNumber("refractiveEpipolarDistance of perfect matches", largest, "px");
 }
 
-TEST_CASE("The distance is the one from a dense polyline, near and far off", "[epipolar]")
+TEST_CASE("The distance is the one from a dense polyline, near and far off", "[epipolar][slow]")
 {
     for (double off : { 1., 50., 300. })
     {

@@ -3,6 +3,7 @@
 
 // The physics of parallel layers, through the inner header.
 #include "window/layers.hpp"
+#include "quick_require.hpp"
 #include "scenes.hpp"
 
 #include <memory>
@@ -154,19 +155,18 @@ TEST_CASE("solveIn returns the direction that traceOut came from", "[layers]")
         const Vec3d w = directionAt(window.normal, std::asin(largest*std::sin(random.uniform(0, 89.9)*CV_PI/180)), random);
         const Layers layers(window);
         const Ray ray = traceOut(layers, w);
-        REQUIRE(ray.status == REFRACT_OK);
+        QUICK_REQUIRE(ray.status == REFRACT_OK, i, w);
         double total = window.distance;
         for (double t : window.thickness)
             total += t;
         const double c = window.normal.dot(ray.direction);
         const double s = (total - ray.tau)/c + random.logUniform(1e-2, 1e5)/c;
         const Vec3d X = ray.tau*window.normal + s*ray.direction;
-        CAPTURE(i, w, X);
-        REQUIRE(layers.isBeyond(X[0], X[1], X[2]));
+        QUICK_REQUIRE(layers.isBeyond(X[0], X[1], X[2]), i, w);
         Vec3d back;
-        REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK);
+        QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w);
         // At 89.9 degrees in the rarer medium a rounding of X is 1/cos times larger in the other.
-        REQUIRE(norm(unit(back) - w) < 2e-15/std::cos(89.9*CV_PI/180));
+        QUICK_REQUIRE(norm(unit(back) - w) < 2e-15/std::cos(89.9*CV_PI/180), i, w);
     }
 }
 

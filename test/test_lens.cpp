@@ -3,6 +3,7 @@
 
 // One battery over all lens models, through the inner header.
 #include "lens/lens.hpp"
+#include "quick_require.hpp"
 #include "scenes.hpp"
 #include <iostream>
 
@@ -44,11 +45,10 @@ TEST_CASE("Direction to pixel and back", "[lens]")
         const Vec3d d = randomDirection(kind, random);
         Vec2d pixel, again;
         Vec3d back;
-        CAPTURE(d);
-        REQUIRE(project(*lens, random.logUniform(1e-6, 1e6)*d, pixel) == REFRACT_OK);
-        REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK);
-        REQUIRE(project(*lens, back, again) == REFRACT_OK);
-        REQUIRE(std::abs(norm(back) - 1) < 1e-15);
+        QUICK_REQUIRE(project(*lens, random.logUniform(1e-6, 1e6)*d, pixel) == REFRACT_OK, d);
+        QUICK_REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK, d);
+        QUICK_REQUIRE(project(*lens, back, again) == REFRACT_OK, d);
+        QUICK_REQUIRE(std::abs(norm(back) - 1) < 1e-15, d);
         worstPixel = std::max(worstPixel, norm(again - pixel));
         worstDirection = std::max(worstDirection, norm(back - d));
     }
@@ -86,12 +86,11 @@ TEST_CASE("Any pixel gives its direction or says that it has none", "[lens]")
         const Vec2d pixel(kind.K(0, 2) + random.uniform(-size, size), kind.K(1, 2) + random.uniform(-size, size));
         Vec3d d;
         Vec2d again;
-        CAPTURE(pixel);
         const uchar status = unproject(*lens, pixel, d);
-        REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL));
+        QUICK_REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL), pixel);
         if (status != REFRACT_OK)
             continue;
-        REQUIRE(project(*lens, d, again) == REFRACT_OK);
+        QUICK_REQUIRE(project(*lens, d, again) == REFRACT_OK, pixel);
         // Far out the pixel's own rounding is what remains.
         worst = std::max(worst, norm(again - pixel)/std::max(1., norm(pixel)/1e3));
     }
@@ -118,7 +117,7 @@ TEST_CASE("A direction with an image is the only one with that image", "[lens]")
             const Vec3d d = randomNormal(random, 89);
             Vec2d pixel;
             const uchar status = project(*lens, d, pixel);
-            REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL));
+            QUICK_REQUIRE((status == REFRACT_OK || status == REFRACT_OUTSIDE_LENS_MODEL), d, pixel);
             if (status != REFRACT_OK)
             {
                 outside++;
@@ -126,10 +125,9 @@ TEST_CASE("A direction with an image is the only one with that image", "[lens]")
             }
             inside++;
             Vec3d back;
-            CAPTURE(d, pixel);
-            REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK);
+            QUICK_REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK, d, pixel);
             // At the edge of the range the model's slope goes to zero, and with it what a pixel tells of the direction.
-            REQUIRE(norm(back - d) < 1e-5);
+            QUICK_REQUIRE(norm(back - d) < 1e-5, d, pixel);
         }
         CHECK(inside > 1000);
         if (kind.halfField == 0)

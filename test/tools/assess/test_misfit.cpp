@@ -113,7 +113,7 @@ TEST_CASE("Water taken for air is found from glass-only views, and refused", "[m
                                                   && Catch::Contains("--outer-index=1.333"));
 }
 
-TEST_CASE("Images exchanged, moved or of other moments are found and named", "[misfit]")
+TEST_CASE("Images exchanged, moved or of other moments are found and named", "[misfit][slow]")
 {
     scenes::Random random(920);
     CAPTURE(scenes::seed());
