@@ -29,7 +29,7 @@ after "measured: $(sed -n 2p out/points.csv)"
 seconds=$(awk "BEGIN { print int($(date +%s.%N) - $begun) }")
 
 refract_board --pattern=chessboard --size=9x6 --square=25 --out=out/board.pdf >/dev/null
-refract_undistort out/calib.yml "$data/glass1/pair1.jpg" --depth=600 --out=out/undistorted.png >/dev/null
+refract_undistort out/calib.yml "$data/glass1/pair1.jpg" --depth=600 --out-dir=out >/dev/null
 pip install -q --disable-pip-version-check --no-index --find-links packages opencv-python-headless
 python3 samples/python/measure_stereo_behind_glass.py
 after "the drop-in sample beside cv2"
