@@ -96,7 +96,10 @@ for version in 4.14.0.94 5.0.0.93; do
     test/opencv_in_tree.sh $version --short
 done
 run "without Ceres and Eigen: the library and its own tests" test/without_ceres.sh --short
-run "the kernels compiled for 64-bit ARM, run in an emulator" test/aarch64.sh --short     # everything: without --short
+for arch in aarch64 powerpc64le riscv64; do
+  run "the kernels compiled for $arch, run in an emulator" test/emulated.sh $arch --short     # everything: without --short
+done
+run "the kernels on OpenCV's universal intrinsics" test/universal.sh --short build/release
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do
   run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa

@@ -34,12 +34,12 @@ has() {         # has LEVEL: whether this processor runs it
 }
 WINEPREFIX=$work/wine WINEDEBUG=-all; export WINEPREFIX WINEDEBUG
 for level in Baseline Avx2 Avx512; do
-  compile test/aarch64 "$work/kernels/windows-$level" -DLEVEL=$level -DCMAKE_TOOLCHAIN_FILE="$toolchain" \
+  compile test/kernels "$work/kernels/windows-$level" -DLEVEL=$level -DCMAKE_TOOLCHAIN_FILE="$toolchain" \
     -DCMAKE_EXE_LINKER_FLAGS=-static
   if ! command -v wine >/dev/null; then
     echo "wine is not installed: the kernels of $level are compiled for Windows, but not run"
   elif has $level; then
-    compile test/aarch64 "$work/kernels/here-$level" -DLEVEL=$level
+    compile test/kernels "$work/kernels/here-$level" -DLEVEL=$level
     "$work/kernels/here-$level/kernels" >"$work/kernels/here-$level.txt"
     wine "$work/kernels/windows-$level/kernels.exe" 2>"$work/kernels/wine.log" | tr -d '\r' >"$work/kernels/windows-$level.txt"
     /usr/bin/python3 -B test/agreement/compare.py "$work/kernels/here-$level.txt" "$work/kernels/windows-$level.txt" |
