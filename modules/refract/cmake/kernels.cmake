@@ -4,7 +4,8 @@
 
 # How the kernels are compiled (src/dispatch), for every build that compiles the module's sources.
 #
-# Each level gets the instructions that its name says; a compiler that does not know the flags compiles an empty level.
+# Each level gets the instructions that its name says; a compiler that does not know the flags compiles an empty level, and so does
+# OpenCV's own build where neither CPU_DISPATCH nor CPU_BASELINE has it.
 # Products and sums may be contracted into one rounding: the formulas do not rely on the rounding of a product.
 #
 # REFRACT_UNIVERSAL_INTRINSICS: on OpenCV's universal intrinsics everywhere, not only where the compiler has no vector types of its
@@ -16,6 +17,15 @@ function(refract_kernel_options source_dir)
     refract_msvc_levels()
   else()
     refract_gnu_levels()
+  endif()
+  if(DEFINED CPU_DISPATCH_FINAL)
+    set(wanted ${CPU_BASELINE_FINAL} ${CPU_DISPATCH_FINAL})
+    if(NOT "AVX2" IN_LIST wanted)
+      unset(avx2)
+    endif()
+    if(NOT "AVX512_SKX" IN_LIST wanted)
+      unset(avx512)
+    endif()
   endif()
   if(REFRACT_UNIVERSAL_INTRINSICS)
     list(APPEND common -DREFRACT_UNIVERSAL_INTRINSICS)

@@ -16,6 +16,8 @@ compiler has, else what OpenCV has for it, else a plain double. Each of the thre
     loadTail storeTail                  the last n < LANES points of an array, the very last repeated, so that every lane holds
                                         a point; and back
 
+and AVX-512 its inverses of 14 bits.
+
 Everything has internal linkage: the same names are compiled several times for different instruction sets. */
 #if defined(REFRACT_UNIVERSAL_INTRINSICS) || (defined(_MSC_VER) && !defined(__clang__) && (defined(_M_X64) || defined(_M_ARM64)))
 #include "simd/lanes_universal.hpp"
@@ -52,7 +54,19 @@ inline double larger(double a, double b) { return a > b ? a : b; }
 inline double square(double a) { return a*a; }
 
 #ifdef REFRACT_HAS_LANES
-#ifndef REFRACT_HAS_INVERSES
+#ifdef REFRACT_HAS_INVERSES_14      // 14 bits by an instruction
+inline Lanes inverseSqrt(Lanes a)
+{
+    // Times the series of 1/sqrt(1 - e) up to e^3: a third of the time of root and quotient.
+    const Lanes y = inverseSqrt14(a), e = 1 - a*y*y;
+    return y + y*(e*(0.5 + e*(0.375 + e*0.3125)));
+}
+inline Lanes roughInverse(Lanes a)
+{
+    const Lanes y = inverse14(a);
+    return y + y*(1 - a*y);
+}
+#else
 inline Lanes inverseSqrt(Lanes a) { return 1/sqrt(a); }
 inline Lanes roughInverse(Lanes a) { return 1/a; }
 #endif

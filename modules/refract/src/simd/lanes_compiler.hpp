@@ -60,20 +60,9 @@ inline Mask isNot(Mask m) { return m == none(); }
 inline Lanes select(Mask m, Lanes a, Lanes b) { return m ? a : b; }
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-#define REFRACT_HAS_INVERSES
-
-inline Lanes inverseSqrt(Lanes a)
-{
-    // 14 bits from the instruction, times the series of 1/sqrt(1 - e) up to e^3: a third of the time of root and quotient.
-    const Lanes y = (Lanes)_mm512_maskz_rsqrt14_pd(255, (__m512d)a), e = 1 - a*y*y;
-    return y + y*(e*(0.5 + e*(0.375 + e*0.3125)));
-}
-
-inline Lanes roughInverse(Lanes a)
-{
-    const Lanes y = (Lanes)_mm512_maskz_rcp14_pd(255, (__m512d)a);
-    return y + y*(1 - a*y);
-}
+#define REFRACT_HAS_INVERSES_14
+inline Lanes inverseSqrt14(Lanes a) { return (Lanes)_mm512_maskz_rsqrt14_pd(255, (__m512d)a); }
+inline Lanes inverse14(Lanes a) { return (Lanes)_mm512_maskz_rcp14_pd(255, (__m512d)a); }
 #endif
 
 inline Lanes loadWhole(const double* p)
