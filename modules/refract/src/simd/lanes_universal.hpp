@@ -33,9 +33,10 @@ namespace of that level, so that no inline function of another level is linked i
 #define CV_CPU_DISPATCH_MODE AVX2
 #endif
 #endif
+#include "opencv2/core/utility.hpp"     // intrin.hpp by itself takes it for granted where there are no registers
 #include "opencv2/core/hal/intrin.hpp"
 
-#if CV_SIMD_64F
+#if CV_SIMD_64F && !CV_SIMD128_CPP
 #define REFRACT_HAS_LANES
 
 #include <cstring>
@@ -123,6 +124,6 @@ inline void storeTail(const Lanes& a, double* p, int n)
 
 } // namespace
 
-#endif // CV_SIMD_64F
+#endif // registers of doubles
 
 #endif // OPENCV_REFRACT_LANES_UNIVERSAL_HPP
