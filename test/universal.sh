@@ -22,7 +22,7 @@ fi
 build=${1:-build/release}
 
 cmake --build "$build" --target refract_tests_universal
-for object in "$build"/test/CMakeFiles/refract_universal_kernels.dir/*/modules/refract/src/dispatch/kernels_*.o; do
+for object in "$build"/test/CMakeFiles/refract_universal.dir/*/modules/refract/src/dispatch/kernels_*.o; do
   others=$(nm -C --defined-only --extern-only "$object" | grep -v ' T cv::refract::kernels[A-Za-z0-9]*()$') || true
   [ -z "$others" ] || { echo "FAILED: functions that may serve other levels, in $object: $others" >&2; exit 1; }
 done
