@@ -57,7 +57,7 @@ struct Lanes
     cv::v_float64 v;
 };
 
-#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9       // operators became functions
+#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 11      // where operators became functions
 #define REFRACT_OPERATOR(Type, Argument, op, function) \
     inline Type operator op(const Argument& a, const Argument& b) { return { a.v op b.v }; }
 inline Mask isNot(const Mask& m) { return { ~m.v }; }
