@@ -56,7 +56,7 @@ configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds
     -DOPENCV_EXTRA_MODULES_PATH="$PWD/modules" -DBUILD_LIST=refract,ts,python3,python_tests \
     -DOPENCV_CMAKE_HOOKS_DIR="$PWD/test/opencv_hooks" \
     -DBUILD_TESTS=ON -DBUILD_PERF_TESTS=ON -DBUILD_EXAMPLES=ON -DBUILD_DOCS=ON -DBUILD_opencv_apps=OFF \
-    -DBUILD_JAVA=OFF -DCPU_DISPATCH= -DENABLE_PRECOMPILED_HEADERS=OFF -DPYTHON3_EXECUTABLE="$python" \
+    -DBUILD_JAVA=OFF -DCPU_DISPATCH=AVX2,AVX512_SKX -DENABLE_PRECOMPILED_HEADERS=OFF -DPYTHON3_EXECUTABLE="$python" \
     "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
 }
 
@@ -90,6 +90,11 @@ for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
 done
 
 configure "$build"
+# Its universal intrinsics, of every level, as compilers without vector types get them.
+commands "$build" | grep dispatch/kernels_ |
+  sed 's/ -o / -DREFRACT_UNIVERSAL_INTRINSICS -Wno-uninitialized -Wno-maybe-uninitialized -fsyntax-only&/' >"$work/commands_universal.txt"
+compile "$build" "$work/commands_universal.txt"
+echo "passed: kernels on OpenCV $version's universal intrinsics"
 if [ $short = yes ]; then
   commands "$build" >"$work/commands.txt"
   compile "$build" "$work/commands.txt"

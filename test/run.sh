@@ -12,7 +12,7 @@ fast=no
 [ "${1:-}" = --fast ] && fast=yes
 
 # All at once, as what runs side by side must not wait for the other's apt.
-wanted="test in-tree aarch64 site"
+wanted="test in-tree aarch64 powerpc64le riscv64 site"
 [ $fast = yes ] || wanted="$wanted fuzz"
 for kind in $wanted; do
   tools/install_dependencies.sh $kind
@@ -92,7 +92,9 @@ rm -f build/*.code
   beside opencv4 test/opencv_in_tree.sh 4.14.0.94 --short
   beside opencv5 test/opencv_in_tree.sh 5.0.0.93 --short
   beside without_ceres test/without_ceres.sh --short
-  beside aarch64 test/aarch64.sh --short      # everything: without --short
+  for arch in aarch64 powerpc64le riscv64; do
+    beside $arch test/emulated.sh $arch --short     # everything: without --short
+  done
 } &
 lane=$!
 result_of() {   # result_of NAME: what the command of that name printed, and how it ended
@@ -114,6 +116,7 @@ run "exported names: those of the committed list" test/exports.sh build/release
 run "Debian packages: clean, unpacked, tools and header work" test/package.sh build/release
 run "documentation: the site builds, its links lead somewhere, its figure computes as the library" test/site.sh build/release
 run "documentation: its commands run and print what it says; the quick ones" test/doc_blocks.py --short build/release/bin
+run "the kernels on OpenCV's universal intrinsics" test/universal.sh --short build/release
 # Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
 for isa in baseline avx2 avx512; do
   run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa
@@ -125,7 +128,9 @@ run "Python package, its tests and samples" result_of python
 run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
 run "in OpenCV 5.0's tree: the same" result_of opencv5
 run "without Ceres and Eigen: the library and its own tests" result_of without_ceres
-run "the kernels compiled for 64-bit ARM, run in an emulator" result_of aarch64
+for arch in aarch64 powerpc64le riscv64; do
+  run "the kernels compiled for $arch, run in an emulator" result_of $arch
+done
 run "the same hundred values from every build" test/agreement/run.sh build/release
 if [ $fast = no ]; then
   # One build for the suites and the fuzzers, which want clang.

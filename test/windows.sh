@@ -34,17 +34,20 @@ has() {         # has LEVEL: whether this processor runs it
 }
 WINEPREFIX=$work/wine WINEDEBUG=-all; export WINEPREFIX WINEDEBUG
 for level in Baseline Avx2 Avx512; do
-  compile test/aarch64 "$work/kernels/windows-$level" -DLEVEL=$level -DCMAKE_TOOLCHAIN_FILE="$toolchain" \
-    -DCMAKE_EXE_LINKER_FLAGS=-static
-  if ! command -v wine >/dev/null; then
-    echo "wine is not installed: the kernels of $level are compiled for Windows, but not run"
-  elif has $level; then
-    compile test/aarch64 "$work/kernels/here-$level" -DLEVEL=$level
-    "$work/kernels/here-$level/kernels" >"$work/kernels/here-$level.txt"
-    wine "$work/kernels/windows-$level/kernels.exe" 2>"$work/kernels/wine.log" | tr -d '\r' >"$work/kernels/windows-$level.txt"
-    /usr/bin/python3 -B test/agreement/compare.py "$work/kernels/here-$level.txt" "$work/kernels/windows-$level.txt" |
-      tail -n 2
-  fi
+  # On the compiler's vectors, and on OpenCV's universal intrinsics, as MSVC gets them.
+  for universal in OFF ON; do
+    build=$work/kernels/windows-$level-universal-$universal
+    compile test/kernels "$build" -DLEVEL=$level -DREFRACT_UNIVERSAL_INTRINSICS=$universal -DCMAKE_TOOLCHAIN_FILE="$toolchain" \
+      -DCMAKE_EXE_LINKER_FLAGS=-static
+    if ! command -v wine >/dev/null; then
+      echo "wine is not installed: the kernels of $level are compiled for Windows, but not run"
+    elif has $level; then
+      compile test/kernels "$work/kernels/here-$level" -DLEVEL=$level
+      "$work/kernels/here-$level/kernels" >"$work/kernels/here-$level.txt"
+      wine "$build/kernels.exe" 2>"$work/kernels/wine.log" | tr -d '\r' >"$build.txt"
+      /usr/bin/python3 -B test/agreement/compare.py "$work/kernels/here-$level.txt" "$build.txt" | tail -n 2
+    fi
+  done
 done
 echo "passed: the kernels for Windows"
 [ $short = no ] || exit 0

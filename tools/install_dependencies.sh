@@ -3,9 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
-# Usage: tools/install_dependencies.sh [build|test|in-tree|wheel|aarch64|windows|fuzz|bare|site|libraries]
-#   test adds what only the tests use, in-tree what OpenCV's own build needs, wheel what the self-contained
-#   Python package does, aarch64 what compiles for that processor and
+# Usage: tools/install_dependencies.sh
+#            [build|test|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]
+#   test adds what only the tests use, in-tree what OpenCV's own build needs, wheel what the self-contained Python package
+#   does, aarch64 (and so on) what compiles for that processor and
 #   runs it, windows what compiles for that system, fuzz the compiler that the fuzzers want, site what makes and tests the
 #   documentation's site; bare: what makes a bare Debian to try things in; libraries installs nothing, but names what a root
 #   of another architecture must hold
@@ -24,13 +25,14 @@ case "${1:-build}" in
   test) wanted="$build $test_libraries $test_programs" ;;
   in-tree) wanted="$build $in_tree" ;;
   wheel) wanted="$build python3-venv python3-dev dpkg-dev libutfcpp-dev libstb-dev" ;;
-  aarch64) wanted="$build g++-aarch64-linux-gnu qemu-user" ;;
+  aarch64 | powerpc64le) wanted="$build g++-$1-linux-gnu qemu-user" ;;
+  riscv64) wanted="$build g++-$1-linux-gnu clang-14 qemu-user" ;;     # g++ for its libraries
   windows) wanted="$build libgtest-dev g++-mingw-w64-x86-64-posix" ;;
   fuzz) wanted="$build clang-14 libclang-rt-14-dev" ;;
   bare) wanted="debootstrap git ca-certificates util-linux" ;;
   site) wanted="doxygen libjs-mathjax python3 chromium" ;;
   libraries) echo "$libraries $test_libraries"; exit 0 ;;
-  *) echo "usage: $0 [build|test|in-tree|wheel|aarch64|windows|fuzz|bare|site|libraries]" >&2; exit 1 ;;
+  *) echo "usage: $0 [build|test|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]" >&2; exit 1 ;;
 esac
 
 missing=""

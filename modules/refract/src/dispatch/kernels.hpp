@@ -20,7 +20,7 @@ A kernel computes what is regular. It returns true if all lanes have an answer; 
 in the kernel's first output, and the caller, who has all the time in the world, finds out why. NaN lanes pass through.
 
 No OpenCV in here: an inline function of another header, compiled for AVX-512 and kept by the linker, would run on
-machines that do not have it. */
+machines that do not have it. Its universal intrinsics, whose namespace is the level's, are the exception (lanes_universal.hpp). */
 
 namespace cv { namespace refract {
 

@@ -17,9 +17,9 @@ namespace cv { namespace refract { namespace {
 
 //! All kernels as compiled here. A constant: looking at it takes no instruction that a machine may not have.
 constexpr Kernels table = {
-#if defined(__GNUC__) && defined(__AVX512DQ__)
+#if defined(__AVX512DQ__)
     "AVX-512",
-#elif defined(__GNUC__) && defined(__AVX2__)
+#elif defined(__AVX2__)
     "AVX2",
 #else
     "baseline",

@@ -23,7 +23,7 @@ int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, P
     double middles[Projection::CAPACITY/2];
     for (int j = 0; j < segments; j++)
         middles[j] = 0.5*(nodes[j] + nodes[j + 1]);
-    middles[segments] = 0.5*(nodes[segments] + middles[segments - 1]);
+    middles[segments] = 0.5*(nodes[segments] + 0.5*(nodes[segments - 1] + nodes[segments]));
     const int begin = p.add(curve, segments + 1, nodes);
     p.add(curve, segments + 1, middles);
     return begin;

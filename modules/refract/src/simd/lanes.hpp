@@ -7,133 +7,86 @@
 
 #include <cmath>
 #include <cstring>
-#if defined(__SSE2__)
-#include <immintrin.h>
-#elif defined(__GNUC__) && defined(__aarch64__)
-#include <arm_neon.h>
-#endif
 
-/* Lanes: one vector register full of doubles. Arithmetic and comparisons are the compiler's own vector types, as wide as
-the instruction set that this file is compiled for; only what they lack (square roots, the test of all lanes) is named
-here. Where neither the compiler nor the processor is one of these, a lane is a plain double.
+/* Lanes: one vector register full of doubles, as wide as the instruction set that this file is compiled for. They are what the
+compiler has, else what OpenCV has for it, else a plain double. Each of the three gives a Mask of lanes, the operators, and
+
+    all none any isNot select sqrt      of lanes
+    loadWhole storeWhole                a register
+    loadTail storeTail                  the last n < LANES points of an array, the very last repeated, so that every lane holds
+                                        a point; and back
+
+and AVX-512 its inverses of 14 bits.
 
 Everything has internal linkage: the same names are compiled several times for different instruction sets. */
+#if defined(REFRACT_UNIVERSAL_INTRINSICS) || (defined(_MSC_VER) && !defined(__clang__) && (defined(_M_X64) || defined(_M_ARM64)))
+#include "simd/lanes_universal.hpp"
+#else
+#include "simd/lanes_compiler.hpp"
+#endif
 
 namespace {
 
-#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
-typedef double Lanes __attribute__((vector_size(64)));
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm512_maskz_sqrt_pd(255, (__m512d)a); }
-#elif defined(__GNUC__) && defined(__AVX2__)
-typedef double Lanes __attribute__((vector_size(32)));
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm256_sqrt_pd((__m256d)a); }
-#elif defined(__GNUC__) && defined(__SSE2__)
-typedef double Lanes __attribute__((vector_size(16)));
-inline Lanes sqrt(Lanes a) { return (Lanes)_mm_sqrt_pd((__m128d)a); }
-#elif defined(__GNUC__) && defined(__aarch64__)
-typedef double Lanes __attribute__((vector_size(16)));
-inline Lanes sqrt(Lanes a) { return (Lanes)vsqrtq_f64((float64x2_t)a); }
-#else
-#define REFRACT_LANE_IS_DOUBLE
+#ifndef REFRACT_HAS_LANES
 typedef double Lanes;
+typedef bool Mask;
+inline double all(double v) { return v; }
+inline bool none() { return false; }
+inline bool isNot(bool m) { return !m; }
 using std::sqrt;
+inline double loadWhole(const double* p) { return *p; }
+inline void storeWhole(double a, double* p) { *p = a; }
+inline double loadTail(const double* p, int) { return *p; }
+inline void storeTail(double a, double* p, int) { *p = a; }
 #endif
 
 enum { LANES = sizeof(Lanes)/sizeof(double) };
-typedef decltype(Lanes{} < Lanes{}) Mask;       //!< all bits of a lane, or none
 
-#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
-inline bool any(Mask m) { return _mm512_movepi64_mask((__m512i)m) != 0; }
-#elif defined(__GNUC__) && defined(__AVX2__)
-inline bool any(Mask m) { return _mm256_movemask_pd((__m256d)m) != 0; }
-#elif defined(__GNUC__) && defined(__SSE2__)
-inline bool any(Mask m) { return _mm_movemask_pd((__m128d)m) != 0; }
-#elif defined(__GNUC__) && defined(__aarch64__)
-inline bool any(Mask m) { return vmaxvq_u32((uint32x4_t)m) != 0; }
-#else
-inline bool any(Mask m) { return m; }
-#endif
-
-inline Lanes all(double v) { return Lanes{} + v; }
-inline Mask none() { return all(0) != 0; }
-inline Mask isNot(Mask m) { return m == none(); }
-inline Lanes select(Mask m, Lanes a, Lanes b) { return m ? a : b; }
-
+// Of one number as of many: a formula is written once, for one point and for many.
+inline bool any(bool m) { return m; }
+inline double select(bool m, double a, double b) { return m ? a : b; }
 //! 1/sqrt(a) to about two units in the last place, for normal a > 0; NaN for 0 and infinity is possible.
-#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
+inline double inverseSqrt(double a) { return 1/std::sqrt(a); }
+//! 1/a to eight digits at least: enough for the step of an iteration.
+inline double roughInverse(double a) { return 1/a; }
+inline double absolute(double a) { return std::abs(a); }
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double square(double a) { return a*a; }
+
+#ifdef REFRACT_HAS_LANES
+#ifdef REFRACT_HAS_INVERSES_14      // 14 bits by an instruction
 inline Lanes inverseSqrt(Lanes a)
 {
-    // 14 bits from the instruction, times the series of 1/sqrt(1 - e) up to e^3: a third of the time of root and quotient.
-    const Lanes y = (Lanes)_mm512_maskz_rsqrt14_pd(255, (__m512d)a), e = 1 - a*y*y;
+    // Times the series of 1/sqrt(1 - e) up to e^3: a third of the time of root and quotient.
+    const Lanes y = inverseSqrt14(a), e = 1 - a*y*y;
     return y + y*(e*(0.5 + e*(0.375 + e*0.3125)));
 }
-#else
-inline Lanes inverseSqrt(Lanes a) { return 1/sqrt(a); }
-#endif
-
-//! 1/a to eight digits at least: enough for the step of an iteration.
-#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
 inline Lanes roughInverse(Lanes a)
 {
-    const Lanes y = (Lanes)_mm512_maskz_rcp14_pd(255, (__m512d)a);
+    const Lanes y = inverse14(a);
     return y + y*(1 - a*y);
 }
 #else
+inline Lanes inverseSqrt(Lanes a) { return 1/sqrt(a); }
 inline Lanes roughInverse(Lanes a) { return 1/a; }
 #endif
-
 inline Lanes absolute(Lanes a) { return select(a < 0, -a, a); }
 inline Lanes larger(Lanes a, Lanes b) { return select(a > b, a, b); }
 inline Lanes square(Lanes a) { return a*a; }
-
-#ifndef REFRACT_LANE_IS_DOUBLE
-// The same of one number: a formula is written once, for one point and for many.
-inline bool any(bool m) { return m; }
-inline double select(bool m, double a, double b) { return m ? a : b; }
-inline double inverseSqrt(double a) { return 1/std::sqrt(a); }
-inline double roughInverse(double a) { return 1/a; }
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline double square(double a) { return a*a; }
-#endif
-
-//! The last n < LANES points of an array, the very last repeated, so that every lane holds a point; and back.
-#if defined(__GNUC__) && defined(__AVX512F__) && defined(__AVX512DQ__)
-inline __mmask8 firstLanes(int n) { return (__mmask8)((1 << n) - 1); }
-inline Lanes loadTail(const double* p, int n)
-{
-    return (Lanes)_mm512_mask_loadu_pd(_mm512_set1_pd(p[n - 1]), firstLanes(n), p);
-}
-inline void storeTail(Lanes a, double* p, int n) { _mm512_mask_storeu_pd(p, firstLanes(n), (__m512d)a); }
-#elif defined(__GNUC__) && defined(__AVX2__)
-inline __m256i firstLanes(int n) { return _mm256_cmpgt_epi64(_mm256_set1_epi64x(n), _mm256_setr_epi64x(0, 1, 2, 3)); }
-inline Lanes loadTail(const double* p, int n)
-{
-    const __m256i lanes = firstLanes(n);
-    return (Lanes)_mm256_blendv_pd(_mm256_set1_pd(p[n - 1]), _mm256_maskload_pd(p, lanes), (__m256d)lanes);
-}
-inline void storeTail(Lanes a, double* p, int n) { _mm256_maskstore_pd(p, firstLanes(n), (__m256d)a); }
-#else   // one or two lanes: one point
-inline Lanes loadTail(const double* p, int) { return all(*p); }
-inline void storeTail(Lanes a, double* p, int) { std::memcpy(p, &a, sizeof *p); }
 #endif
 
 //! Where in an array a register's lanes are: all of them, or the last few points that there are.
 struct Whole { int begin; };
 struct Part { int begin, n; };
 
-inline Lanes load(const double* p, Whole at)
-{
-    Lanes a;
-    std::memcpy(&a, p + at.begin, sizeof a);
-    return a;
-}
+inline Lanes load(const double* p, Whole at) { return loadWhole(p + at.begin); }
 inline Lanes load(const double* p, Part at)
 {
     const int left = at.n - at.begin;
     return left >= LANES ? load(p, Whole{ at.begin }) : loadTail(p + at.begin, left);
 }
 
-inline void store(Lanes a, double* p, Whole at) { std::memcpy(p + at.begin, &a, sizeof a); }
+inline void store(Lanes a, double* p, Whole at) { storeWhole(a, p + at.begin); }
 inline void store(Lanes a, double* p, Part at)
 {
     const int left = at.n - at.begin;

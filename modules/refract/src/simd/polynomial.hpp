@@ -5,6 +5,8 @@
 #ifndef OPENCV_REFRACT_POLYNOMIAL_HPP
 #define OPENCV_REFRACT_POLYNOMIAL_HPP
 
+#include "simd/lanes.hpp"
+
 namespace {
 
 //! c[0] + x (c[1] + x (...)), for one point (T = double) and for many (T = Lanes).
@@ -22,7 +24,7 @@ template<int N, typename T>
 inline T guessRatio(const double (&c)[N], T x)
 {
     const T series = 1 + x*polynomial(c, x);
-    return ((series > 0.5) & (series < 2)) ? series : 1 + T();
+    return select((series > 0.5) & (series < 2), series, 1 + T());
 }
 
 } // namespace

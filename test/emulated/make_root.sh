@@ -2,19 +2,20 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-# Unpacks the libraries that refract links, and all they stand on, for Debian's arm64. Nothing of it is run or registered:
-# an apt with a state of its own resolves and fetches, from where this machine's apt does, and checks the signatures.
+# Unpacks the libraries that refract links, and all they stand on, for another architecture of Debian. Nothing of it is run or
+# registered: an apt with a state of its own resolves and fetches, from where this machine's apt does, and checks the signatures.
 #
-# Usage: test/aarch64/make_root.sh DIRECTORY
+# Usage: test/emulated/make_root.sh DIRECTORY DEBIAN_ARCHITECTURE TRIPLE     for example root arm64 aarch64-linux-gnu
 set -eu
 libraries=$("$(dirname "$0")/../../tools/install_dependencies.sh" libraries)
 root=$1
-lib=$root/usr/lib/aarch64-linux-gnu
+architecture=$2
+lib=$root/usr/lib/$3
 state=$root.apt
 
 foreign_apt() {
-  apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User= -o Dir::State="$state" \
-    -o Dir::State::status="$state/status" -o Dir::Cache="$state" "$@"
+  apt-get -qq -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" -o APT::Sandbox::User= \
+    -o Dir::State="$state" -o Dir::State::status="$state/status" -o Dir::Cache="$state" "$@"
 }
 rm -rf "$root" "$state"
 mkdir -p "$root" "$state/lists/partial" "$state/archives/partial"
