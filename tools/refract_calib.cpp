@@ -39,6 +39,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/misfit.hpp"
 #include "calibrate/data_checks.hpp"
+#include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
@@ -317,7 +318,7 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
 {
     PerCamera<cv::Size> sizes;
     sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
-    const RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
+    RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
     for (const ViewSet* set : sets.all())
     {
         c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
@@ -325,6 +326,8 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
     }
     if (!o.unpaired)
         requirePairs(sets);
+    c.photos = photosOf(sets);
+    c.fewPoints = leaveOutFewPoints(target, sets);
     c.data = pairViews(target, sets, o.unpaired);
     if (!o.poses.empty())
     {
@@ -332,7 +335,6 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
         c.inputs.push_back(o.poses);
     }
     c.notices = noticesOf(sets, c.data);
-    c.photos = photosOf(sets);
 }
 
 //! Lens and start, wrong points, the fit; then what a user would do instead.

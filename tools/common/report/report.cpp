@@ -296,7 +296,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("has_without_target", !c.withoutTarget.empty());
 
     std::vector<std::string> dropped;
-    for (const Dropped& d : c.wrong.dropped)
+    for (const Dropped& d : leftOutOf(c))
         dropped.push_back(d.sentence());
     page.set("dropped", listOf(dropped));
     page.set("has_dropped", !dropped.empty());

@@ -296,7 +296,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);
     std::vector<std::string> dropped;
-    for (const Dropped& d : c.wrong.dropped)
+    for (const Dropped& d : leftOutOf(c))
         dropped.push_back(d.sentence());
     printSentences(out, "Left out:", dropped);
     printSentences(out, "Contradictions:", findings.contradictions);
