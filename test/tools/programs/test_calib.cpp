@@ -646,6 +646,7 @@ TEST_CASE("refract_calib's report shows the images with their points", "[calib_t
         photos++;
     CHECK(photos == 24);
     CHECK(mentions(page, "pair1, through the window: 30 points"));
+    CHECK(mentions(page, "</b> up to 0.0"));
     CHECK(mentions(page, "<details"));
     CHECK_FALSE(mentions(page, " nan "));
 
@@ -692,6 +693,11 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     REQUIRE(json["tolerances"].size() == 9);
     for (const auto& t : json["tolerances"])
         CHECK(t["point_worst"].get<double>() >= t["point_rms"].get<double>());
+    // The worst point of now, in the range of the boards, is the worst of the table.
+    double worst = 0.;
+    for (int i : {1, 3})
+        worst = std::max(worst, json["point_error"][i]["worst"].get<double>());
+    CHECK(json["next_images"]["now"]["worst_point_error"].get<double>() == worst);
     // What is predicted is better than what is, and a pair better than one image of it.
     const auto worth = [](const nlohmann::json& w) { return w["calibration_part"].get<double>(); };
     const nlohmann::json& next = json["next_images"];
