@@ -364,6 +364,17 @@ std::string inOptions(std::string text)
     return text;
 }
 
+//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
+bool isSlowToStart(const Given& given)
+{
+    bool solid = false, known = true;
+    for (const Moment& m : given.data.moments)
+        solid = solid || isSolid(m.objectPoints);
+    for (int k = 0; k < given.data.cameraCount; k++)
+        known = known && given.options.known[k];
+    return solid && !known;
+}
+
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     RigCalibration c;
@@ -404,7 +415,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     }
     catch (const Failure& e)
     {
-        if (c.wrong.dropped.empty())
+        if (isSlowToStart(given))
             throw;
         throw Failure(explainError(e.what(), given));
     }

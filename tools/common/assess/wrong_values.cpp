@@ -65,6 +65,26 @@ Explanation wrongScale(const Given& given)
     return {sentence + ", as only their ratio shows", best};
 }
 
+Explanation wrongUnitOfPoints(const Given& given)
+{
+    Explanation best{"", NO_FIT};
+    if (given.square > 0 || hasPairs(given.data))
+        return best;
+    for (double factor : {1000., 0.001})
+    {
+        Given other = given;
+        for (Moment& m : other.data.moments)
+            for (cv::Point3d& X : m.objectPoints)
+                X *= factor;
+        if (other.options.flags & GLASS_FREE_DISTANCE)
+            other.options.window.distance *= factor;
+        const double px = medianErrorOfFit(other.data, other.options);
+        if (px < best.px)
+            best = {format("x, y, z %g times as large: are they in another unit than --thickness?", factor), px};
+    }
+    return best;
+}
+
 Explanation wrongIndex(const Given& given)
 {
     if (!hasPairs(given.data) || given.options.window.index.size() != 1)

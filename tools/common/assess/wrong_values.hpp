@@ -13,6 +13,9 @@ namespace tools {
 //! Square or thickness: pairs show the thickness in squares, only the ratio of the two.
 Explanation wrongScale(const Given& given);
 
+//! Coordinates of points in another unit than the window, where there are no pairs to show the thickness.
+Explanation wrongUnitOfPoints(const Given& given);
+
 Explanation wrongIndex(const Given& given);
 
 //! Water taken for air, or air for water.
