@@ -218,6 +218,21 @@ void requireMaterials(const Options& o, const GlassWindow& window)
             throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
 }
 
+const double LEAST_SOLID = 1.36;        // no solid that windows are made of has less; water has 1.333
+
+//! A liquid that was given as a layer: it stays where it is only between two others.
+void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std::string>& notices)
+{
+    for (size_t i : {(size_t)0, rig.window.index.size() - 1})
+        if (!rig.window.index.empty() && rig.window.index[i] < LEAST_SOLID)
+        {
+            notices.push_back("--index=" + o.index + format(": the %s has the index %.4g, as a liquid: no window is made of that. The "
+                              "medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
+                              rig.window.index.size() == 1 ? "window" : i ? "outermost layer" : "innermost layer", rig.window.index[i]));
+            return;
+        }
+}
+
 //! Which window each camera looks through; empty: each has its own.
 std::vector<int> readWindowsOfCameras(const Options& o)
 {
@@ -401,6 +416,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target.get(), quiet, c);
+    noticeLiquidLayers(o, c.options, c.notices);
     if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
     const Given given{c.data, c.options, c.square, c.notices};
