@@ -173,6 +173,20 @@ TEST_CASE("What the library says is told in the tool's words", "[misfit]")
         CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("give what you know", Catch::CaseSensitive::No));
         CHECK((text.find("--free") != std::string::npos) == (flags != 0));
     }
+
+    // What fits comes before what one may do if nothing does.
+    given.options.flags = 0;
+    given.options.window.outerIndex = 1.333;
+    given.options.outer = {1.333, "water:T=21", "water:T=21"};
+    given.notices = {"a notice"};
+    const std::string text = explainError("the calibration did not converge in 1000 iterations; raise criteria.maxCount, or fix what "
+                                          "the views hardly determine", given);
+    const size_t medium = text.find("--outer-index=1 in place of water:T=21 (1.33300)"), hint = text.find("ive what you know");
+    CAPTURE(text);
+    REQUIRE(medium != std::string::npos);
+    REQUIRE(hint != std::string::npos);
+    CHECK(medium < hint);
+    CHECK(medium < text.find("a notice"));
 }
 
 TEST_CASE("Points of files that are mirrored, or in another unit than the window, are told", "[misfit]")
