@@ -174,7 +174,9 @@ TEST_CASE("What is unknown or out of range is refused with name, value and range
 {
     struct Wrong { const char* material; double nm; const char* says; };
     const Wrong wrongs[] = {
-        {"N-BK8", 550, "nearest is 'N-BK7'"}, {"polycarbonat", 550, "nearest is 'polycarbonate'"}, {"", 550, "''"},
+        {"N-BK8", 550, "nearest is 'N-BK7'"}, {"polycarbonat", 550, "nearest is 'polycarbonate'"},
+        {"poly", 550, "nearest is 'polycarbonate'"},
+        {"diamond", 550, "those that are: N-BK7, K9, B270"}, {"plexi", 550, "PMMA, polycarbonate"}, {"", 550, "''"},
         {"glass", 550, "fused-silica, sapphire, PMMA"}, {"N-BK7:T=20", 550, "it has none"}, {"water:S=35", 550, "it has none but T"},
         {"seawater:T=31", 550, "T of seawater must be from 0 to 30"}, {"seawater:S=nan", 550, "'nan'"},
         {"seawater:T=12;S=35", 550, "'12;S=35' is not a number"}, {"seawater:", 550, "''"}, {"seawater:T=12,", 550, "''"},

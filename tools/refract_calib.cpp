@@ -39,6 +39,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/misfit.hpp"
 #include "calibrate/data_checks.hpp"
+#include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
@@ -217,6 +218,21 @@ void requireMaterials(const Options& o, const GlassWindow& window)
             throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
 }
 
+const double LEAST_SOLID = 1.36;        // no solid that windows are made of has less; water has 1.333
+
+//! A liquid that was given as a layer: it stays where it is only between two others.
+void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std::string>& notices)
+{
+    for (size_t i : {(size_t)0, rig.window.index.size() - 1})
+        if (!rig.window.index.empty() && rig.window.index[i] < LEAST_SOLID)
+        {
+            notices.push_back("--index=" + o.index + format(": the %s has the index %.4g, as a liquid: no window is made of that. The "
+                              "medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
+                              rig.window.index.size() == 1 ? "window" : i ? "outermost layer" : "innermost layer", rig.window.index[i]));
+            return;
+        }
+}
+
 //! Which window each camera looks through; empty: each has its own.
 std::vector<int> readWindowsOfCameras(const Options& o)
 {
@@ -317,7 +333,7 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
 {
     PerCamera<cv::Size> sizes;
     sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
-    const RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
+    RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
     for (const ViewSet* set : sets.all())
     {
         c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
@@ -325,6 +341,8 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
     }
     if (!o.unpaired)
         requirePairs(sets);
+    c.photos = photosOf(sets);
+    c.fewPoints = leaveOutFewPoints(target, sets);
     c.data = pairViews(target, sets, o.unpaired);
     if (!o.poses.empty())
     {
@@ -332,7 +350,6 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
         c.inputs.push_back(o.poses);
     }
     c.notices = noticesOf(sets, c.data);
-    c.photos = photosOf(sets);
 }
 
 //! Lens and start, wrong points, the fit; then what a user would do instead.
@@ -362,6 +379,17 @@ std::string inOptions(std::string text)
     return text;
 }
 
+//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
+bool isSlowToStart(const Given& given)
+{
+    bool solid = false, known = true;
+    for (const Moment& m : given.data.moments)
+        solid = solid || isSolid(m.objectPoints);
+    for (int k = 0; k < given.data.cameraCount; k++)
+        known = known && given.options.known[k];
+    return solid && !known;
+}
+
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     RigCalibration c;
@@ -388,6 +416,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.inputs.push_back(o.camera[k]);
         }
     readImages(o, target.get(), quiet, c);
+    noticeLiquidLayers(o, c.options, c.notices);
     if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
     const Given given{c.data, c.options, c.square, c.notices};
@@ -402,7 +431,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     }
     catch (const Failure& e)
     {
-        if (c.wrong.dropped.empty())
+        if (isSlowToStart(given))
             throw;
         throw Failure(explainError(e.what(), given));
     }

@@ -272,6 +272,8 @@ public:
         const double supported = supportedMatches(stereo, rig_.vertical());
         result.matched = (double)sorted.size()/(double)depth.total();
         result.supported = supported/std::max(1, stereo.matched());
+        if (!(stereo.rowOffset <= DOUBTFUL_ROWS) || result.supported < FEWEST_SUPPORTED)
+            requireNotSwapped(images, supported, result.stem);
         if (sorted.empty() || supported < FEWEST_MATCHED*(double)depth.total())
             return false;
         const double rare = 0.01;
@@ -292,6 +294,19 @@ public:
     const DepthComparison& comparison() const { return comparison_; }
 
 private:
+    //! What each camera saw is given for the other: all disparities then have the wrong sign, and what is matched is chance.
+    void requireNotSwapped(const std::pair<cv::Mat, cv::Mat>& images, double supportedAsGiven, const std::string& stem) const
+    {
+        if (images.first.size() != images.second.size())
+            return;
+        const DenseStereo swapped = matchPair(rig_, images.second, images.first, options_.matching);
+        const double supported = supportedMatches(swapped, rig_.vertical()), pixels = (double)images.first.total();
+        if (swapped.rowOffset <= DOUBTFUL_ROWS && supported >= FEWEST_SUPPORTED*swapped.matched() && supported > 2*supportedAsGiven)
+            throw Failure(format("LEFT and RIGHT of '%s' are swapped: exchanged, %.2g %% of the pixels have a partner that looks "
+                                 "alike, as given %.2g %%; give the image of camera 1 first", stem.c_str(), 100*supported/pixels,
+                                 100*supportedAsGiven/pixels));
+    }
+
     void write(const PairFiles& files, const DenseStereo& stereo, const Cloud& cloud, const cv::Mat& depth) const
     {
         const std::string unit = rig_.calibration().unit;

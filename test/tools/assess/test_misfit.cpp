@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Mistakes in what is given, told from images that do not fit.
+#include "assess/fit_quality.hpp"
 #include "assess/misfit.hpp"
 #include "calibrate/image_fit.hpp"
 #include "paper_rig.hpp"
@@ -172,4 +173,53 @@ TEST_CASE("What the library says is told in the tool's words", "[misfit]")
         CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("give what you know", Catch::CaseSensitive::No));
         CHECK((text.find("--free") != std::string::npos) == (flags != 0));
     }
+
+    // What fits comes before what one may do if nothing does.
+    given.options.flags = 0;
+    given.options.window.outerIndex = 1.333;
+    given.options.outer = {1.333, "water:T=21", "water:T=21"};
+    given.notices = {"a notice"};
+    const std::string text = explainError("the calibration did not converge in 1000 iterations; raise criteria.maxCount, or fix what "
+                                          "the views hardly determine", given);
+    const size_t medium = text.find("--outer-index=1 in place of water:T=21 (1.33300)"), hint = text.find("ive what you know");
+    CAPTURE(text);
+    REQUIRE(medium != std::string::npos);
+    REQUIRE(hint != std::string::npos);
+    CHECK(medium < hint);
+    CHECK(medium < text.find("a notice"));
+}
+
+TEST_CASE("Points of files that are mirrored, or in another unit than the window, are told", "[misfit]")
+{
+    scenes::Random random(980);
+    const RigModel rig = paperRig(2);
+    std::vector<Point3d> object = board(6, 5);
+    for (size_t i = 0; i < object.size(); i++)
+        object[i].z = 25.*(int)(i*7 % 4);
+    Given given = rightlyGiven(2, random);
+    given.square = 0.;
+    for (Moment& m : given.data.moments)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        m = observe(rig, object, random.vector(0.4), tvec, false, 0.1, random);
+        m.stem = "v";
+        for (int c = 0; c < 2; c++)
+            m.direct[c].clear();
+    }
+    given.data.moments.resize(2);
+    CHECK(medianErrorOfFit(given.data, given.options) < 0.3);
+
+    Given leftHanded = given, oneMirrored = given, metres = given;
+    for (Moment& m : leftHanded.data.moments)
+        for (Point3d& X : m.objectPoints)
+            std::swap(X.x, X.y);
+    CHECK_THAT(explained(leftHanded), Catch::Contains("left-handed") && !Catch::Contains("camera 2 counted"));
+    for (Moment& m : oneMirrored.data.moments)
+        for (Point2d& p : m.glass[1])
+            p.y = 1023. - p.y;
+    CHECK_THAT(explained(oneMirrored), Catch::Contains("camera 2 counted from the other side"));
+    for (Moment& m : metres.data.moments)
+        for (Point3d& X : m.objectPoints)
+            X *= 0.001;
+    CHECK_THAT(explained(metres), Catch::Contains("x, y, z 1000 times as large") && Catch::Contains("another unit"));
 }

@@ -439,6 +439,10 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     INFO(far.out << far.err);
     CHECK(far.code == 1);
     CHECK(mentions(far.err, "--thickness=20 in place of 40"));
+    const ToolResult liquid = runTool(inputs(f, " --thickness=20 --index=water --no-cross-validation" + lens(f)));
+    INFO(liquid.out << liquid.err);
+    CHECK(liquid.code != 0);
+    CHECK(mentions(liquid.out + liquid.err, "--index=water: the window has the index 1.334, as a liquid"));
     for (const std::string wrong : {"19", "22", "26"})
         for (const std::string more : {" --lens=opencv4 --max-error-at=600:5", " --max-rms=50", " --no-robust"})
         {
@@ -535,7 +539,9 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, lens(f) + PANE + " --outer-index=13.3"), "--outer-index=13.3: no medium"},
         {inputs(f, lens(f) + PANE + " --outer-index=0.9"), "--outer-index=0.9: no medium"},
         {inputs(f, lens(f) + " --thickness=20 --index=N-BK8"), "--index=N-BK8: material is 'N-BK8', which is not known; "
-            "nearest is 'N-BK7', of N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water"},
+            "nearest is 'N-BK7'"},
+        {inputs(f, lens(f) + " --thickness=20 --index=diamond"), "'diamond', which is not known; those that are: N-BK7, K9, B270, "
+            "soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water, seawater, air; of any other give the index"},
         {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "--wavelength=200: the index of N-BK7 is known from 300 to 2500 nm; give nm"},
         {inputs(f, lens(f) + " --thickness=20 --index=1,5"), "--thickness has 1, --index 2"},
         {inputs(f, lens(f) + " --thickness=20 --index=water:T=12"), "without parameters"},
@@ -646,6 +652,7 @@ TEST_CASE("refract_calib's report shows the images with their points", "[calib_t
         photos++;
     CHECK(photos == 24);
     CHECK(mentions(page, "pair1, through the window: 30 points"));
+    CHECK(mentions(page, "</b> up to 0.0"));
     CHECK(mentions(page, "<details"));
     CHECK_FALSE(mentions(page, " nan "));
 
@@ -692,6 +699,11 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     REQUIRE(json["tolerances"].size() == 9);
     for (const auto& t : json["tolerances"])
         CHECK(t["point_worst"].get<double>() >= t["point_rms"].get<double>());
+    // The worst point of now, in the range of the boards, is the worst of the table.
+    double worst = 0.;
+    for (int i : {1, 3})
+        worst = std::max(worst, json["point_error"][i]["worst"].get<double>());
+    CHECK(json["next_images"]["now"]["worst_point_error"].get<double>() == worst);
     // What is predicted is better than what is, and a pair better than one image of it.
     const auto worth = [](const nlohmann::json& w) { return w["calibration_part"].get<double>(); };
     const nlohmann::json& next = json["next_images"];

@@ -488,3 +488,26 @@ TEST_CASE("Sixteen simulated cameras with known poses, exact and uncertain", "[.
         CHECK(errors.second < 5.);
     }
 }
+
+TEST_CASE("Too few points of a view are refused with camera, view and count", "[calib_rig]")
+{
+    const auto csvOf = [](int points) {
+        std::string text = "view,x,y,z,u,v\n";
+        for (const char* name : {"a", "b"})
+            for (int i = 0; i < points; i++)
+                text += format("%s,%d,%d,0,%d,%d\n", name, 40*(i % 2), 30*(i/2), 200 + 60*(i % 2), 200 + 50*(i/2));
+        return text;
+    };
+    const TemporaryFolder folder;
+    writeFile(folder / "few.csv", csvOf(3));
+    writeFile(folder / "points.csv", csvOf(6));
+    const std::string calib = "refract_calib --quiet --image-size=640x480 --thickness=10 --index=1.5 --out=" + folder / "c.yml";
+    const ToolResult glass = runTool(calib + " --free=intrinsics --glass=" + folder / "few.csv");
+    CHECK(glass.code == 1);
+    CHECK_THAT(glass.err, Catch::Contains("camera 1, --glass=") && Catch::Contains("view 'a' has 3 points, but")
+                          && !Catch::Contains("objectPoints"));
+    const ToolResult direct = runTool(calib + " --glass=" + folder / "points.csv --direct=" + folder / "few.csv");
+    CHECK(direct.code == 1);
+    CHECK_THAT(direct.err, Catch::Contains("camera 1, --direct=") && Catch::Contains("view 'a' has 3 points"));
+    CHECK(folder.count() == 2);
+}

@@ -288,7 +288,9 @@ TEST_CASE("refract_stereo says so if the images do not fit the calibration", "[t
     const ToolResult swapped = runTool("refract_stereo " + CALIB + " " + RIGHT + " " + LEFT + DEPTH + " --out="
                                        + (folder / "s.ply"));
     CAPTURE(swapped.out, swapped.err);
-    CHECK((swapped.code == 1 || swapped.err.find("swapped") != std::string::npos));
+    CHECK(swapped.code == 1);
+    CHECK(swapped.err.find("LEFT and RIGHT of 'scene' are swapped") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "s.ply"));
     const ToolResult good = runTool("refract_stereo " + CALIB + PAIR + DEPTH + " --max-row-error=0.2 --out="
                                     + (folder / "g.ply"));
     CAPTURE(good.err);

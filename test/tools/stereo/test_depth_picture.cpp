@@ -70,6 +70,7 @@ TEST_CASE("Near is bright, unknown is black, and the image keeps its place", "[t
     CHECK(picture.rows == 480);
     CHECK(picture.cols > 640 + 40);
     CHECK(picture.cols < 640 + 200);
+    CHECK(depthPicture(ramp(500, 900), "millimetres").cols > picture.cols);       // the title has its place
     CHECK(brightness(picture, 100, 100) == 0);
     CHECK(brightness(picture, 300, 20) > brightness(picture, 300, 320));
     CHECK(brightness(picture, 300, 320) > brightness(picture, 300, 620));

@@ -123,3 +123,17 @@ TEST_CASE("Paper is chosen by what is on it", "[board]")
     CHECK_THROWS_WITH(BoardPage(small, 1, "80x300"), Catch::Contains("needs 122x"));
     CHECK_THROWS_WITH(BoardPage(small, 1, "letter"), Catch::Contains("--paper"));
 }
+
+TEST_CASE("The paper lies as the board does, if it fits so", "[board]")
+{
+    const auto isAcross = [](const std::string& size, double square, const std::string& paper) {
+        const Target target(board("chessboard", size, square));
+        const cv::Size2d page = BoardPage(target, 1, paper).paper();
+        return page.width > page.height;
+    };
+    CHECK(isAcross("9x6", 25, ""));
+    CHECK(isAcross("9x6", 25, "A3"));
+    CHECK_FALSE(isAcross("6x9", 25, "A3"));
+    CHECK_FALSE(isAcross("6x9", 15, ""));
+    CHECK_FALSE(isAcross("9x6", 25, "297x420"));
+}

@@ -19,7 +19,7 @@ namespace tools {
 
 namespace {
 
-const int GRID_COLUMNS = 5;
+const int GRID_COLUMNS = 5;             // to choose by
 const int NEXT = 3;                     // images to advise
 const double TILT_DEG = 30.;
 const double MUST_BE_SEEN = 0.75;       // of the board's points, in each image
@@ -40,7 +40,8 @@ public:
 
     const MatrixXd& now() const { return now_; }
 
-    Worth worthOf(const MatrixXd& covariance) const
+    //! @param columns of the error maps
+    Worth worthOf(const MatrixXd& covariance, int columns = ERROR_MAP_COLUMNS) const
     {
         Worth worth;
         for (int k = 0; k < c_.data.cameraCount; k++)
@@ -52,7 +53,7 @@ public:
         int count = 0;
         for (double z : {depth[0], depth[2]})
         {
-            const ErrorMap map = mapErrors(calibration, z, sigma_, GRID_COLUMNS);
+            const ErrorMap map = mapErrors(calibration, z, sigma_, columns);
             if (map.seen())
                 worth.worstPoint = std::fmax(worth.worstPoint, map.worst());
             for (size_t i = 0; i < map.total.size(); i++)
@@ -168,7 +169,7 @@ Advice adviseImages(const RigCalibration& calibration)
         for (size_t i = 0; i < placements.size(); i++)
         {
             const MatrixXd after = adviser.covarianceAfter(covariance, informations[i]);
-            const Worth worth = adviser.worthOf(after);
+            const Worth worth = adviser.worthOf(after, GRID_COLUMNS);
             if (at >= 0 && !(worth.calibrationPart < best.worth.calibrationPart))
                 continue;
             best = {placements[i].words, worth};
@@ -176,6 +177,7 @@ Advice adviseImages(const RigCalibration& calibration)
             at = (int)i;
         }
         covariance = bestCovariance;
+        best.worth = adviser.worthOf(covariance);
         advice.pairs.push_back(best);
         if (n == 0)
             first = at;

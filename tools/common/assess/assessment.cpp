@@ -8,12 +8,6 @@ using namespace cv;
 
 namespace tools {
 
-namespace {
-
-const int COLUMNS = 25;         // of the maps
-
-} // namespace
-
 Assessment assess(const RigCalibration& c, bool quiet)
 {
     Calibration calibration = calibrationOf(c.fit.rig);
@@ -21,9 +15,9 @@ Assessment assess(const RigCalibration& c, bool quiet)
     Assessment result;
     const Vec3d depth = workingDepth(c, 0);
     for (double z : {0.5*depth[0], depth[0], depth[1], depth[2], 1.5*depth[2], 2.*depth[2]})
-        result.errors.push_back(mapErrors(calibration, z, c.fit.sigma, COLUMNS));
+        result.errors.push_back(mapErrors(calibration, z, c.fit.sigma, ERROR_MAP_COLUMNS));
     for (const ErrorLimit& limit : c.limits.errors)
-        result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, COLUMNS));
+        result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS));
     result.tolerances = analyseTolerances(c, 1./millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
     result.contradictions = contradictedValues(c);

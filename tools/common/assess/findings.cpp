@@ -239,13 +239,32 @@ void judgeHeldOut(const RigCalibration& c, Findings& f)
                                 "the window not flat", std::sqrt(perDirection)));
 }
 
+//! What a tape measure can tell.
+std::string scaleInWords(const RigCalibration& c)
+{
+    double width = 0.;
+    for (int i : c.fit.moments)
+    {
+        const std::vector<Point3d>& points = c.data.moments[i].objectPoints;
+        for (const Point3d& X : points)
+            width = std::max(width, norm(X - points[0]));
+    }
+    const Vec3d depth = workingDepth(c, 0);
+    std::string text = format("the target is %.3g %s across, %.3g to %.3g %s from camera 1", width, c.unit.c_str(), depth[0], depth[2],
+                              c.unit.c_str());
+    if (c.data.cameraCount > 1)
+        text += format(", which is %.3g %s from camera 2", norm(c.fit.rig.Ts[1]), c.unit.c_str());
+    return text;
+}
+
 void judgeAssumptions(const RigCalibration& c, Findings& f)
 {
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
             f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
     f.assumed.push_back((c.square > 0 ? format("the square of %g", c.square) : std::string("the coordinates of the points in"))
-                        + " " + c.unit + ": all lengths are in proportion to it, and no image shows it");
+                        + " " + c.unit + ": all lengths are in proportion to it, and no image shows it. A tape measure does: "
+                        + scaleInWords(c));
     if (c.options.flags & GLASS_USE_POSES)
         f.assumed.push_back("the poses of the target, within their given standard deviations");
     const GlassWindow& window = c.options.window;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/given_values.hpp"
+#include "assess/wrong_values.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
@@ -43,9 +44,20 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
          [](const GlassWindow& w) { return w.outerIndex; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
 }
 
-std::string sentenceOf(const GivenValue& given, const std::string& where, double before, double estimate, double std)
+//! As it was given; the value may have come by the name of a material.
+std::string typed(const RigOptions& options, const GivenValue& given, double value)
 {
-    return format("the images contradict %s=%.5g: set free, the %s%s would be ", given.option, before, given.word, where.c_str())
+    if (given.flag == GLASS_FREE_INDEX && options.layers.size() == 1 && options.layers[0].isNamed())
+        return typedIndex(options.layers[0], 5);
+    if (given.flag == GLASS_FREE_OUTER_INDEX && options.outer.isNamed())
+        return typedIndex(options.outer, 5);
+    return format("%.5g", value);
+}
+
+std::string sentenceOf(const GivenValue& given, const std::string& where, const std::string& typed, double before, double estimate,
+                       double std)
+{
+    return format("the images contradict %s=%s: set free, the %s%s would be ", given.option, typed.c_str(), given.word, where.c_str())
         + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - before)/std);
 }
 
@@ -64,7 +76,7 @@ std::vector<Contradiction> contradictedBy(const RigCalibration& c, const GivenVa
         const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
         const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
         if (std::abs(estimate - before) > SURE*std)
-            contradictions.push_back({sentenceOf(given, where, before, estimate, std), fit.sigma});
+            contradictions.push_back({sentenceOf(given, where, typed(c.options, given, before), before, estimate, std), fit.sigma});
     }
     return contradictions;
 }

@@ -57,8 +57,8 @@ std::vector<std::string> explainMisfit(const Given& given)
         if (!sentence.empty())
             sentences.push_back(sentence);
     const double most = std::min(EXPLAINS*now, largestSoundError(given.data));
-    std::vector<Explanation> explaining = bestBelow(most, {wrongScale(given), wrongIndex(given), directAndGlassExchanged(given),
-        directAndGlassExchangedOfOne(given), camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given),
+    std::vector<Explanation> explaining = bestBelow(most, {wrongScale(given), wrongUnitOfPoints(given), mirrored(given),
+        wrongIndex(given), directAndGlassExchanged(given), directAndGlassExchangedOfOne(given), camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given),
         ownWindows(given), unpaired(given)});
     // What each camera alone explains, any mistake in what they have in common explains better.
     if (explaining.empty())
@@ -83,7 +83,7 @@ void requireSensible(const RigCalibration& c, const Given& given)
     if (!fault.empty())
     {
         std::vector<std::string> reasons = explainMisfit(given);
-        reasons.insert(reasons.begin(), given.notices.begin(), given.notices.end());
+        reasons.insert(reasons.end(), given.notices.begin(), given.notices.end());
         throw Failure(fault + ": " + joined(reasons));
     }
 }
@@ -92,18 +92,22 @@ std::string explainError(const std::string& error, const Given& given)
 {
     // The library speaks of its own arguments.
     const std::string theirs = "; raise criteria.maxCount, or fix what the views hardly determine";
-    std::string text = error;
-    const size_t at = text.find(theirs);
+    const size_t at = error.find(theirs);
+    std::vector<std::string> reasons = explainMisfit(given);
+    const bool explained = !reasons.empty();
+    reasons.insert(reasons.end(), given.notices.begin(), given.notices.end());
+    if (at == std::string::npos)
+        return reasons.empty() ? error : error + ". However, " + joined(reasons);
     // The distance is set free without being asked for where it is needed.
     const bool asked = given.options.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX
                                               | GLASS_FREE_INTRINSICS);
-    if (at != std::string::npos)
-        text.replace(at, theirs.size(), std::string(": the images hardly determine what is free. ") + (asked ? "Leave out "
-                     "--free=..., g" : "G") + "ive what you know (--thickness, --index, --distance, --camera), or add "
-                     "images: pairs, more tilt, more depth");
-    std::vector<std::string> reasons = explainMisfit(given);
-    reasons.insert(reasons.begin(), given.notices.begin(), given.notices.end());
-    return reasons.empty() ? text : text + ". However, " + joined(reasons);
+    const std::string undetermined = std::string("the images hardly determine what is free. ") + (asked ? "Leave out "
+        "--free=..., g" : "G") + "ive what you know (--thickness, --index, --distance, --camera), or add images: pairs, more tilt, "
+        "more depth";
+    const std::string head = error.substr(0, at) + ": ", tail = error.substr(at + theirs.size());
+    if (explained)          // what fits is likelier than that nothing would
+        return head + joined(reasons) + ". If it is not that, " + undetermined + tail;
+    return head + undetermined + tail + (reasons.empty() ? "" : ". However, " + joined(reasons));
 }
 
 } // namespace tools

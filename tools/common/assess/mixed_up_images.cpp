@@ -23,6 +23,31 @@ RigData exchanged(const RigData& given, int only)
     return data;
 }
 
+enum Mirror { POINTS, ROWS, COLUMNS };
+
+//! @param only camera; negative: all, with what they have of direct images and of those through the window
+RigData mirroredData(const RigData& given, Mirror mirror, int only)
+{
+    RigData data = given;
+    for (Moment& m : data.moments)
+    {
+        for (cv::Point3d& X : m.objectPoints)
+            X.x *= mirror == POINTS ? -1. : 1.;
+        for (int c = 0; c < data.cameraCount; c++)
+            for (std::vector<cv::Point2d>* pixels : {&m.direct[c], &m.glass[c]})
+                for (cv::Point2d& p : *pixels)
+                {
+                    if (only >= 0 && only != c)
+                        continue;
+                    if (mirror == ROWS)
+                        p.y = data.imageSize[c].height - 1. - p.y;
+                    if (mirror == COLUMNS)
+                        p.x = data.imageSize[c].width - 1. - p.x;
+                }
+    }
+    return data;
+}
+
 Explanation better(const Explanation& a, const Explanation& b) { return b.px < a.px ? b : a; }
 
 } // namespace
@@ -80,6 +105,26 @@ Explanation otherMoments(const Given& given)
     }
     return {"each camera calibrated alone, so equal names of " + std::string(given.data.cameraCount == 2 ? "camera 1 and camera 2"
             : "different cameras") + " are not the same moment (or the cameras moved to each other)", worst};
+}
+
+Explanation mirrored(const Given& given)
+{
+    Explanation best{"", NO_FIT};
+    const auto ofBoard = [](const Moment& m) { return !m.neighbours.empty(); };
+    if (std::all_of(given.data.moments.begin(), given.data.moments.end(), ofBoard))
+        return best;                    // whose points are found in images
+    const auto attempt = [&](Mirror mirror, int camera, const std::string& sentence) {
+        best = better(best, {sentence, medianErrorOfFit(mirroredData(given.data, mirror, camera), given.options)});
+    };
+    for (Mirror mirror : {POINTS, ROWS})
+        attempt(mirror, -1, "the points mirrored: x, y, z are in a left-handed frame (one axis turned round, or two columns "
+                "exchanged), or u or v is counted from the other side");
+    const int cameras = given.data.cameraCount;
+    for (int c = 0; c < cameras && cameras > 1 && cameras <= MOST_TO_EXCHANGE; c++)
+        for (Mirror mirror : {ROWS, COLUMNS})
+            attempt(mirror, c, format("u or v of camera %d counted from the other side: its images are mirrored to those of the "
+                                      "others", c + 1));
+    return best;
 }
 
 Explanation unpaired(const Given& given)

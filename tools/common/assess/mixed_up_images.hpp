@@ -26,6 +26,10 @@ Explanation otherMoments(const Given& given);
 //! Equal names of a direct and a glass image are not one place of the board.
 Explanation unpaired(const Given& given);
 
+/** Points of files: one axis turned round or two exchanged, v counted from below, or the same of one camera's file. All that
+makes is a mirror image, which a flat target cannot tell unless only one camera has it. */
+Explanation mirrored(const Given& given);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_MIXED_UP_IMAGES_HPP

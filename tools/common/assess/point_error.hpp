@@ -29,6 +29,8 @@ struct ErrorMap
     double worstOfPixels() const;
 };
 
+const int ERROR_MAP_COLUMNS = 25;       //!< wherever a worst point is told: of other grids it is another one
+
 /** @param columns of the grid. */
 ErrorMap mapErrors(const Calibration& calibration, double range, double pixelSigma, int columns);
 

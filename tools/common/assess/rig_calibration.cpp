@@ -13,6 +13,13 @@ using namespace cv::refract;
 
 namespace tools {
 
+std::vector<Dropped> leftOutOf(const RigCalibration& calibration)
+{
+    std::vector<Dropped> all = calibration.fewPoints;
+    all.insert(all.end(), calibration.wrong.dropped.begin(), calibration.wrong.dropped.end());
+    return all;
+}
+
 Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment)
 {
     Rms rms;

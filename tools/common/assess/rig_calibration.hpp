@@ -50,6 +50,7 @@ struct RigCalibration
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
     std::vector<Photo> photos;
     std::vector<std::string> notices;           //!< what is wrong with the images as such, see data_checks.hpp
+    std::vector<Dropped> fewPoints;             //!< images that have no pose, already taken out of data
     WrongPoints wrong;                          //!< points and images, already taken out of data
     std::vector<std::string> inputs;            //!< files that it was made from
     Limits limits;
@@ -57,6 +58,9 @@ struct RigCalibration
     std::string unit = "mm";                    //!< of length
     double square = 0.;                         //!< side of a square of the board, as given; 0: there is no board
 };
+
+//! Images that have no pose, then what is wrong.
+std::vector<Dropped> leftOutOf(const RigCalibration& calibration);
 
 struct Rms
 {

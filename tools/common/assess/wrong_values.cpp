@@ -33,6 +33,11 @@ GlassWindow onePane(const GlassWindow& window)
 
 } // namespace
 
+std::string typedIndex(const GivenIndex& index, int digits)
+{
+    return index.isNamed() ? index.material + format(" (%.5f)", index.value) : format("%.*g", digits, index.value);
+}
+
 Explanation wrongScale(const Given& given)
 {
     if (!hasPairs(given.data) || given.options.window.thickness.empty())
@@ -65,6 +70,26 @@ Explanation wrongScale(const Given& given)
     return {sentence + ", as only their ratio shows", best};
 }
 
+Explanation wrongUnitOfPoints(const Given& given)
+{
+    Explanation best{"", NO_FIT};
+    if (given.square > 0 || hasPairs(given.data))
+        return best;
+    for (double factor : {1000., 0.001})
+    {
+        Given other = given;
+        for (Moment& m : other.data.moments)
+            for (cv::Point3d& X : m.objectPoints)
+                X *= factor;
+        if (other.options.flags & GLASS_FREE_DISTANCE)
+            other.options.window.distance *= factor;
+        const double px = medianErrorOfFit(other.data, other.options);
+        if (px < best.px)
+            best = {format("x, y, z %g times as large: are they in another unit than --thickness?", factor), px};
+    }
+    return best;
+}
+
 Explanation wrongIndex(const Given& given)
 {
     if (!hasPairs(given.data) || given.options.window.index.size() != 1)
@@ -75,7 +100,9 @@ Explanation wrongIndex(const Given& given)
     RigModel rig;
     const double px = medianErrorOfFit(given.data, options, &rig);
     const double index = px < NO_FIT ? rig.cameras[0]->window().index[0] : 1.;
-    return {format("--index=%.3g in place of %.4g", index, given.options.window.index[0]),
+    const std::vector<GivenIndex>& layers = given.options.layers;
+    return {format("--index=%.3g in place of ", index)
+            + typedIndex(layers.empty() ? GivenIndex{given.options.window.index[0]} : layers[0], 4),
             index > 1.2 && index < 2.5 ? px : NO_FIT};
 }
 
@@ -95,8 +122,10 @@ Explanation otherMedium(const Given& given)
     }
     if (window.thickness.empty() && window.outerIndex == window.innerIndex)
         return {"", NO_FIT};
-    return {format("--outer-index=%g in place of %g (the medium in which the board was)", window.outerIndex,
-                   given.options.window.outerIndex), medianErrorOfFit(given.data, options)};
+    const GivenIndex& outer = given.options.outer;
+    return {format("--outer-index=%g in place of %s (the medium in which the board was)", window.outerIndex,
+                   typedIndex(outer.isNamed() ? outer : GivenIndex{given.options.window.outerIndex}, 6).c_str()),
+            medianErrorOfFit(given.data, options)};
 }
 
 Explanation ownWindows(const Given& given)

@@ -10,8 +10,14 @@
 /* Values given wrongly: each is set free, or to what is likely instead, and the same images are fitted again. */
 namespace tools {
 
+//! As it was given: "1.5437" with so many digits, or "water:T=12 (1.33415)".
+std::string typedIndex(const GivenIndex& index, int digits);
+
 //! Square or thickness: pairs show the thickness in squares, only the ratio of the two.
 Explanation wrongScale(const Given& given);
+
+//! Coordinates of points in another unit than the window, where there are no pairs to show the thickness.
+Explanation wrongUnitOfPoints(const Given& given);
 
 Explanation wrongIndex(const Given& given);
 

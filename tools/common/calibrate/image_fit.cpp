@@ -5,6 +5,7 @@
 #include "calibrate/estimated_parameters.hpp"
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 using namespace cv;
 using namespace cv::refract;
@@ -65,6 +66,16 @@ std::vector<Mat> covariancesOf(const RigModel& rig)
     return covariances;
 }
 
+//! The library counts views from 0; whoever took them knows them by name.
+cv::Exception inNames(const cv::Exception& e, const RigData& data, const std::vector<int>& moments)
+{
+    cv::Exception named = e;
+    std::smatch found;
+    if (std::regex_search(e.err, found, std::regex("^view ([0-9]{1,6})\\b")) && std::stoul(found[1]) < moments.size())
+        named.err = "view '" + data.moments[moments[std::stoul(found[1])]].stem + "'" + found.suffix().str();
+    return named;
+}
+
 //! How many numbers are known with a covariance.
 int countPriors(const RigModel& rig)
 {
@@ -108,11 +119,18 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     }
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS,
                                 flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
-    fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras,
-                                fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
-                                fit.imageStatus, fit.inliers, fit.otherMinima,
-                                data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                                covariancesOf(fit.rig));
+    try
+    {
+        fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras,
+                                    fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
+                                    fit.imageStatus, fit.inliers, fit.otherMinima,
+                                    data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
+                                    covariancesOf(fit.rig));
+    }
+    catch (const cv::Exception& e)
+    {
+        throw inNames(e, data, moments);
+    }
     for (int c = 1; c < data.cameraCount; c++)
     {
         fit.rig.Rs[c] = Rs[c];

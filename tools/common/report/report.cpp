@@ -262,10 +262,10 @@ void setSightings(data& page, const RigCalibration& c)
     page.set("sightings_note", note + ".");
 }
 
-data thumbnailsOf(const RigCalibration& c, Progress& progress)
+void setPhotos(data& page, const RigCalibration& c, const std::vector<Photo>& photos, Progress& progress)
 {
-    data list{data::type::list};
-    for (const Photo& photo : c.photos)
+    data list{data::type::list}, scale{data::type::list};
+    for (const Photo& photo : photos)
     {
         const Thumbnail thumbnail = makeThumbnail(c, photo);
         data entry;
@@ -275,7 +275,20 @@ data thumbnailsOf(const RigCalibration& c, Progress& progress)
         list << entry;
         progress.step();
     }
-    return list;
+    for (const PhotoScale& step : photoScale(c))
+    {
+        data entry;
+        entry.set("colour", step.colour);
+        entry.set("name", step.name);
+        scale << entry;
+    }
+    page.set("photos", list);
+    page.set("photo_scale", scale);
+    page.set("has_photos", !photos.empty());
+    page.set("photo_count", std::to_string(photos.size()));
+    const size_t hidden = c.photos.size() - photos.size();
+    page.set("has_hidden_photos", hidden > 0);
+    page.set("hidden_photos", format("%zu more images are not shown: all their points were used, and lie nearer.", hidden));
 }
 
 } // namespace
@@ -296,7 +309,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("has_without_target", !c.withoutTarget.empty());
 
     std::vector<std::string> dropped;
-    for (const Dropped& d : c.wrong.dropped)
+    for (const Dropped& d : leftOutOf(c))
         dropped.push_back(d.sentence());
     page.set("dropped", listOf(dropped));
     page.set("has_dropped", !dropped.empty());
@@ -314,8 +327,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     setParameters(page, c.fit);
 
     const bool isRig = c.data.cameraCount > 1;
+    const std::vector<Photo> photos = photosToShow(c);
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + (isRig ? 2 : 0)
-                                             + (int)(assessment.errors.size() + c.photos.size()) + 1, quiet);
+                                             + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
     page.set("error_figures", errorFigures(c, assessment, progress));
     if (isRig)
     {
@@ -333,9 +347,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         heads << data{"name", name};
     }
     page.set("cameras", cameras);
-    page.set("photos", thumbnailsOf(c, progress));
-    page.set("has_photos", !c.photos.empty());
-    page.set("photo_count", std::to_string(c.photos.size()));
+    setPhotos(page, c, photos, progress);
     page.set("camera_heads", heads);
 
     page.set("command", commandLine);

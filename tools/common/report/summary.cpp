@@ -232,12 +232,34 @@ std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
     return note;
 }
 
+//! Two digits, as much as such an estimate is worth; far below the largest of its column less is said.
+static std::string roughly(double value, double largest)
+{
+    const double TOLD = 1e-3;
+    if (!std::isfinite(value))
+        return "-";
+    if (!(largest > 0))
+        return "0";
+    if (value >= TOLD*largest)
+        return format("%.*f", std::max(0, 1 - (int)std::floor(std::log10(value))), value);
+    const double power = std::pow(10., std::floor(std::log10(TOLD*largest)));
+    return format("< %g", std::ceil(TOLD*largest/power)*power);
+}
+
 std::vector<SummaryRow> toleranceRows(const Assessment& a)
 {
+    double rms = 0., worst = 0., lengths = 0.;
+    for (const Tolerance& t : a.tolerances)
+        if (t.done)
+        {
+            rms = std::fmax(rms, t.rms);
+            worst = std::fmax(worst, t.worst);
+            lengths = std::fmax(lengths, t.lengths);
+        }
     std::vector<SummaryRow> rows;
     for (const Tolerance& t : a.tolerances)
-        rows.push_back({t.what, t.done ? std::vector<std::string>{format("%.3g", t.rms), format("%.3g", t.worst),
-                                                                  format("%.3g", 1000.*t.lengths)}
+        rows.push_back({t.what, t.done ? std::vector<std::string>{roughly(t.rms, rms), roughly(t.worst, worst),
+                                                                  roughly(1000.*t.lengths, 1000.*lengths)}
                                        : std::vector<std::string>{"no fit", "-", "-"}});
     return rows;
 }
@@ -296,7 +318,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);
     std::vector<std::string> dropped;
-    for (const Dropped& d : c.wrong.dropped)
+    for (const Dropped& d : leftOutOf(c))
         dropped.push_back(d.sentence());
     printSentences(out, "Left out:", dropped);
     printSentences(out, "Contradictions:", findings.contradictions);

@@ -117,7 +117,7 @@ Json viewsJson(const RigCalibration& c)
 Json droppedJson(const RigCalibration& c)
 {
     Json list = Json::array();
-    for (const Dropped& d : c.wrong.dropped)
+    for (const Dropped& d : leftOutOf(c))
         list.push_back({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
                         {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
     return list;

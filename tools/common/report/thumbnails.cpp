@@ -6,7 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
+#include <limits>
 
 using namespace cv;
 
@@ -16,7 +17,11 @@ namespace {
 
 const int WIDTH = 360;
 const int QUALITY = 75;
-const Scalar USED(80, 220, 60), LEFT_OUT(40, 40, 255);
+const size_t MOST_PHOTOS = 120;         // a page of 3 MB
+const Scalar NO_RESIDUAL = Scalar::all(255), LEFT_OUT(40, 40, 255);
+// Blue, green, red; each for one RMS more.
+const Scalar STEPS[] = {{80, 220, 60}, {70, 235, 200}, {30, 215, 255}, {20, 130, 255}};
+const int STEP_COUNT = sizeof(STEPS)/sizeof(STEPS[0]);
 
 std::string base64(const std::vector<uchar>& bytes)
 {
@@ -34,16 +39,65 @@ std::string base64(const std::vector<uchar>& bytes)
     return text;
 }
 
-//! What the calibration was made from, of that image.
-std::vector<Point2d> usedPoints(const RigCalibration& c, const Photo& photo)
+//! What came of one point of an image.
+struct PointFate
 {
-    std::vector<Point2d> used;
+    bool used = false;
+    double px = NONE;           //!< from where the calibration puts it; of images that took part
+};
+
+std::vector<PointFate> fatesOf(const RigCalibration& c, const Photo& photo)
+{
+    std::vector<PointFate> fates(photo.points.size());
+    const auto mark = [&](const Point2d& pixel, double px) {
+        const auto found = std::find(photo.points.begin(), photo.points.end(), pixel);
+        if (found == photo.points.end())
+            return;
+        PointFate& fate = fates[found - photo.points.begin()];
+        fate.used = true;
+        if (px == px)
+            fate.px = px;
+    };
     for (const Moment& m : c.data.moments)
         if (m.stem == photo.stem)
             for (const Point2d& p : (photo.glass ? m.glass : m.direct)[photo.camera])
                 if (seen(p))
-                    used.push_back(p);
-    return used;
+                    mark(p, NONE);
+    for (const Residual& r : c.residuals)
+        if (r.camera == photo.camera && r.glass == photo.glass && c.data.moments[r.moment].stem == photo.stem)
+            mark(r.pixel, norm(r.error));
+    return fates;
+}
+
+Scalar colourOf(const PointFate& fate, double rms)
+{
+    return fate.px == fate.px ? STEPS[std::min(STEP_COUNT - 1, (int)(fate.px/std::max(rms, 1e-12)))] : NO_RESIDUAL;
+}
+
+void drawPoint(Mat& picture, const Point2d& at, const PointFate& fate, double rms)
+{
+    if (fate.used)
+        circle(picture, at, 3, colourOf(fate, rms), FILLED, LINE_AA);
+    else
+        drawMarker(picture, at, LEFT_OUT, MARKER_TILTED_CROSS, 11, 2, LINE_AA);
+}
+
+//! How much a person should look at it: infinite without target or with points left out, else the RMS in pixels.
+double concernOf(const RigCalibration& c, const Photo& photo)
+{
+    double sum = 0.;
+    int count = 0;
+    const std::vector<PointFate> fates = fatesOf(c, photo);
+    for (size_t i = 0; i < fates.size(); i++)
+    {
+        if (!seen(photo.points[i]))
+            continue;
+        if (!fates[i].used)
+            return std::numeric_limits<double>::infinity();
+        count++;
+        sum += fates[i].px == fates[i].px ? fates[i].px*fates[i].px : 0.;
+    }
+    return count ? std::sqrt(sum/count) : std::numeric_limits<double>::infinity();
 }
 
 } // namespace
@@ -66,6 +120,33 @@ std::vector<Photo> photosOf(const RigViewSets& sets)
     return photos;
 }
 
+std::vector<PhotoScale> photoScale(const RigCalibration& c)
+{
+    std::vector<PhotoScale> scale;
+    for (int i = 0; i < STEP_COUNT; i++)
+        scale.push_back({format("rgb(%.0f,%.0f,%.0f)", STEPS[i][2], STEPS[i][1], STEPS[i][0]),
+                         i + 1 < STEP_COUNT ? format("up to %.2g px", (i + 1)*c.fit.rms) : std::string("farther")});
+    return scale;
+}
+
+std::vector<Photo> photosToShow(const RigCalibration& c)
+{
+    if (c.photos.size() <= MOST_PHOTOS)
+        return c.photos;
+    std::vector<std::pair<double, size_t>> byConcern;
+    for (size_t i = 0; i < c.photos.size(); i++)
+        byConcern.push_back({-concernOf(c, c.photos[i]), i});
+    std::sort(byConcern.begin(), byConcern.end());
+    std::vector<size_t> chosen;
+    for (size_t k = 0; k < MOST_PHOTOS; k++)
+        chosen.push_back(byConcern[k].second);
+    std::sort(chosen.begin(), chosen.end());
+    std::vector<Photo> shown;
+    for (size_t i : chosen)
+        shown.push_back(c.photos[i]);
+    return shown;
+}
+
 Thumbnail makeThumbnail(const RigCalibration& c, const Photo& photo)
 {
     const Mat grey = readGrey(photo.path);
@@ -73,17 +154,16 @@ Thumbnail makeThumbnail(const RigCalibration& c, const Photo& photo)
     Mat small, picture;
     resize(grey, small, Size(), scale, scale, INTER_AREA);
     cvtColor(small, picture, COLOR_GRAY2BGR);
-    const std::vector<Point2d> used = usedPoints(c, photo);
+    const std::vector<PointFate> fates = fatesOf(c, photo);
     int found = 0, leftOut = 0;
-    for (const Point2d& p : photo.points)
+    for (size_t i = 0; i < fates.size(); i++)
     {
+        const Point2d& p = photo.points[i];
         if (!seen(p))
             continue;
-        const bool isUsed = std::find(used.begin(), used.end(), p) != used.end();
         found++;
-        leftOut += !isUsed;
-        circle(picture, (p + Point2d(0.5, 0.5))*scale - Point2d(0.5, 0.5), isUsed ? 3 : 5, isUsed ? USED : LEFT_OUT, FILLED,
-               LINE_AA);
+        leftOut += !fates[i].used;
+        drawPoint(picture, (p + Point2d(0.5, 0.5))*scale - Point2d(0.5, 0.5), fates[i], c.fit.rms);
     }
     std::vector<uchar> bytes;
     imencode(".jpg", picture, bytes, {IMWRITE_JPEG_QUALITY, QUALITY});

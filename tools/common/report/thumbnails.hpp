@@ -20,6 +20,17 @@ struct Thumbnail
 //! The images that the views of the sets came from; none for corners that came from a file.
 std::vector<Photo> photosOf(const RigViewSets& sets);
 
+//! Colours of points in CSS, and how far these lie from where the calibration puts them, in words.
+struct PhotoScale
+{
+    std::string colour, name;
+};
+std::vector<PhotoScale> photoScale(const RigCalibration& calibration);
+
+/** Those that are worth their place in a page, in the order that they have: all, or of very many those to look at first, which are
+images without target or with points left out, then those whose points lie farthest off. */
+std::vector<Photo> photosToShow(const RigCalibration& calibration);
+
 //! Throws Failure if the image cannot be read any more.
 Thumbnail makeThumbnail(const RigCalibration& calibration, const Photo& photo);
 

@@ -57,22 +57,21 @@ class ScaleBar
 {
 public:
     ScaleBar(const Range& range, const std::string& unit, int rows)
-        : range_(range), unit_(unit), rows_(rows), scale_(scaleFor(rows)), letters_(cvRound(22*scale_)),
+        : range_(range), title_(unit.empty() ? "depth z" : "depth z, " + unit), rows_(rows), scale_(scaleFor(rows)), letters_(cvRound(22*scale_)),
           thick_(std::max(1, cvRound(1.4*scale_)))
     {
         const int margin = 2*letters_;
-        bar_ = Rect(letters_, margin + (unit.empty() ? 0 : letters_), cvRound(1.2*letters_), 0);
+        bar_ = Rect(letters_, margin + letters_, cvRound(1.2*letters_), 0);
         bar_.height = std::max(1, rows - bar_.y - margin);
         ticks_ = ticksOf(range.near, range.far, std::max(2, bar_.height/(4*letters_)));
     }
 
     cv::Mat draw() const
     {
-        int widest = widthOf(unit_);
+        int widest = widthOf(title_) - (textLeft() - letters_);
         for (const double tick : ticks_)
             widest = std::max(widest, widthOf(textOf(tick)));
-        const int textLeft = bar_.br().x + letters_;
-        cv::Mat strip(rows_, textLeft + widest + letters_, CV_8UC3, GROUND);
+        cv::Mat strip(rows_, textLeft() + widest + letters_, CV_8UC3, GROUND);
         cv::Mat levels(bar_.size(), CV_32F);
         for (int y = 0; y < levels.rows; y++)       // far above, near below, as a floor runs
             levels.row(y).setTo(255.*(y + 0.5)/levels.rows);
@@ -81,14 +80,14 @@ public:
         {
             const int y = bar_.y + cvRound(range_.levelOf(tick)/255.*(bar_.height - 1));
             cv::line(strip, Point(bar_.br().x, y), Point(bar_.br().x + letters_/2, y), INK, thick_);
-            write(strip, textOf(tick), Point(textLeft, y + letters_/2 - thick_));
+            write(strip, textOf(tick), Point(textLeft(), y + letters_/2 - thick_));
         }
-        if (!unit_.empty())
-            write(strip, unit_, Point(textLeft, bar_.y - letters_));
+        write(strip, title_, Point(letters_, bar_.y - letters_));
         return strip;
     }
 
 private:
+    int textLeft() const { return bar_.br().x + letters_; }
     std::string textOf(double tick) const
     {
         return format("%.*f", decimalsOf(ticks_), tick);
@@ -104,7 +103,7 @@ private:
     }
 
     Range range_;
-    std::string unit_;
+    std::string title_;
     int rows_;
     double scale_;
     int letters_, thick_;       // height of a letter, width of a line

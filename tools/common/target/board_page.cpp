@@ -139,10 +139,11 @@ void BoardPage::choosePaper(const std::string& paper, Size2d needed)
     {
         if (paper.empty() ? p.height < 297 : paper != p.name)
             continue;
-        const bool upright = fits(p.width, p.height);
-        if (!upright && !fits(p.height, p.width))
+        const bool upright = fits(p.width, p.height), across = fits(p.height, p.width);
+        if (!upright && !across)
             continue;
-        paper_ = upright ? Size2d(p.width, p.height) : Size2d(p.height, p.width);
+        // As the board lies, so that the paper's edges are where its own are.
+        paper_ = upright && !(across && board_.width > board_.height) ? Size2d(p.width, p.height) : Size2d(p.height, p.width);
         paperName_ = p.name;
         return;
     }

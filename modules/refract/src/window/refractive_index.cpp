@@ -46,26 +46,27 @@ int editDistance(const std::string& a, const std::string& b)
     return row.back();
 }
 
+//! A slip of the finger, or the rest left out: so few letters that another word is not meant.
+bool isNear(const std::string& typed, const std::string& known)
+{
+    const size_t LEAST_BEGINNING = 3;
+    return editDistance(typed, known) <= (int)(typed.size() + 3)/4 ||
+           (typed.size() >= LEAST_BEGINNING && known.compare(0, typed.size(), typed) == 0);
+}
+
 void failUnknown(const std::string& name)
 {
-    const char* nearest = "";
-    int least = std::numeric_limits<int>::max();
-    std::string names;
+    std::string near, names;
     for (const Material& m : materials())
     {
         names += (names.empty() ? "" : ", ") + std::string(m.name);
         for (const char* word : {m.name, m.otherName})
-        {
-            const int distance = word ? editDistance(lower(name), lower(word)) : least;
-            if (distance < least)
-            {
-                least = distance;
-                nearest = word;
-            }
-        }
+            if (word && isNear(lower(name), lower(word)))
+                near += (near.empty() ? "" : ", ") + std::string("'") + word + "'";
     }
-    CV_Error_(Error::StsBadArg, ("material is '%s', which is not known; nearest is '%s', of %s", name.c_str(), nearest,
-                                 names.c_str()));
+    CV_Error_(Error::StsBadArg, ("material is '%s', which is not known; %s%s%s", name.c_str(), near.empty() ? "those that are: " :
+                                 "nearest is ", near.empty() ? names.c_str() : near.c_str(),
+                                 near.empty() ? "; of any other give the index" : ""));
 }
 
 const Material& findMaterial(const std::string& name)
