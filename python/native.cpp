@@ -100,10 +100,11 @@ static PyObject* errorType()
     {
         PyObject* const error = PyObject_GetAttrString(cv2, "error");
         Py_DECREF(cv2);
-        return error;
+        if (error)
+            return error;       // else a folder of that name, or what is left of an installation
     }
-    if (!PyErr_ExceptionMatches(PyExc_ImportError))
-        return NULL;
+    if (!PyErr_ExceptionMatches(PyExc_Exception))
+        return NULL;            // an interruption
     PyErr_Clear();
     PyObject* const attributes = Py_BuildValue("{s:O,s:O,s:O,s:O,s:O,s:O}", "file", Py_None, "func", Py_None, "line",
                                                Py_None, "code", Py_None, "msg", Py_None, "err", Py_None);

@@ -166,3 +166,22 @@ def test_a_rig_is_read_back(tmp_path):
     assert list(window_of_camera) == [0, 0, 1] and covariance.shape == (count, count)
     with pytest.raises(refract.error, match="missing.yml"):
         refract.readRig(str(tmp_path / "missing.yml"))
+
+
+@pytest.mark.parametrize("arguments", [
+    ((0, 0, 1), -20., 1.5), ((0, 0, 0), 20., 1.5), ((0, np.nan, 1), 20., 1.5), ((0, 0, -1), 20., 1.5),
+    ((0, 0, 1), np.nan, 1.5), ((0, 0, 1), 20., 0.5)])
+def test_a_bad_window_is_refused_and_nothing_else_happens(arguments):
+    for _ in range(50):         # what is freed twice shows sooner or later
+        with pytest.raises(refract.error, match="normal|thickness|index"):
+            refract.GlassWindow(*arguments)
+
+
+@pytest.mark.parametrize("count", [3, 5])       # the bits that a type has for its depth, in OpenCV 4 and 5
+def test_map_types_of_every_cv2(count):
+    K = np.array([[1000., 0, 320], [0, 1000, 240], [0, 0, 1]])
+    window = refract.GlassWindow((0.1, 0, 1), 20., 1.5)
+    for depth, channels, dtype in ((3, 2, np.int16), (5, 2, np.float32), (5, 1, np.float32)):
+        first = refract.initRefractiveUndistortRectifyMap(K, None, window, (0, 0, 1, 600), None, K, (64, 48),
+                                                          depth + ((channels - 1) << count))[0]
+        assert first.dtype == dtype and first.shape == ((48, 64, 2) if channels == 2 else (48, 64))

@@ -95,8 +95,9 @@ std::string Plot::svg() const
 
 void Plot::checkAvailable()
 {
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        throw Failure("--report needs gnuplot to draw its pictures: install gnuplot-nox");
+    // That it is there is not enough: what it lacks would be found at the end of a calibration.
+    if (std::system("gnuplot -e 'set terminal svg' >/dev/null 2>&1") != 0)
+        throw Failure("--report needs gnuplot with its terminal 'svg' to draw its pictures: install gnuplot-nox");
 }
 
 std::string Plot::quoted(const std::string& text)

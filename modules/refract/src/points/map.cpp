@@ -261,16 +261,25 @@ void forEachTile(Size size, const Body& body)
     });
 }
 
+//! The type that m1type means, whether counted as by OpenCV 4 or 5: a Python program's cv2 need not be the OpenCV inside.
+static int typeOfMap(int m1type)
+{
+    if (m1type <= 0)
+        return CV_16SC2;
+    for (int known : { CV_16SC2, CV_32FC1, CV_32FC2 })
+        for (int channelShift : { 3, 5 })
+            if (m1type == CV_MAT_DEPTH(known) + ((CV_MAT_CN(known) - 1) << channelShift))
+                return known;
+    CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
+                                            typeToString(m1type).c_str()));
+}
+
 //! The maps to fill, of the types that m1type means.
 struct Maps
 {
     Maps(Size size, int m1type, OutputArray first_, OutputArray second_)
     {
-        if (m1type <= 0)
-            m1type = CV_16SC2;
-        if (m1type != CV_16SC2 && m1type != CV_32FC1 && m1type != CV_32FC2)
-            CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
-                                                    typeToString(m1type).c_str()));
+        m1type = typeOfMap(m1type);
         if (size.width < 0 || size.height < 0)
             CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
         first_.create(size, m1type);

@@ -8,17 +8,25 @@ namespace cv { namespace refract {
 
 GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1), wavelength(0) {}
 
-GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
-    : normal(normal_), distance(distance_), thickness(1, thickness_), index(1, index_), innerIndex(1),
-      outerIndex(outerIndex_), wavelength(0)
+static GlassWindow pane(const Vec3d& normal, double thickness, double index, double distance, double outerIndex)
 {
     const double length = cv::norm(normal);
     if (!(length > 0) || !std::isfinite(length))
         CV_Error_(Error::StsBadArg, ("normal is (%g, %g, %g); it must be finite and not zero",
                                      normal[0], normal[1], normal[2]));
-    normal /= length;
-    check();
+    GlassWindow window;
+    window.normal = normal/length;
+    window.thickness.assign(1, thickness);
+    window.index.assign(1, index);
+    window.distance = distance;
+    window.outerIndex = outerIndex;
+    window.check();
+    return window;
 }
+
+// What is wrong is found before any member is made: OpenCV's bindings destroy an object whose constructor threw once more.
+GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
+    : GlassWindow(pane(normal_, thickness_, index_, distance_, outerIndex_)) {}
 
 // Beyond what there is, and small enough that no product of them overflows.
 static const double MOST_LENGTH = 1e100, MOST_INDEX = 1e6;
