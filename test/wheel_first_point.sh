@@ -13,8 +13,8 @@ data=samples/data/stereo
 begun=$(date +%s.%N)
 after() { echo "after $(awk "BEGIN { print $(date +%s.%N) - $begun }") s: $*"; }
 
-python3 -m venv environment
-PATH=$PWD/environment/bin:$PATH
+python3 -m venv "an environment"       # whose name has a space
+PATH="$PWD/an environment/bin:$PATH"
 pip install -q --disable-pip-version-check --no-index --find-links packages opencv-refract
 after "installed on $(python3 --version), Debian $(cat /etc/debian_version)"
 refract_calib --pattern=chessboard --size=6x5 --square=39 --thickness=20 --index=1.5437 \

