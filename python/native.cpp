@@ -59,8 +59,22 @@ static int refuseToMake(PyObject* self, PyObject*, PyObject*)
     PyErr_Format(PyExc_TypeError, "%R is made by its create functions", (PyObject*)Py_TYPE(self));
     return -1;
 }
-static initproc constructorOf(int) { return refuseToMake; }
-template<typename Function> static initproc constructorOf(Function* f) { return (initproc)f; }
+
+//! A generated constructor says that all is well after an exception, too, which Python takes for an error of its own.
+template<typename Self>
+static int construct(int (*constructor)(Self*, PyObject*, PyObject*), PyObject* self, PyObject* args, PyObject* keywords)
+{
+    const int result = constructor((Self*)self, args, keywords);
+    return PyErr_Occurred() ? -1 : result;
+}
+
+template<auto constructor> static initproc constructorOf()
+{
+    if constexpr (std::is_integral<decltype(constructor)>::value)
+        return refuseToMake;
+    else
+        return [](PyObject* self, PyObject* args, PyObject* keywords) { return construct(constructor, self, args, keywords); };
+}
 
 static bool registerNewType(PyObject* module, const char* name, PyObject* type, const std::string&)
 {
@@ -123,7 +137,7 @@ static bool fill(PyObject* m)
 
     PyObject* pyopencv_NoBase_TypePtr = NULL;
 #define CVPY_TYPE(EXPORT_NAME, CLASS_ID, _1, _2, BASE, CONSTRUCTOR, SCOPE) \
-    CVPY_TYPE_INIT_DYNAMIC(EXPORT_NAME, CLASS_ID, return false, BASE, constructorOf(CONSTRUCTOR), "")
+    CVPY_TYPE_INIT_DYNAMIC(EXPORT_NAME, CLASS_ID, return false, BASE, constructorOf<CONSTRUCTOR>(), "")
 #include "pyopencv_generated_types.h"
 #undef CVPY_TYPE
 
