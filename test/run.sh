@@ -140,9 +140,14 @@ if [ $fast = no ]; then
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
   # One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
   ASAN_OPTIONS=detect_leaks=0; OPENCV_FOR_THREADS_NUM=1; export ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
-  suite tests_sanitize build/sanitize/bin/refract_tests '~[slow]~[.]'
+  # A calibration from images takes ten times as long under sanitizers: one, whole, instead of the tools' many.
+  suite tests_sanitize build/sanitize/bin/refract_tests '~[slow]~[.]~[calib_tool]~[calib_rig]'
   suite tools_tests_sanitize build/sanitize/bin/refract_tools_tests '~[slow]~[.]'
   count_suites
+  pair=samples/data/stereo
+  run "a calibration from images with its report, under sanitizers" build/sanitize/bin/refract_calib --size=6x5 --square=39 \
+    --thickness=20 --index=1.5437 --direct="$pair/direct1/*" --glass="$pair/glass1/*" --direct2="$pair/direct2/*" \
+    --glass2="$pair/glass2/*" --out=build/sanitize/calib.yml --report=build/sanitize/report.html
   unset OPENCV_FOR_THREADS_NUM
   run "fuzzing: every parser and every public call, ten seconds each" test/fuzz/run.sh
 fi
