@@ -8,7 +8,8 @@ namespace cv { namespace refract {
 
 GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1), wavelength(0) {}
 
-static GlassWindow pane(const Vec3d& normal, double thickness, double index, double distance, double outerIndex)
+//! The unit normal, after a check of everything.
+static Vec3d checkedNormal(const Vec3d& normal, double thickness, double index, double distance, double outerIndex)
 {
     const double length = cv::norm(normal);
     if (!(length > 0) || !std::isfinite(length))
@@ -21,12 +22,14 @@ static GlassWindow pane(const Vec3d& normal, double thickness, double index, dou
     window.distance = distance;
     window.outerIndex = outerIndex;
     window.check();
-    return window;
+    return window.normal;
 }
 
 // What is wrong is found before any member is made: OpenCV's bindings destroy an object whose constructor threw once more.
+// A window that a function returns would not do: it may be made, and destroyed, in this one's place.
 GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
-    : GlassWindow(pane(normal_, thickness_, index_, distance_, outerIndex_)) {}
+    : normal(checkedNormal(normal_, thickness_, index_, distance_, outerIndex_)), distance(distance_), thickness(1, thickness_),
+      index(1, index_), innerIndex(1), outerIndex(outerIndex_), wavelength(0) {}
 
 // Beyond what there is, and small enough that no product of them overflows.
 static const double MOST_LENGTH = 1e100, MOST_INDEX = 1e6;
