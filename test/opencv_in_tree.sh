@@ -70,26 +70,26 @@ compile() {     # compile DIRECTORY COMMANDS
   [ -s "$2" ] || { echo "FAILED: no file of the module is to be compiled" >&2; exit 1; }
   (cd "$1" && tr '\n' '\0' <"$2" | xargs -0 -n 1 -P "$(nproc)" sh -ec)
 }
-without_ceres() {   # without_ceres DIRECTORY: that it is built, without the calibrators
+without_ceres() {   # without_ceres DIRECTORY COMMANDS: that it is built, without the calibrators; what compiles it, one a line
   grep -q "^-- *To be built:.* refract" "$1.log" && grep -q "refract: without Ceres, so calibrateGlass" "$1.log" ||
     { echo "FAILED: without Ceres OpenCV does not build refract: $1.log" >&2; exit 1; }
-  commands "$1" >"$work/commands_without.txt"
-  if grep "calibrate_rig\|/test_calibration" "$work/commands_without.txt"; then
+  commands "$1" >"$2"
+  if grep "calibrate_rig\|/test_calibration" "$2"; then
     echo "FAILED: without Ceres calibrators are compiled" >&2; exit 1
   fi
-  grep REFRACT_WITHOUT_CERES "$work/commands_without.txt" >"$work/commands_without_only.txt"
 }
 
-# Where one of the two is missing the module is built all the same. What is compiled there as in the main build is not again.
+# Where one of the two is missing the module is built all the same: in OpenCV 4 as C++14, as it is Ceres that asks for C++17.
 for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
   configure "$work/without" $missing
-  without_ceres "$work/without"
-  compile "$work/without" "$work/commands_without_only.txt"
-  rm -rf "$work/without"
-  echo "passed: built with $missing"
+  without_ceres "$work/without" "$work/commands_without.txt"
+  echo "passed: left the calibrators out with $missing"
 done
+compile "$work/without" "$work/commands_without.txt"
+rm -rf "$work/without"
+echo "passed: compiled so"
 
-configure "$build"
+configure "$build" -DREFRACT_WITH_CERES=AUTO
 # Its universal intrinsics, of every level, as compilers without vector types get them.
 commands "$build" | grep dispatch/kernels_ |
   sed 's/ -o / -DREFRACT_UNIVERSAL_INTRINSICS -Wno-uninitialized -Wno-maybe-uninitialized -fsyntax-only&/' >"$work/commands_universal.txt"
@@ -114,7 +114,7 @@ PYTHONPATH=$build/python_loader:$source/modules/python/test \
 
 # The same OpenCV with the module without Ceres.
 configure "$build" -DREFRACT_WITH_CERES=OFF
-without_ceres "$build"
+without_ceres "$build" "$work/commands_without.txt"
 ninja -C "$build" opencv_test_refract opencv_python3
 "$build/bin/opencv_test_refract"
 PYTHONPATH=$build/python_loader:$source/modules/python/test \
