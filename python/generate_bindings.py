@@ -18,7 +18,6 @@ LOOSER_TYPES = [
     (r"\w+", "distCoeffs[12]?", "None"),
     ("refractiveUndistortPoints|initRefractiveUndistortRectifyMap", "depth", "float"),
     ("initRefractiveUndistortRectifyMap", "R|newCameraMatrix", "None"),
-    ("refractiveSolvePnP(?:Ransac)?", "rvec|tvec", "None"),
     ("triangulateRefractiveExtended", "calibrationCovariance", "None"),
     (r"\w*[cC]alibrateGlass(?:Extended)?", "imagePointsDirect[12]?", "None"),
 ]

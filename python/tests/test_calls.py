@@ -302,19 +302,19 @@ def test_pose_among_wrong_matches(rig, board):
     wrong = np.arange(0, len(pixels), 4)
     pixels.reshape(-1, 2)[wrong] += 40
     for camera in (rig.lens1, (rig.camera1,)):
-        found, rvec, tvec, inliers = refract.refractiveSolvePnPRansac(board.target[0], pixels, *camera, None, None,
-                                                                      iterationsCount=300, reprojectionError=2.)
+        found, rvec, tvec, inliers = refract.refractiveSolvePnPRansac(board.target[0], pixels, *camera, iterationsCount=300,
+                                                                      reprojectionError=2.)
         assert found is True and inliers.dtype == np.int32
         np.testing.assert_array_equal(inliers.ravel(), np.setdiff1d(np.arange(len(pixels)), wrong))
         np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-4)
     unseen = np.full_like(pixels, np.nan)
-    found, rvec, _, _ = refract.refractiveSolvePnPRansac(board.target[0], unseen, rig.camera1, None, None)
+    found, rvec, _, _ = refract.refractiveSolvePnPRansac(board.target[0], unseen, rig.camera1)
     assert found is False and rvec is None
 
 
 def test_pose(rig, board):
     for camera in (rig.lens1, (rig.camera1,)):
-        found, rvec, tvec, error = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera, None, None)
+        found, rvec, tvec, error = refract.refractiveSolvePnP(board.target[0], board.glass1[0], *camera)
         assert found is True and error.shape == (1, 1) and error < 1e-6
         np.testing.assert_allclose(rvec.ravel(), board.rvecs[0], atol=1e-8)
         np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-5)

@@ -1146,12 +1146,12 @@ gives all of them an image; rvec and tvec are then left as they were, reprojecti
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false,
+        OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess = false,
         OutputArray reprojectionError = noArray());
 
 //! @overload
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
-        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec,
         bool useExtrinsicGuess = false, OutputArray reprojectionError = noArray());
 
 /** @brief All poses of a known target that explain what is seen: the minima of the reprojection error, the smallest first.
@@ -1207,12 +1207,12 @@ find among pixels strewn over the image (or all that were seen); rvec and tvec a
 */
 CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess = false, int iterationsCount = 100,
+        OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess = false, int iterationsCount = 100,
         float reprojectionError = 8.0f, double confidence = 0.99, OutputArray inliers = noArray());
 
 //! @overload
 CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
-        const Ptr<RefractiveCamera>& camera, InputOutputArray rvec, InputOutputArray tvec,
+        const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec,
         bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
         double confidence = 0.99, OutputArray inliers = noArray());
 

@@ -244,7 +244,7 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
 }
 
 bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
-                              InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess, int iterationsCount,
+                              OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess, int iterationsCount,
                               float reprojectionError, double confidence, OutputArray inliers_)
 {
     CV_INSTRUMENT_REGION();
@@ -271,7 +271,7 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
 }
 
 bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix, InputArray distCoeffs,
-                              const GlassWindow& window, InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess,
+                              const GlassWindow& window, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
                               int iterationsCount, float reprojectionError, double confidence, OutputArray inliers)
 {
     CV_INSTRUMENT_REGION();

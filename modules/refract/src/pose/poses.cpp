@@ -300,8 +300,8 @@ static void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArra
 }
 
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
-                        InputArray distCoeffs, const GlassWindow& window, InputOutputArray rvec,
-                        InputOutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
+                        InputArray distCoeffs, const GlassWindow& window, OutputArray rvec,
+                        OutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
 {
     CV_INSTRUMENT_REGION();
 
@@ -310,7 +310,7 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputAr
 }
 
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
-                        InputOutputArray rvec, InputOutputArray tvec, bool useExtrinsicGuess,
+                        OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
                         OutputArray reprojectionError)
 {
     CV_INSTRUMENT_REGION();

@@ -312,7 +312,7 @@ class refract_test(NewOpenCVTests):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
         pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
         for args in ((self.camera1,), (K, D, make_window())):
-            found, rvec, tvec, error = cv.refract.refractiveSolvePnP(make_board(), pixels, *args, None, None)
+            found, rvec, tvec, error = cv.refract.refractiveSolvePnP(make_board(), pixels, *args)
             self.assertIs(True, found)
             self.assertLess(error[0, 0], 1e-6)
             self.assertClose(pose[0], rvec, 1e-6)
