@@ -616,7 +616,9 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
         WARN("SKIPPED: gnuplot is not installed");
         return;
     }
-    const ToolResult r = runTool(inputs(f, PANE + lens(f) + " --report=" + f / "report.html"));
+    const std::string command = inputs(f, PANE + lens(f) + " --report=" + f / "report.html");
+    CHECK(mentions(runTool(command, "TMPDIR=/nonexistent").err, "TMPDIR is '/nonexistent'; make it"));
+    const ToolResult r = runTool(command);
     INFO(r.err);
     REQUIRE(r.code == 0);
     const std::string page = readFile(f / "report.html");

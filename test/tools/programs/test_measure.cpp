@@ -446,6 +446,7 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
         {calib + " " + (folder / "none.jpg") + " " + second + TARGET, "none.jpg"},
         {calib + " " + write("cut.jpg", whole.substr(0, whole.size()/2)) + " " + second + TARGET, "cut short"},
         {calib + " " + write("noise.jpg", noise) + " " + second + TARGET, "noise.jpg"},
+        {calib + " " + write("film.MP4", noise) + " " + second + TARGET, "is a video"},
         {calib + " " + write("empty.jpg", "") + " " + second + TARGET, "empty"},
         {calib + " " + STEREO + " " + second + TARGET, "folder"},
         {calib + " " + first + " " + second + " --size=6 --square=39", "--size"},

@@ -6,6 +6,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -93,13 +94,26 @@ void requireWritable(const std::string& path)
         throw Failure("cannot write '" + path + "': no right to write in the folder '" + folder.string() + "'");
 }
 
+fs::path temporaryFolder()
+{
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (error)
+    {
+        const char* const name = std::getenv("TMPDIR");
+        throw Failure(std::string("there is no folder for temporary files") + (name ? ": TMPDIR is '" + std::string(name) + "'" : "")
+                      + "; make it, or set TMPDIR to another");
+    }
+    return folder;
+}
+
 OutputFile::OutputFile(const std::string& path, const std::string& extension) : path_(path)
 {
     requireWritable(path);
     if (!isSpecialFile(path))
         target_ = targetOfLinks(path);
     const fs::path name(target_.empty() ? path : target_);
-    temporary_ = ((target_.empty() ? fs::temp_directory_path() : folderOf(name))
+    temporary_ = ((target_.empty() ? temporaryFolder() : folderOf(name))
                   / ("." + name.stem().string() + ".part" + std::to_string(getpid())
                      + (name.has_extension() ? name.extension().string() : extension))).string();
 }

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_FILE_OUTPUT_HPP
 
 #include <opencv2/core.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ bool isSpecialFile(const std::string& path);
 
 //! Throws Failure if no file can be written there: a folder of that name, no folder for it, no right, a read-only file.
 void requireWritable(const std::string& path);
+
+//! Where temporary files go: TMPDIR, if it is set. Throws Failure if there is no such folder.
+std::filesystem::path temporaryFolder();
 
 void writeText(const std::string& path, const std::string& text);
 void writeImage(const std::string& path, const cv::Mat& image, const std::vector<int>& parameters = {});

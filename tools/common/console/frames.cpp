@@ -12,23 +12,12 @@
 #include <filesystem>
 #include <map>
 #include <regex>
-#include <set>
 
 namespace tools {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-//! By its name, as decoders of video take all kinds of files for one, texts too.
-bool isNamedAsVideo(const std::string& path)
-{
-    static const std::set<std::string> VIDEOS = {".avi", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".ts", ".wmv",
-                                                 ".flv", ".ogv", ".mjpg", ".mjpeg", ".y4m", ".264", ".h264", ".265", ".h265"};
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return VIDEOS.count(extension) > 0;
-}
 
 //! left%04d.png is every file left NUMBER .png whose number has four digits or more; in the order of numbers.
 bool findNumbered(const std::string& source, std::vector<std::string>& files, std::vector<long>& numbers)

@@ -9,9 +9,11 @@
 #include <opencv2/imgproc.hpp>
 #include <glob.h>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 namespace tools {
 
@@ -66,8 +68,11 @@ cv::Mat decode(const std::string& path, int flags)
     {
         image.release();    // said below
     }
+    if (image.empty() && isNamedAsVideo(path))
+        throw Failure("'" + path + "' is a video: save the frames wanted as images, as in ffmpeg -i " + path + " -r 1 frame%04d.png");
     if (image.empty())
-        throw Failure("'" + path + "' is not an image that can be read, or is cut short: take or copy it again");
+        throw Failure("'" + path + "' is not an image of a kind that can be read (PNG, JPEG, TIFF, BMP, PGM, PPM are), or is cut "
+                      "short: turn it into one of these, or take or copy it again");
     if (exifOrientation(bytes) != 1)
         noteTurnedImage(path);
     return image;
@@ -119,6 +124,15 @@ cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, in
         channels.back() = alpha;
     cv::merge(channels, result);
     return result;
+}
+
+bool isNamedAsVideo(const std::string& path)
+{
+    static const std::set<std::string> VIDEOS = {".avi", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".ts", ".wmv",
+                                                 ".flv", ".ogv", ".mjpg", ".mjpeg", ".y4m", ".264", ".h264", ".265", ".h265"};
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return VIDEOS.count(extension) > 0;
 }
 
 std::vector<std::string> matchingFiles(const std::string& pattern)

@@ -26,6 +26,9 @@ alpha: a pixel is as opaque as the least of its colours.
 @param maps CV_32FC2 */
 cv::Mat remapChannels(const cv::Mat& image, const std::vector<cv::Mat>& maps, int interpolation);
 
+//! By its name, as decoders of video take all kinds of files for one, texts too.
+bool isNamedAsVideo(const std::string& path);
+
 //! Files that match, sorted; none is no error.
 std::vector<std::string> matchingFiles(const std::string& glob);
 

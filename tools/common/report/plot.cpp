@@ -3,6 +3,7 @@
 
 #include "report/plot.hpp"
 #include "console/cli.hpp"
+#include "console/file_output.hpp"
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -20,10 +21,9 @@ class TemporaryFolder
 public:
     TemporaryFolder()
     {
-        std::string name = (std::filesystem::temp_directory_path() / "refract-plot-XXXXXX").string();
+        std::string name = (temporaryFolder() / "refract-plot-XXXXXX").string();
         if (!mkdtemp(&name[0]))
-            throw Failure("cannot make a temporary folder in " + std::filesystem::temp_directory_path().string()
-                          + ": make room there or set TMPDIR");
+            throw Failure("cannot make a temporary folder in " + temporaryFolder().string() + ": make room there or set TMPDIR");
         path_ = name;
     }
     ~TemporaryFolder()
