@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
 """GlassWindow and RefractiveCamera."""
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -185,3 +188,20 @@ def test_map_types_of_every_cv2(count):
         first = refract.initRefractiveUndistortRectifyMap(K, None, window, (0, 0, 1, 600), None, K, (64, 48),
                                                           depth + ((channels - 1) << count))[0]
         assert first.dtype == dtype and first.shape == ((48, 64, 2) if channels == 2 else (48, 64))
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda made: pickle.loads(pickle.dumps(made))])
+def test_windows_and_cameras_are_copied_and_pickled(copied):
+    window = refract.GlassWindow((0.1, 0.05, 1), 20., 1.5437, 50., 1.333)
+    window.wavelength, window.materials = 550., ["air", "N-BK7", "water"]
+    for made in (window, refract.GlassWindow()):
+        back = copied(made)
+        for name in refract._WINDOW_FIELDS:
+            assert list(np.ravel(getattr(back, name))) == list(np.ravel(getattr(made, name)))
+    for camera in (refract.RefractiveCamera.create(K, np.array([-0.1, 1/3, 0, 0]), window),
+                   refract.RefractiveCamera.createFisheye(K, np.array([-0.1, 1/3, 0, 0]), window)):
+        camera.setImageSize((1280, 960))
+        back = copied(camera)
+        assert back.lensModel() == camera.lensModel() and back.imageSize() == camera.imageSize()
+        np.testing.assert_array_equal(back.lensParameters(), camera.lensParameters())
+        assert back.window().normal == camera.window().normal and back.window().materials == camera.window().materials
