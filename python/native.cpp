@@ -18,15 +18,46 @@
 
 using namespace cv;
 
-// Arrays of the other byte order, and views into packed records, are copied first: the conversion of cv2 reads the former
-// as if they were native and refuses the latter. Every conversion of the generated code to Mat comes here.
+/* Arrays of the other byte order, and views into packed records, are copied first: the conversions of cv2 take them as if they
+were native and aligned. Every conversion of the generated code to the types below comes here. */
+template<typename Conversion>
+static bool convert(PyObject* o, const ArgInfo& info, Conversion conversion)
+{
+    if (!o || !PyArray_Check(o) || PyArray_ISBEHAVED_RO((PyArrayObject*)o))
+        return conversion(o);
+    if (info.outputarg)
+    {
+        failmsg("%s is written to; its numbers must be aligned and in this machine's byte order", info.name);
+        return false;
+    }
+    PySafeObject copy(PyArray_FROM_OF(o, NPY_ARRAY_ALIGNED | NPY_ARRAY_NOTSWAPPED));
+    return copy && conversion(copy);
+}
+
 static bool pyopencv_to(PyObject* o, Mat& m, const ArgInfo& info)
 {
-    if (!o || !PyArray_Check(o) || PyArray_ISBEHAVED_RO((PyArrayObject*)o) || info.outputarg)
-        return pyopencv_to<Mat>(o, m, info);
-    PySafeObject copy(PyArray_FROM_OF(o, NPY_ARRAY_ALIGNED | NPY_ARRAY_NOTSWAPPED));
-    return copy && pyopencv_to<Mat>(copy, m, info);
+    return convert(o, info, [&](PyObject* array) { return pyopencv_to<Mat>(array, m, info); });
 }
+
+template<int n>
+static bool pyopencv_to(PyObject* o, Vec<double, n>& v, const ArgInfo& info)
+{
+    return convert(o, info, [&](PyObject* array) { return pyopencv_to<double, n>(array, v, info); });
+}
+
+template<typename T>
+static bool toNumbers(PyObject* o, std::vector<T>& v, const ArgInfo& info)
+{
+    if (o && PyArray_Check(o) && PyArray_NDIM((PyArrayObject*)o) == 0)      // it has no stride, which cv2 reads
+    {
+        failmsg("%s is a single number; it must be a list or an array of them", info.name);
+        return false;
+    }
+    return convert(o, info, [&](PyObject* array) { return pyopencv_to<T>(array, v, info); });
+}
+
+static bool pyopencv_to(PyObject* o, std::vector<double>& v, const ArgInfo& info) { return toNumbers(o, v, info); }
+static bool pyopencv_to(PyObject* o, std::vector<int>& v, const ArgInfo& info) { return toNumbers(o, v, info); }
 
 typedef std::vector<Mat> vector_Mat;
 typedef std::vector<vector_Mat> vector_vector_Mat;
@@ -53,33 +84,45 @@ static bool addObject(PyObject* module, const char* name, PyObject* object)
     return false;
 }
 
-//! The type's constructor; a type that has none in C++ must not be made empty in Python.
-static int refuseToMake(PyObject* self, PyObject*, PyObject*)
-{
-    PyErr_Format(PyExc_TypeError, "%R is made by its create functions", (PyObject*)Py_TYPE(self));
-    return -1;
-}
-
-//! A generated constructor says that all is well after an exception, too, which Python takes for an error of its own.
+//! Allocates and constructs at once, so that no object without contents can be had. NULL and an exception on failure.
 template<typename Self>
-static int construct(int (*constructor)(Self*, PyObject*, PyObject*), PyObject* self, PyObject* args, PyObject* keywords)
+static PyObject* make(int (*constructor)(Self*, PyObject*, PyObject*), PyTypeObject* type, PyObject* args, PyObject* keywords)
 {
-    const int result = constructor((Self*)self, args, keywords);
-    return PyErr_Occurred() ? -1 : result;
+    PyObject* const self = PyType_GenericAlloc(type, 0);
+    // A generated constructor says that all is well after a C++ exception, too.
+    if (!self || (constructor((Self*)self, args, keywords) == 0 && !PyErr_Occurred()))
+        return self;
+    Py_DECREF(self);
+    return NULL;
 }
 
-template<auto constructor> static initproc constructorOf()
+//! What a type is called for; one that has no constructor in C++ must not be made empty in Python.
+template<auto constructor> static newfunc makerOf()
 {
     if constexpr (std::is_integral<decltype(constructor)>::value)
-        return refuseToMake;
+        return [](PyTypeObject* type, PyObject*, PyObject*) -> PyObject*
+        { return PyErr_Format(PyExc_TypeError, "%R is made by its create functions", (PyObject*)type); };
     else
-        return [](PyObject* self, PyObject* args, PyObject* keywords) { return construct(constructor, self, args, keywords); };
+        return [](PyTypeObject* type, PyObject* args, PyObject* keywords) { return make(constructor, type, args, keywords); };
 }
 
-static bool registerNewType(PyObject* module, const char* name, PyObject* type, const std::string&)
+//! Objects hold a reference of their type, which the generated function keeps.
+template<destructor generated> static void destroy(PyObject* self)
 {
-    Py_INCREF(type);
-    return addObject(module, name, type);
+    PyTypeObject* const type = Py_TYPE(self);
+    generated(self);
+    Py_DECREF(type);
+}
+
+//! A type that none can be derived from: the generated destructor frees what it takes for an object without attributes.
+static PyObject* makeType(PyType_Spec& spec, destructor destruct, reprfunc repr, PyGetSetDef* fields, PyMethodDef* methods,
+                          newfunc maker)
+{
+    PyType_Slot slots[] = { { Py_tp_dealloc, (void*)destruct }, { Py_tp_repr, (void*)repr }, { Py_tp_getset, fields },
+                            { Py_tp_methods, methods }, { Py_tp_new, (void*)maker }, { 0, NULL } };
+    spec.slots = slots;
+    spec.flags = Py_TPFLAGS_DEFAULT;
+    return PyType_FromSpec(&spec);
 }
 
 #include "pyopencv_generated_enums.h"
@@ -135,9 +178,13 @@ static bool fill(PyObject* m)
 #include "pyopencv_generated_modules.h"
 #undef CVPY_MODULE
 
-    PyObject* pyopencv_NoBase_TypePtr = NULL;
-#define CVPY_TYPE(EXPORT_NAME, CLASS_ID, _1, _2, BASE, CONSTRUCTOR, SCOPE) \
-    CVPY_TYPE_INIT_DYNAMIC(EXPORT_NAME, CLASS_ID, return false, BASE, constructorOf<CONSTRUCTOR>(), "")
+#define CVPY_TYPE(EXPORT_NAME, CLASS_ID, _1, _2, _3, CONSTRUCTOR, _4) \
+    pyopencv_##CLASS_ID##_TypePtr = makeType(pyopencv_##CLASS_ID##_Spec, destroy<pyopencv_##CLASS_ID##_dealloc>, \
+                                             pyopencv_##CLASS_ID##_repr, pyopencv_##CLASS_ID##_getseters, \
+                                             pyopencv_##CLASS_ID##_methods, makerOf<CONSTRUCTOR>()); \
+    Py_XINCREF(pyopencv_##CLASS_ID##_TypePtr);      /* one of the module, one of this variable */ \
+    if (!addObject(m, #EXPORT_NAME, pyopencv_##CLASS_ID##_TypePtr)) \
+        return false;
 #include "pyopencv_generated_types.h"
 #undef CVPY_TYPE
 

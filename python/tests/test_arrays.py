@@ -9,7 +9,7 @@ import opencv_refract as refract
 
 
 def every_second(a):
-    wide = np.full((2*len(a), *a.shape[1:]), np.nan, a.dtype)
+    wide = np.full((2*len(a), *a.shape[1:]), np.nan if a.dtype.kind == "f" else -1, a.dtype)
     wide[::2] = a
     return wide[::2]
 
@@ -87,6 +87,51 @@ def test_layouts_of_views(rig, board, layout):
     found = refract.calibrateGlassNormal(direct, tuple(glass), rig.K1, rig.D1)
     for a, b in zip(found, expected):
         np.testing.assert_array_equal(a, b)
+
+
+VECTOR_LAYOUTS = {name: LAYOUTS[name] for name in ("other byte order", "read-only")}
+VECTOR_LAYOUTS["every second"] = every_second
+VECTOR_LAYOUTS["of packed records"] = lambda a: np.array([(x, 1) for x in a], [("x", a.dtype), ("flag", np.int8)])["x"]
+
+
+@pytest.mark.parametrize("layout", VECTOR_LAYOUTS.values(), ids=VECTOR_LAYOUTS.keys())
+def test_vectors_in_every_layout(rig, layout, tmp_path):
+    """Fields of windows, vectors of a fixed length, lists of numbers."""
+    window = refract.GlassWindow(layout(np.array([0.3, 0., 0.4])), 20., 1.5)
+    np.testing.assert_allclose(window.normal, (0.6, 0., 0.8))
+    window.thickness, window.index = layout(np.array([20., 30.])), layout(np.array([1.5, 1.6]))
+    assert list(window.thickness) == [20., 30.] and list(window.index) == [1.5, 1.6]
+    calls = [refract.refractiveEpipolarDistance(rig.pixels1, rig.pixels2 + 3, rig.camera1, rig.camera2, rig.R, rig.T,
+                                                depthRange=depths)[0]
+             for depths in ((300., 1500.), layout(np.array([300., 1500.])))]
+    np.testing.assert_array_equal(*calls)
+    name = str(tmp_path / "rig.yml")
+    refract.writeRig(name, [rig.camera1, rig.camera1], [np.eye(3)]*2, [np.zeros(3)]*2, layout(np.array([0, 0], np.int32)))
+    assert list(refract.readRigExtended(name)[3]) == [0, 0]
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32, np.int32])
+def test_a_number_is_no_list(rig, dtype, tmp_path):
+    window = refract.GlassWindow((0, 0, 1), 20., 1.5)
+    for field in ("thickness", "index"):
+        with pytest.raises((TypeError, refract.error)):
+            setattr(window, field, np.array(2, dtype))
+        assert list(getattr(window, field)) == [20. if field == "thickness" else 1.5]
+    with pytest.raises((TypeError, refract.error)):
+        refract.writeRig(str(tmp_path / "rig.yml"), [rig.camera1], [np.eye(3)], [np.zeros(3)], np.array(0, dtype))
+
+
+def test_arrays_that_are_written_to(rig):
+    zero = np.zeros(3)
+    points, expected = rig.points[:5], rig.pixels1[:5]
+    mine = np.zeros((5, 1, 2))
+    found, _ = refract.refractiveProjectPoints(points, zero, zero, rig.camera1, mine)
+    assert found is mine or np.shares_memory(found, mine)
+    np.testing.assert_array_equal(mine, expected)
+    with pytest.raises(refract.error, match="imagePoints.*byte order"):
+        refract.refractiveProjectPoints(points, zero, zero, rig.camera1, np.zeros((5, 1, 2), ">f8"))
+    with pytest.raises(refract.error, match="rvec.*byte order"):
+        refract.refractiveSolvePnP(points, expected, rig.camera1, zero.astype(">f8"), zero, useExtrinsicGuess=True)
 
 
 def test_matrices_in_every_layout(rig):

@@ -4,6 +4,7 @@
 """GlassWindow and RefractiveCamera."""
 import copy
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -205,3 +206,26 @@ def test_windows_and_cameras_are_copied_and_pickled(copied):
         assert back.lensModel() == camera.lensModel() and back.imageSize() == camera.imageSize()
         np.testing.assert_array_equal(back.lensParameters(), camera.lensParameters())
         assert back.window().normal == camera.window().normal and back.window().materials == camera.window().materials
+
+
+@pytest.mark.parametrize("made", [refract.GlassWindow, refract.RefractiveCamera, refract.FileStorage, refract.FileNode])
+def test_no_object_is_without_contents(made):
+    with pytest.raises(TypeError, match="base type"):
+        type("Derived", (made,), {})
+    if made is refract.RefractiveCamera:
+        with pytest.raises(TypeError, match="create"):
+            made.__new__(made)
+    elif made is refract.FileStorage:
+        assert not made.__new__(made).isOpened()
+    else:
+        made.__new__(made)
+
+
+def test_types_are_kept_by_their_objects_alone():
+    before = sys.getrefcount(refract.GlassWindow)
+    windows = [refract.GlassWindow((0, 0, 1), 20., 1.5) for _ in range(100)]
+    camera = refract.RefractiveCamera.create(K, None, windows[0])
+    del windows
+    for _ in range(100):
+        camera.window()
+    assert sys.getrefcount(refract.GlassWindow) <= before + 1
