@@ -60,8 +60,9 @@ def fill(cache, archive):
     """Unpacks into a directory beside the cache, which then takes its name: a cache is whole or not there."""
     cache.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=cache.parent) as work:
-        archive = Path(archive) if archive else download(Path(work))
-        check(archive)
+        if not archive:
+            archive = download(Path(work))
+            check(archive)
         unpack(archive, Path(work) / "src2")
         try:
             os.rename(Path(work) / "src2", cache)
@@ -71,6 +72,8 @@ def fill(cache, archive):
 
 
 def main(directory, archive=None):
+    if archive and Path(archive).is_file():
+        check(archive)      # also where the cache has what is wanted: the caller may link what else the archive holds
     cache = cache_directory()
     if not cache.is_dir():
         try:

@@ -55,10 +55,12 @@ END
 # ---- what goes inside
 opencv_archive=$(PYTHONPATH=python "$work/python/bin/python" -B -c "import opencv_source as source, pathlib, sys
 folder = pathlib.Path(sys.argv[1])
-print(next(folder.glob('*.tar.gz'), None) or source.download(folder))" "$work")
+print(next(folder.glob(f'*-{source.VERSION}.tar.gz'), None) or source.download(folder))" "$work")
 . packaging/wheel/dependencies.sh
 for dependency in headers zlib libpng libexif pixman cairo gnuplot assimp ceres opencv; do
-  once $dependency
+  what=""
+  [ $dependency != opencv ] || what=$(basename "$opencv_archive")
+  once $dependency "$what"
 done
 
 # ---- the wheel

@@ -9,17 +9,18 @@
 #   zig_cc, zig_cxx, zig_ar, zig_ranlib      the compiler for the oldest glibc
 # Each function makes one library; its source is Debian's, OpenCV's that of PyPI.
 
-once() {        # once NAME: runs the function NAME unless that was done before
-  [ ! -e "$work/$1.done" ] || return 0
+once() {        # once NAME SOURCE: runs the function NAME unless that was done before, with the same source
+  [ ! -e "$work/$1.done" ] || [ "$(cat "$work/$1.done")" != "$2" ] || return 0
   echo "Building $1"
   begun=$(date +%s)
-  mkdir -p "$work/$1"
+  rm -rf "${work:?}/$1"
+  mkdir "$work/$1"
   # A list of commands after || would run to its end in spite of errors, so a shell of its own says how it ended.
   code=0
   (set -e; cd "$work/$1"; "$1") >"$work/$1.log" 2>&1 & wait $! || code=$?
   [ $code = 0 ] || { tail -30 "$work/$1.log" >&2; echo "packaging/wheel: $1 could not be built: see $work/$1.log" >&2; exit 1; }
   echo "$(($(date +%s) - begun)) s"
-  touch "$work/$1.done"
+  printf %s "$2" >"$work/$1.done"
 }
 
 debian_source() {       # debian_source PACKAGE: unpacks its source with Debian's changes into ./source
