@@ -52,9 +52,9 @@ except ImportError:
     beside = 'no cv2'
 print('$name: Python', sys.version.split()[0], 'NumPy', numpy.__version__, beside)"
   "$try/$name/bin/python" -m pytest -q -p no:cacheprovider --ignore=python/tests/test_samples.py \
-    --ignore=python/tests/test_paper_experiments.py python/tests 2>&1 | tail -4 >"$try/$name.tests"
+    --ignore=python/tests/test_paper_experiments.py python/tests >"$try/$name.tests" 2>&1 ||
+    { tail -40 "$try/$name.tests"; echo "FAILED: the tests beside $name"; failed=1; }
   tail -1 "$try/$name.tests"
-  grep -q "failed\|error" "$try/$name.tests" && { cat "$try/$name.tests"; failed=1; }
   "$try/$name/bin/python" -B test/agreement/values.py >"$try/values/$name.txt" 2>"$try/$name.err"
   [ ! -s "$try/$name.err" ] || { echo "FAILED: it is not quiet:"; head -3 "$try/$name.err"; failed=1; }
 }

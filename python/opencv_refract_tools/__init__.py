@@ -3,6 +3,7 @@
 
 """The command line tools of refract: one program for all of them, and gnuplot, with which they draw."""
 import os
+import signal
 import sys
 from functools import partial
 from pathlib import Path
@@ -13,6 +14,8 @@ _PROGRAMS = Path(__file__).parent / "bin"
 def _run(tool):
     """Becomes the tool called `tool`, with this process' arguments. A gnuplot of the machine's own goes first."""
     path = os.environ.get("PATH", os.defpath)
+    for name in ("SIGPIPE", "SIGXFSZ"):     # which Python ignores, and with it what takes its place
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
     environment = {**os.environ, "PATH": f"{path}{os.pathsep}{_PROGRAMS}"}
     os.execve(_PROGRAMS / "refract_tools", [tool, *sys.argv[1:]], environment)
 
