@@ -148,6 +148,8 @@ TEST_CASE("Setting window and lens changes what is projected", "[camera]")
     CHECK(largestDifference(someProjections(camera), someProjections(makeCamera(moved, someWindow()))) == 0);
 
     camera->setImageSize(Size(1280, 1024));
+    for (Size wrong : { Size(-1, 5), Size(5, -1), Size(0, 5), Size(5, 0) })
+        CHECK_THAT(thrown([&] { camera->setImageSize(wrong); }), Contains(format("size is %dx%d", wrong.width, wrong.height)));
     CHECK(camera->imageSize() == Size(1280, 1024));
 }
 

@@ -73,6 +73,30 @@ TEST_CASE("The principal point looks along the axis", "[lens]")
     CHECK(norm(pixel - Vec2d(kind.K(0, 2), kind.K(1, 2))) < 1e-12);
 }
 
+TEST_CASE("A direction next to the axis has the axis' image and derivatives", "[lens]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    const Ptr<Lens> lens = makeLens(kind);
+    const int MANY = 16;        // of which the last ones, or none, are alone in their registers
+    const std::vector<double> X(MANY, 0), Z(MANY, 500);
+    std::vector<double> u(MANY), v(MANY), onAxis(6*MANY), beside(6*MANY);      // entry by entry, all points of it
+    const auto differentiate = [&](const std::vector<double>& x, std::vector<double>& byDirection)
+    {
+        std::vector<uchar> status(MANY, REFRACT_OK);
+        const Columns all = { byDirection.data(), 3, MANY }, none = { nullptr, 0, 0 };
+        lens->projectJacobian(MANY, x.data(), x.data(), Z.data(), u.data(), v.data(), all, none, status.data());
+        CHECK(status == std::vector<uchar>(MANY, REFRACT_OK));
+    };
+    differentiate(X, onAxis);
+    for (double tiny : { 1e-300, 1e-200, 1e-163, 1e-162, 1e-161, 1e-160, 1e-100, 1e-20 })
+    {
+        CAPTURE(tiny);
+        differentiate(std::vector<double>(MANY, tiny), beside);
+        CHECK(largestDifference(Mat(beside), Mat(onAxis)) < 1e-12);
+    }
+}
+
 TEST_CASE("Any pixel gives its direction or says that it has none", "[lens]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));

@@ -506,6 +506,8 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     bad.R = turned(Vec3d(0, 3, 0));      // they look away from each other
     CHECK_THAT(refusal(bad), Contains("see no point"));
     CHECK_THAT(thrown([&] { rectify(good, -1, Size(-3, 4)); }), Contains("newImageSize is -3x4"));
+    CHECK_THAT(thrown([&] { rectify(good, -1, Size(), 1); }), Contains("flags is 1"));
+    CHECK_THAT(thrown([&] { rectify(good, NaN); }), Contains("alpha is nan"));
     CHECK_NOTHROW(rectify({ good.name, good.camera1, good.camera2, good.R, good.T, good.size, Vec2d(450, INF) }));
 
     const Rectified r = rectify(good);

@@ -328,7 +328,8 @@ public:
     CV_WRAP virtual Mat lensParameters() const = 0;
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;   //!< as many as lensParameters() gives
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
-    CV_WRAP virtual void setImageSize(Size size) = 0;    //!< 0x0: unknown
+    //! 0x0: unknown. Throws if one of them is negative, or 0 alone.
+    CV_WRAP virtual void setImageSize(Size size) = 0;
 
 private:
     friend class Camera;

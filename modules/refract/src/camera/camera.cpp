@@ -71,6 +71,13 @@ void Camera::setParameters(const std::vector<double>& p)
     lens_ = lens_->withParameters(std::vector<double>(p.data(), w));
 }
 
+void Camera::setImageSize(Size size)
+{
+    if (size.width < 0 || size.height < 0 || (size.width == 0) != (size.height == 0))
+        CV_Error_(Error::StsBadSize, ("size is %dx%d; it must be positive, or 0x0 where unknown", size.width, size.height));
+    size_ = size;
+}
+
 void Camera::setWindow(const GlassWindow& window)
 {
     layers_ = Layers(window);

@@ -64,7 +64,7 @@ public:
     Mat lensParameters() const CV_OVERRIDE;
     void setLensParameters(InputArray parameters) CV_OVERRIDE;
     Size imageSize() const CV_OVERRIDE { return size_; }
-    void setImageSize(Size size) CV_OVERRIDE { size_ = size; }
+    void setImageSize(Size size) CV_OVERRIDE;
 
 private:
     Ptr<Lens> lens_;

@@ -85,7 +85,7 @@ bool unprojectFisheye(const FisheyeModel& model, int n, const double* pu, const 
 }
 
 /* With e = (X, Y)/r: d(x, y) = theta_d/r (I - e e^T) + e theta_d' dtheta, dtheta = (Z e, -r)/|d|^2. On the axis theta_d/r
-and theta_d' Z/|d|^2 are both 1/Z and e drops out. */
+and theta_d' Z/|d|^2 are both 1/Z and e drops out, so it is 0 there and where r is too small for a number. */
 bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, const double* py, const double* pz,
                             double* u, double* v, const Columns& byDirection, const Columns& byParameters)
 {
@@ -98,7 +98,9 @@ bool projectJacobianFisheye(const FisheyeModel& model, int n, const double* px, 
         Lanes factor, slope;
         bendFactor(m, theta*theta, factor, slope);
         const Lanes thetaD = theta*factor, side = select(r > 0, thetaD*inverseR, 1/Z), along = slope*Z*inverseL2;
-        const Lanes ex = X*inverseR, ey = Y*inverseR, x = thetaD*(ex + m.alpha*ey), y = thetaD*ey;
+        const Mask beside = r > 0;
+        const Lanes ex = select(beside, X*inverseR, all(0)), ey = select(beside, Y*inverseR, all(0));
+        const Lanes x = thetaD*(ex + m.alpha*ey), y = thetaD*ey;
         store(answers.where((theta < m.thetaMax) & isDirection(r, Z), m.fx*x + m.cx), u, at);
         store(m.fy*y + m.cy, v, at);
         const Lanes xx = side + (along - side)*ex*ex, xy = (along - side)*ex*ey, yy = side + (along - side)*ey*ey;

@@ -243,6 +243,10 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
     const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
     checkedSize(imageSize, "imageSize");
     checkRange(depthRange);
+    if (flags & ~RECTIFY_ZERO_DISPARITY)
+        CV_Error_(Error::StsBadFlag, ("flags is %d; it must be RECTIFY_ZERO_DISPARITY or 0", flags));
+    if (std::isnan(alpha))
+        CV_Error(Error::StsBadArg, "alpha is nan; it must be a number");
     const Wishes wishes = { imageSize, newImageSize == Size() ? imageSize : checkedSize(newImageSize, "newImageSize"), flags, alpha };
     const RowSamples samples(pair, imageSize, depthRange);
     const double depth = 2/(1/depthRange[0] + 1/depthRange[1]);     // the middle of the disparities
