@@ -61,7 +61,7 @@ std::vector<double> depthOf(const Options& options)
     const std::vector<double> numbers = parseNumbers(options.depth, "--depth");
     if (numbers.size() != 1 || numbers[0] <= 0)
         throw Failure("--depth=" + options.depth + ": one distance, more than 0, is needed (or inf)");
-    return numbers;
+    return {numbers[0]};
 }
 
 //! One image to correct.
