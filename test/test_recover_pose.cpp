@@ -30,17 +30,22 @@ GlassWindow windowIn(Medium medium, bool second)
     return medium == AIR ? GlassWindow(normal, 20, 1.5437, 50) : GlassWindow(normal, 15, 1.49, 60, 1.333);
 }
 
-//! A pair with a wide lens before a deep scene.
-Matched matchedScene(Medium medium, Random& random, int count)
+enum Scene { DEEP, FLAT };
+
+//! A pair with a wide lens.
+Matched matchedScene(Medium medium, Random& random, int count, Scene scene = DEEP)
 {
     Matched m;
     m.camera1 = makeCamera(allLenses()[2], windowIn(medium, false));
     m.camera2 = makeCamera(allLenses()[2], windowIn(medium, true));
     m.rvec = Vec3d(0.05, 0.35, -0.04);
     m.T = Vec3d(-200, 15, 40);
+    const Vec2d slope = scene == FLAT ? Vec2d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)) : Vec2d();
     while ((int)m.points.size() < count)
     {
-        const Point3d X(random.uniform(-250, 250), random.uniform(-150, 150), random.uniform(350, 900));
+        Point3d X(random.uniform(-250, 250), random.uniform(-150, 150), random.uniform(350, 900));
+        if (scene == FLAT)
+            X.z = 600 + slope[0]*X.x + slope[1]*X.y;
         std::vector<Point2d> p, q;
         std::vector<uchar> s1, s2;
         refractiveProjectPoints(std::vector<Point3d>(1, X), Vec3d(), Vec3d(), m.camera1, p, s1);
@@ -206,11 +211,11 @@ TEST_CASE("What refraction cannot tell has no upper end", "[pose][recover]")
 {
     Random random(6200);
     Matched m = matchedScene(AIR, random, 40);      // few, and noisy
-    disturb(m, random, 1, 0);
+    disturb(m, random, 2, 0);
     Mat R, T, covariance;
     Vec2d interval;
     CAPTURE(seed());
-    REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 5, noArray(), covariance,
+    REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 10, noArray(), covariance,
                                   interval) > 30);
     CAPTURE(interval, norm(T));
     CHECK(std::isinf(interval[1]));
@@ -218,6 +223,82 @@ TEST_CASE("What refraction cannot tell has no upper end", "[pose][recover]")
     CHECK(checkRange(covariance));
     const Mat along = T/norm(T), C = covariance(Rect(3, 3, 3, 3));
     CHECK(Mat(along.t()*C*along).at<double>(0) < 1e-9*trace(C)[0]);       // at the length that T has
+}
+
+TEST_CASE("A flat scene gives the right one of its two poses, or none", "[pose][recover]")
+{
+    const double SIGMA = 0.2;
+    const int TRIALS = trials(10);
+    for (Medium medium : { NOTHING, AIR, WATER })
+    {
+        Coverage axes;
+        int refused = 0;
+        for (int trial = 0; trial < TRIALS; trial++)
+        {
+            Random random(6400 + trial);
+            Matched m = matchedScene(medium, random, 200, FLAT);
+            disturb(m, random, SIGMA, trial % 2 ? 60 : 0);
+            CAPTURE(medium, trial, seed());
+            Mat R, T, covariance;
+            Vec2d interval;
+            if (refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, noArray(), covariance,
+                                      interval) == 0)
+            {
+                refused++;
+                continue;
+            }
+            Vec3d rvec;
+            Rodrigues(R, rvec);
+            CHECK(norm(rvec - m.rvec) < 0.1);       // the other pose is 0.25 off or more
+            if (medium == NOTHING || std::isfinite(interval[1]))    // else the covariance is that for one length
+                for (int k = 0; k < 3; k++)
+                    axes.add(rvec[k] - m.rvec[k], std::sqrt(covariance.at<double>(k, k)));
+        }
+        const char* names[] = { "no window", "air", "water" };
+        std::cout << "[numbers] refractiveRecoverPose, flat scene, " << names[medium] << ": " << refused << " of " << TRIALS
+                  << " refused" << std::endl;
+        axes.print(std::string("refractiveRecoverPose, flat scene, ") + names[medium]);
+        CAPTURE(medium, seed());
+        CHECK(refused <= TRIALS/2);
+        CHECK(axes.two() > 0.95 - 3*std::sqrt(0.95*0.05/TRIALS));   // three axes of a trial are hardly more than one
+    }
+}
+
+TEST_CASE("Where both poses of a flat scene are as likely there is no answer", "[pose][recover]")
+{
+    for (double noise : { 0., 0.1 })
+        for (int trial = 0; trial < 5; trial++)
+        {
+            Random random(6500 + trial);
+            Matched m = matchedScene(NOTHING, random, 100, FLAT);
+            m.rvec = random.vector(0.1);
+            m.T = Vec3d(random.uniform(-80, 80), random.uniform(-80, 80), -200);    // sideways one has points behind a camera
+            refractiveProjectPoints(m.points, m.rvec, m.T, m.camera2, m.perfect2);
+            disturb(m, random, noise, 0);
+            Mat R, T;
+            CAPTURE(noise, trial, seed());
+            CHECK(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T) == 0);
+            CHECK(R.empty());
+        }
+}
+
+TEST_CASE("Cameras that only turn: the rotation, and no long T", "[pose][recover]")
+{
+    for (Medium medium : { NOTHING, AIR, WATER })
+    {
+        Random random(6600);
+        Matched m = matchedScene(medium, random, 200);
+        refractiveProjectPoints(m.points, m.rvec, Vec3d(), m.camera2, m.perfect2);
+        disturb(m, random, 0.1, 0);
+        CAPTURE(medium, seed());
+        Mat R, T;
+        REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T) > 150);
+        Vec3d rvec;
+        Rodrigues(R, rvec);
+        CAPTURE(T, rvec);
+        CHECK(norm(T) < 20);            // the windows are 65 and 75 deep
+        CHECK(norm(rvec - m.rvec) < 0.01);
+    }
 }
 
 TEST_CASE("Relative poses: unseen points, nothing to find, overload, errors", "[pose][recover]")
@@ -256,6 +337,17 @@ TEST_CASE("Relative poses: unseen points, nothing to find, overload, errors", "[
         CHECK((T2.empty() && mask2.size() == 50 && countNonZero(mask2) == 0));
         const std::vector<Point2d> same(50, Point2d(600, 500));
         CHECK(refractiveRecoverPose(same, same, m.camera1, m.camera2, R2, T2) == 0);
+    }
+    SECTION("copies of matches tell nothing")
+    {
+        std::vector<Point2d> p, q;
+        for (int i = 0; i < 60; i++)
+        {
+            p.push_back(m.pixels1[10 + i % 6]);
+            q.push_back(m.pixels2[10 + i % 6]);
+        }
+        CHECK(refractiveRecoverPose(p, q, m.camera1, m.camera2, R2, T2, 0.999, 1, mask2) == 0);
+        CHECK((T2.empty() && countNonZero(mask2) == 0));
     }
     SECTION("nothing but wrong matches is no pose")
     {

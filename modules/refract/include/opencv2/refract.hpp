@@ -1223,7 +1223,12 @@ also gives the distance between the cameras, as well as refraction tells it.
 A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
 in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
 refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
-of T are always determined, if less well than a pinhole pair's, as the length is estimated with them.
+of T are determined, if less well than a pinhole pair's, as the length is estimated with them: not where the cameras hardly move
+apart (T shorter than the windows are deep), which leaves R good to some tenths of a degree and T unknown, whatever is stated.
+
+The matches of a flat scene agree with two poses, as cv::decomposeHomographyMat's; refraction, or a point that would be behind a
+camera, mostly tells which is right. A match that alone tells something of the pose, as the only one off the plane, is left out of
+the estimate: nothing would show that it is wrong.
 
 @param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
 @param points2 N raw pixels of camera 2.
@@ -1240,8 +1245,8 @@ is likely (scaleInterval's low end) where the most likely one is infinite.
 @param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
 images.
 @param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
-@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6, and with more
-than poses of random samples would find among strewn pixels (or all).
+@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6 different ones, and
+with more than poses of random samples would find among strewn pixels (or all), or if two poses are as likely.
 */
 CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,

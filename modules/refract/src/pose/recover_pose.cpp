@@ -2,11 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Relative pose from matches of which some are wrong. About their mean origins the rays are nearly central:
-cv::findEssentialMat on the bearings, with limits from the caller's to many times that, gives R and the baseline. The scale shows
-only in how the rays miss the mean origins; its likelihood has one parameter, the length of T, over which all others are estimated
-(its profile). Far out refraction fades and the profile becomes flat: lengths are told from one side only. */
+/* Relative pose from matches of which some are wrong. Pinholes' poses are where the search begins (central_pose.hpp). The scale
+shows only in how the rays miss the pinholes; its likelihood has one parameter, the length of T, over which all others are
+estimated (its profile). Far out refraction fades and the profile becomes flat: lengths are told from one side only.
 
+Of a flat scene the likelihood has two minima far apart, equal without windows. So it is followed from each start that leads
+elsewhere, and where two ends are as likely there is no answer. */
+
+#include "pose/central_pose.hpp"
 #include "pose/chance.hpp"
 #include "pose/relative_pose.hpp"
 #include "arrays/arrays.hpp"
@@ -15,6 +18,7 @@ only in how the rays miss the mean origins; its likelihood has one parameter, th
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
 #include <array>
+#include <numeric>
 #include <set>
 
 namespace cv { namespace refract {
@@ -22,49 +26,6 @@ namespace cv { namespace refract {
 namespace {
 
 const double INFINITE = std::numeric_limits<double>::infinity(), NaN = std::numeric_limits<double>::quiet_NaN();
-
-//! A camera as a pinhole at its rays' mean origin.
-struct Bearings
-{
-    Matx33d turn = Matx33d::eye();          //!< camera -> pinhole, which looks along the mean ray
-    Vec3d centre;                           //!< of the pinhole, in the camera
-    std::vector<Point2d> normalized;        //!< NaN where there is no ray in front
-};
-
-Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
-{
-    Bearings b;
-    std::vector<Vec3d> directions(pixels.size(), Vec3d::all(NaN));
-    Vec3d look;
-    int found = 0;
-    for (size_t i = 0; i < pixels.size(); i++)
-    {
-        double tau;
-        Vec3d d;
-        uchar status = REFRACT_OK;
-        camera.unproject(1, &pixels[i].x, &pixels[i].y, &tau, &d[0], &d[1], &d[2], &status);
-        if (status != REFRACT_OK)
-            continue;
-        directions[i] = d;
-        look += d;
-        b.centre += tau*camera.layers().normal();
-        found++;
-    }
-    b.normalized.assign(pixels.size(), Point2d(NaN, NaN));
-    if (!(norm(look) > 0))
-        return b;
-    b.centre *= 1./found;
-    const Vec3d axis = normalize(look).cross(Vec3d(0, 0, 1));
-    const double sine = norm(axis);
-    b.turn = sine > 0 ? rotationMatrix(axis*(std::atan2(sine, normalize(look)[2])/sine)) : Matx33d::eye();
-    for (size_t i = 0; i < pixels.size(); i++)
-    {
-        const Vec3d d = b.turn*directions[i];
-        if (d[2] > 0.05)                    // normalised coordinates end before 90 degrees
-            b.normalized[i] = Point2d(d[0]/d[2], d[1]/d[2]);
-    }
-    return b;
-}
 
 PixelMatches select(const PixelMatches& matches, const std::vector<int>& which)
 {
@@ -128,32 +89,6 @@ Sampling samplingOf(const PixelMatches& matches, double limit)
     const Size2d extent = extentOf(matches.pixel2);
     const double strip = 2*std::sqrt(2.)*limit*std::hypot(extent.width, extent.height);
     return { 5, POSES, strip/std::max(extent.area(), DBL_MIN) };
-}
-
-//! Poses of pinholes at the centres, for several limits.
-std::vector<RelativePose> centralPoses(const Camera& camera1, const Bearings& b1, const Bearings& b2, double prob,
-                                       double threshold)
-{
-    std::vector<Point2d> n1, n2;
-    for (size_t i = 0; i < b1.normalized.size(); i++)
-        if (isSeen(b1.normalized[i]) && isSeen(b2.normalized[i]))
-        {
-            n1.push_back(b1.normalized[i]);
-            n2.push_back(b2.normalized[i]);
-        }
-    std::vector<RelativePose> poses;
-    if (n1.size() < 6)
-        return poses;
-    const double focalLength = camera1.lens().parameters()[0];
-    for (double limit = threshold; limit <= 32*threshold; limit *= 2)
-    {
-        Mat mask, R, t;
-        const Mat E = findEssentialMat(n1, n2, Mat(Matx33d::eye()), RANSAC, prob, limit/focalLength, 1000, mask);
-        if (E.rows != 3 || recoverPose(E, n1, n2, Mat(Matx33d::eye()), R, t, 1e9, mask) < 6)
-            continue;
-        poses.push_back({ b2.turn.t()*Matx33d(R)*b1.turn, b2.turn.t()*Vec3d(t.ptr<double>()), 1 });
-    }
-    return poses;
 }
 
 //! Estimates R and baseline anew from what agrees, while that helps.
@@ -302,6 +237,8 @@ struct Estimate
     Matx66d covariance;
     Vec2d interval;
     std::vector<int> agreeing;
+    std::vector<double> squares;        //!< errors of all matches, squared, cut off at the limit
+    double cost() const { return std::accumulate(squares.begin(), squares.end(), 0.); }
 };
 
 //! The square of Student's t that 5 % exceed.
@@ -347,6 +284,46 @@ std::vector<int> usual(const Candidate& candidate)
     return some;
 }
 
+//! By N parameters that move rotation vector and T as the columns of `motion` say: how much of each match's error its own pull takes.
+template<int N>
+std::vector<double> leveragesOf(const std::vector<double>& errors, const std::vector<Matx16d>& byPose,
+                                const Matx<double, 6, N>& motion)
+{
+    SumOfSquares<N> sum;
+    for (size_t i = 0; i < errors.size(); i++)
+        sum.add(errors[i], (byPose[i]*motion).val);
+    const Matx<double, N, N> inverse = inverseOfPositive(sum.curvature);
+    std::vector<double> leverages;
+    for (const Matx16d& by : byPose)
+    {
+        const Matx<double, 1, N> row = by*motion;
+        leverages.push_back((row*inverse*row.t())(0));
+    }
+    return leverages;
+}
+
+/** Without matches that alone tell something of the pose, of whatever many others: none of these would show that one is wrong, and a
+pose gains by turning until it agrees with a wrong one. So before a plane a single match off it is not believed. */
+std::vector<int> confirmed(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose,
+                           const std::vector<int>& chosen)
+{
+    const double MOST = 0.5;
+    const size_t MANY = 60;
+    Vec3d T;
+    if (chosen.size() < MANY || !translation(pair, pose, T))
+        return chosen;
+    std::vector<double> errors;
+    std::vector<Matx16d> byPose;
+    sampsonErrors(pair, select(matches, chosen), pose.R, T, errors, &byPose);
+    const std::vector<double> leverages = pair.refracts() ? leveragesOf(errors, byPose, Matx66d::eye())
+                                                          : leveragesOf(errors, byPose, motionAtLength(pair, pose));
+    std::vector<int> some;
+    for (size_t i = 0; i < chosen.size(); i++)
+        if (!(leverages[i] > MOST))
+            some.push_back(chosen[i]);
+    return some;
+}
+
 //! The most likely pose over all lengths, from a good one; false if too few matches agree.
 bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double limit, Candidate best, Estimate& e)
 {
@@ -355,7 +332,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     double cost = INFINITE;
     for (int k = 0; k < 5; k++)
     {
-        const std::vector<int> next = usual(best);
+        const std::vector<int> next = confirmed(pair, matches, best.pose, usual(best));
         if (next.size() <= 6 || next == fitted)
             break;
         fitted = next;
@@ -377,22 +354,71 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     if (pair.refracts())
         e.interval = Vec2d(crossing(pair, some, profile, best.pose, most, -1, 0),
                            crossing(pair, some, profile, best.pose, most, 1, INFINITE));
-    if (e.pose.length >= profile.poses.back().length && e.interval[0] > 0)      // most likely infinite
-        costAt(pair, some, e.interval[0], e.pose);
+    if (e.pose.length >= profile.poses.back().length)       // most likely infinite
+        costAt(pair, some, e.interval[0] > 0 ? e.interval[0] : 1, e.pose);
     if (!translation(pair, e.pose, e.T))
         return false;
     e.covariance = covarianceOf(pair, some, e.pose, e.T, variance, e.interval[1] == INFINITE);
     e.agreeing = best.agreeing;
+    e.squares.assign(matches.size(), limit*limit);
+    for (size_t i = 0; i < best.agreeing.size(); i++)
+        e.squares[best.agreeing[i]] = best.errors[i]*best.errors[i];
     return true;
 }
 
 //! How many of the matches are not copies of others, which tell nothing.
-size_t countDifferent(const PixelMatches& matches, const std::vector<int>& chosen)
+int countDifferent(const PixelMatches& matches, const std::vector<int>& chosen)
 {
     std::set<std::array<double, 4> > different;
     for (int i : chosen)
         different.insert({ { matches.pixel1[i].x, matches.pixel1[i].y, matches.pixel2[i].x, matches.pixel2[i].y } });
-    return different.size();
+    return (int)different.size();
+}
+
+//! Whether strewn matches would have agreed as well.
+bool isChance(const PixelMatches& matches, const std::vector<int>& agreeing, double limit)
+{
+    std::vector<int> all(matches.size());
+    std::iota(all.begin(), all.end(), 0);
+    return isChance(countDifferent(matches, all), countDifferent(matches, agreeing), samplingOf(matches, limit));
+}
+
+//! Where the search from pinholes' poses ends, each place once.
+std::vector<Candidate> placesOf(const MatchedCameras& pair, const PixelMatches& matches, double limit,
+                                const std::vector<RelativePose>& starts)
+{
+    const double NEAR = 0.01;               // radians
+    std::vector<Candidate> places;
+    for (const RelativePose& start : starts)
+    {
+        const Candidate c = fromCentral(pair, matches, start, limit);
+        const auto same = std::find_if(places.begin(), places.end(), [&](const Candidate& place)
+                                       { return norm(rotationVector(place.pose.R.t()*c.pose.R)) < NEAR; });
+        if (same == places.end())
+            places.push_back(c);
+        else if (c.cost < same->cost)
+            *same = c;
+    }
+    return places;
+}
+
+/** Whether another estimate, and none of those that the covariance speaks of, is as likely. Which of two poses of a plane is right
+shows in no single match: each is off both by noise alone, in directions of its own. So the costs differ by the sum of as many
+random numbers, and by more only if one of the poses is wrong (@cite Vuong1989). */
+bool isRival(const Estimate& e, const Estimate& other)
+{
+    const double FAR = 5, CERTAIN = 3;      // standard deviations
+    const double LEFT = 1e-6;               // square pixels, that refineAtLength leaves
+    const Vec3d off = rotationVector(other.pose.R) - rotationVector(e.pose.R);
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < e.squares.size(); i++)
+    {
+        const double difference = other.squares[i] - e.squares[i];
+        sum += difference;
+        squares += difference*difference;
+    }
+    return sum <= LEFT + CERTAIN*std::sqrt(squares)
+           && off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off) > FAR*FAR;
 }
 
 bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& matches, double prob, double threshold,
@@ -400,15 +426,25 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
 {
     const Bearings b1 = bearingsOf(camera1, matches.pixel1), b2 = bearingsOf(camera2, matches.pixel2);
     const MatchedCameras pair = { camera1, camera2, b1.centre, b2.centre };
-    Candidate best;
-    for (const RelativePose& pose : centralPoses(camera1, b1, b2, prob, threshold))
+    const std::vector<Candidate> places = placesOf(pair, matches, threshold,
+                                                   centralPoses(b1, b2, threshold/camera1.lens().parameters()[0], prob));
+    size_t most = 0;
+    for (const Candidate& place : places)
+        most = std::max(most, place.agreeing.size());
+    std::vector<Estimate> estimates;
+    for (const Candidate& place : places)
     {
-        const Candidate c = fromCentral(pair, matches, pose, threshold);
-        if (c.cost < best.cost)
-            best = c;
+        Estimate here;
+        if (2*place.agreeing.size() >= most && countDifferent(matches, place.agreeing) > 6
+            && estimate(pair, matches, threshold, place, here))
+            estimates.push_back(here);
     }
-    return countDifferent(matches, best.agreeing) > 6 && estimate(pair, matches, threshold, best, e)
-           && !isChance((int)matches.size(), (int)e.agreeing.size(), samplingOf(matches, threshold));
+    if (estimates.empty())
+        return false;
+    e = *std::min_element(estimates.begin(), estimates.end(),
+                          [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
+    return !isChance(matches, e.agreeing, threshold)
+           && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other) { return isRival(e, other); });
 }
 
 } // namespace

@@ -1,0 +1,111 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "pose/central_pose.hpp"
+#include "arrays/views.hpp"
+#include "math/rotation.hpp"
+
+namespace cv { namespace refract {
+
+Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
+{
+    const Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
+    Bearings b;
+    std::vector<Vec3d> directions(pixels.size(), Vec3d(none.x, none.x, none.x));
+    Vec3d look;
+    int found = 0;
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        double tau;
+        Vec3d d;
+        uchar status = REFRACT_OK;
+        camera.unproject(1, &pixels[i].x, &pixels[i].y, &tau, &d[0], &d[1], &d[2], &status);
+        if (status != REFRACT_OK)
+            continue;
+        directions[i] = d;
+        look += d;
+        b.centre += tau*camera.layers().normal();
+        found++;
+    }
+    b.normalized.assign(pixels.size(), none);
+    if (!(norm(look) > 0))
+        return b;
+    b.centre *= 1./found;
+    const Vec3d axis = normalize(look).cross(Vec3d(0, 0, 1));
+    const double sine = norm(axis);
+    b.turn = sine > 0 ? rotationMatrix(axis*(std::atan2(sine, normalize(look)[2])/sine)) : Matx33d::eye();
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        const Vec3d d = b.turn*directions[i];
+        if (d[2] > 0.05)                    // normalised coordinates end before 90 degrees
+            b.normalized[i] = Point2d(d[0]/d[2], d[1]/d[2]);
+    }
+    return b;
+}
+
+namespace {
+
+typedef std::vector<Point2d> Points;
+
+//! R and baseline of pinholes.
+struct PinholePose { Mat R, t; };
+
+//! By the essential matrix; how many matches agree.
+int posesOfScene(const Points& n1, const Points& n2, double limit, double prob, std::vector<PinholePose>& poses)
+{
+    const Mat K = Mat::eye(3, 3, CV_64F);
+    Mat mask, R, t;
+    const Mat E = findEssentialMat(n1, n2, K, RANSAC, prob, limit, 1000, mask);
+    const int agreeing = E.rows == 3 ? recoverPose(E, n1, n2, K, R, t, 1e9, mask) : 0;
+    if (agreeing >= 6)
+        poses.push_back({ R, t });
+    return agreeing;
+}
+
+/** By the homography, of a plane that is in front of all points that agree. One essential matrix of a plane's matches is as good as
+the other, and findEssentialMat has one of them only.
+@param least matches that must agree for the scene to be taken for a plane */
+void posesOfPlane(const Points& n1, const Points& n2, double limit, double prob, int least, std::vector<PinholePose>& poses)
+{
+    Mat mask;
+    const Mat H = findHomography(n1, n2, RANSAC, limit, mask, 1000, prob);
+    if (H.empty() || countNonZero(mask) < least)
+        return;
+    std::vector<Mat> R, t, normals;
+    const int count = decomposeHomographyMat(H, Mat::eye(3, 3, CV_64F), R, t, normals);
+    for (int k = 0; k < count; k++)
+    {
+        const Vec3d normal(normals[k].ptr<double>());
+        int inFront = 0;
+        for (size_t i = 0; i < n1.size(); i++)
+            inFront += mask.at<uchar>((int)i) && normal.dot(Vec3d(n1[i].x, n1[i].y, 1)) > 0;
+        if (inFront >= least && norm(t[k]) > 0)
+            poses.push_back({ R[k], t[k]/norm(t[k]) });
+    }
+}
+
+} // namespace
+
+std::vector<RelativePose> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob)
+{
+    Points n1, n2;
+    for (size_t i = 0; i < b1.normalized.size(); i++)
+        if (isSeen(b1.normalized[i]) && isSeen(b2.normalized[i]))
+        {
+            n1.push_back(b1.normalized[i]);
+            n2.push_back(b2.normalized[i]);
+        }
+    std::vector<PinholePose> found;
+    for (double limit = threshold; limit <= 32*threshold && n1.size() >= 6; limit *= 2)
+    {
+        const int agreeing = posesOfScene(n1, n2, limit, prob, found);
+        posesOfPlane(n1, n2, limit, prob, std::max(6, agreeing/2), found);
+    }
+    std::vector<RelativePose> poses;
+    for (const PinholePose& p : found)
+        poses.push_back({ b2.turn.t()*Matx33d(p.R)*b1.turn, b2.turn.t()*Vec3d(p.t.ptr<double>()), 1 });
+    return poses;
+}
+
+}} // namespace
