@@ -540,7 +540,8 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
 @param lines N polylines, each Mx1 2-channel, raw pixels of the other image in order of growing depth. Parts with no
 image are left out; a point without any partner gives an empty Mat.
 @param tolerance largest distance in pixels between polyline and exact curve.
-@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty.
+@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty. REFRACT_NOT_CONVERGED: the tolerance takes more than
+100000 points, as where depthRange begins so near that the curve ends millions of pixels off.
 */
 CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,

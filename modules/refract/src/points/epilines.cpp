@@ -30,17 +30,17 @@ int addSegments(const EpipolarCurve& curve, const double* nodes, int segments, P
 }
 
 /* Appends what follows after the first end of segments, which are split where the curve leaves the chord by more than the
-tolerance. A NaN inside (grazing the edge of visibility) is not split; nor is anything once the line has `most` points, as where
-the tolerance is less than the rounding of pixels so far off that splitting helps no more. */
-void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, int segments, double tolerance, int depth,
+tolerance. A NaN inside (grazing the edge of visibility) is not split. False, with the line cut off somewhere, if that takes more
+than `most` points, as where the tolerance is less than the rounding of pixels far off. */
+bool appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, int segments, double tolerance, int depth,
                     size_t most, Polyline& line)
 {
-    double slack[Projection::CAPACITY/2];
+    double slack[Projection::CAPACITY/2];       // NaN where a segment is not close
     const double *t = p.t() + begin, *u = p.u() + begin, *v = p.v() + begin;
     const int middles = segments + 1;
     const bool allClose = pointKernels().areClose(segments, tolerance, t, u, v, t + middles, u + middles, v + middles, slack);
     for (int j = 0; j < segments; j++)
-        if (allClose || depth == 0 || line.size() >= most || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
+        if (allClose || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
             line.push_back(Vec2d(u[j + 1], v[j + 1]));
         else
         {
@@ -48,8 +48,10 @@ void appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
             Projection halves(p.camera());
             addSegments(curve, nodes, 2, halves);
             halves.run();
-            appendSegments(curve, halves, 0, 2, tolerance, depth - 1, most, line);
+            if (depth == 0 || line.size() >= most || !appendSegments(curve, halves, 0, 2, tolerance, depth - 1, most, line))
+                return false;
         }
+    return true;
 }
 
 const int SAMPLES = 24;     // of a curve: a few registers
@@ -159,28 +161,36 @@ struct Polylines
     int end[BLOCK] = {};        //!< of each in points
 };
 
-//! Joins the nodes of all tracks; as many segments as fit are projected together.
+/** Joins the nodes of all tracks; as many segments as fit are projected together. A line of too many points is left empty, and has
+the status. */
 void joinAllNodes(const Camera& to, const std::vector<Track>& tracks, const std::vector<double>& nodes, double tolerance,
-                  Polylines& lines)
+                  Polylines& lines, uchar* status)
 {
     struct Piece { const Track* track; int begin, segments; bool isFirst; };
     std::vector<Piece> pieces;
     lines.points.reserve(nodes.size());
     Projection p(to);
     const size_t MOST = 100000;     // points of a line
-    size_t most = 0;
+    size_t first = 0;               // of the line that is made
     const auto join = [&]
     {
         p.run();
         for (const Piece& piece : pieces)
         {
+            const int point = piece.track->point;
+            if (status[point] != REFRACT_OK)
+                continue;
             if (piece.isFirst)
             {
-                most = lines.points.size() + MOST;
+                first = lines.points.size();
                 lines.points.push_back(p.pixel(piece.begin));
             }
-            appendSegments(piece.track->curve, p, piece.begin, piece.segments, tolerance, 12, most, lines.points);
-            lines.end[piece.track->point] = (int)lines.points.size();
+            if (!appendSegments(piece.track->curve, p, piece.begin, piece.segments, tolerance, 30, first + MOST, lines.points))
+            {
+                lines.points.resize(first);
+                status[point] = REFRACT_NOT_CONVERGED;
+            }
+            lines.end[point] = (int)lines.points.size();
         }
         pieces.clear();
         p.clear();
@@ -269,7 +279,7 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
             tracks.push_back({ curve, i, curve.parameter(muNear), curve.parameter(muFar), 0, 0 });
         }
         placeAllNodes(to, tracks, atMiddle, nodes, st);
-        joinAllNodes(to, tracks, nodes, atMiddle, blocks[begin/BLOCK]);
+        joinAllNodes(to, tracks, nodes, atMiddle, blocks[begin/BLOCK], st);
         outStatus.store(begin, n, st);
     });
     writeLines(blocks, in.size(), in.depth(), lines);
