@@ -294,6 +294,14 @@ TEST_CASE("RANSAC: what has no pose, and bad arguments", "[pnp][ransac]")
     CHECK_FALSE(solve(std::vector<Point3d>(12, s.object[0]), std::vector<Point2d>(12, s.pixels[0])));
     CHECK_FALSE(solve(s.object, std::vector<Point2d>(12, Point2d(NaN, NaN))));
     CHECK_FALSE(solve(s.object, std::vector<Point2d>(12, Point2d(1e6, 1e6))));
+    std::vector<Point3d> copies;            // of three points, which four poses agree with
+    std::vector<Point2d> copied;
+    for (int i = 0; i < 12; i++)
+    {
+        copies.push_back(s.object[i % 3]);
+        copied.push_back(s.pixels[i % 3]);
+    }
+    CHECK_FALSE(solve(copies, copied));
 
     const auto why = [&](int count, int iterations, float limit, double confidence)
     {

@@ -1205,8 +1205,8 @@ for w = 0.3 and p = 0.99.
 @param reprojectionError pixels from its image within which a point agrees.
 @param confidence chance of a sample without wrong points, after which the search ends; less than 1.
 @param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
-@return false if there is no pose with which at least 4 points agree, not on a line, and more than poses of random samples would
-find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is empty.
+@return false if there is no pose with which at least 4 different points agree, not on a line, and more than poses of random samples
+would find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,

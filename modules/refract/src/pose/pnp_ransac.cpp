@@ -13,6 +13,8 @@ all before is refined on the points that agree with it (LO-RANSAC: @cite ChumMat
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
 #include "points/point_kernels.hpp"
+#include <array>
+#include <set>
 
 namespace cv { namespace refract {
 
@@ -203,6 +205,15 @@ Sampling samplingOf(const ImagePoints& points, double limit)
     return { 3, POSES, CV_PI*limit*limit/std::max(extentOf(points.pixel).area(), DBL_MIN) };
 }
 
+//! How many of the points are not copies of others, which tell nothing.
+int countDifferent(const ImagePoints& points)
+{
+    std::set<std::array<double, 5> > different;
+    for (size_t i = 0; i < points.pixel.size(); i++)
+        different.insert({ { points.object[i].x, points.object[i].y, points.object[i].z, points.pixel[i].x, points.pixel[i].y } });
+    return (int)different.size();
+}
+
 } // namespace
 
 /* The limit is often generous, and a wrong point within it pulls the pose. So the last fits are of the points that do not stand
@@ -236,8 +247,9 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
     for (int k = 0; k < 10 && improve(camera, points, jury, 100, best); k++) {}
     settle(camera, points, jury, best);
     const ImagePoints agreeing = select(points, best.agreeing);
-    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2
-        || isChance((int)points.pixel.size(), (int)agreeing.pixel.size(), samplingOf(points, limit)))
+    const int different = countDifferent(agreeing);
+    if (different < 4 || scatterRank(agreeing.object) < 2
+        || isChance(countDifferent(points), different, samplingOf(points, limit)))
         return Pose();
     inliers = agreeing.index;
     return poseOf(best.motion);
