@@ -29,6 +29,33 @@ TEST_CASE("The pose of a perfectly seen target is exact, whatever lens and windo
     printNumber("refractiveSolvePnP on perfect data, relative", largest, "");
 }
 
+TEST_CASE("Targets of any unit have their pose", "[pnp]")
+{
+    Random random(215);
+    for (bool flat : { true, false })
+        for (double unit : { 1e-6, 1e-3, 1., 1e3, 1e6, 1e9 })
+        {
+            GlassWindow window = paperWindow();
+            window.distance *= unit;
+            for (double& thickness : window.thickness)
+                thickness *= unit;
+            const Ptr<RefractiveCamera> camera = paperCamera(window);
+            const Vec3d rvec(0.3, -0.2, 0.1), tvec(10*unit, 20*unit, 700*unit);
+            std::vector<Point3d> object = board();
+            for (Point3d& p : object)
+                p = Point3d(p.x, p.y, flat ? 0 : random.uniform(-20, 20))*unit;
+            Mat r, t;
+            CAPTURE(flat, unit, seed());
+            const std::vector<Point2d> pixels = seen(object, rvec, tvec, camera, random, 0);
+            REQUIRE(refractiveSolvePnP(object, pixels, camera, r, t));
+            CHECK(norm(r, Mat(rvec)) < 1e-8);
+            CHECK(norm(t, Mat(tvec)) < 1e-7*norm(tvec));
+            REQUIRE(refractiveSolvePnPRansac(object, pixels, camera, r, t));
+            CHECK(norm(r, Mat(rvec)) < 1e-8);
+            CHECK(norm(t, Mat(tvec)) < 1e-7*norm(tvec));
+        }
+}
+
 TEST_CASE("A wide lens sees the target beyond 90 degrees", "[pnp]")
 {
     Random random(210);

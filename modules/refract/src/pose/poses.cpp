@@ -99,6 +99,18 @@ CentralView centralView(const Camera& camera, const ImagePoints& points)
     return view;
 }
 
+//! Farthest distance of a point from the mean of all.
+double radiusOf(const std::vector<Point3d>& points)
+{
+    Point3d mean;
+    for (const Point3d& p : points)
+        mean += p*(1./(double)points.size());
+    double radius = 0;
+    for (const Point3d& p : points)
+        radius = std::max(radius, norm(p - mean));
+    return radius;
+}
+
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
 {
     const CentralView view = centralView(camera, points);
@@ -106,14 +118,18 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
     const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
     if (rank < 2)
         return poses;
+    const double unit = radiusOf(view.object);      // IPPE finds no pose of targets that are millions across
+    std::vector<Point3d> object;
+    for (const Point3d& p : view.object)
+        object.push_back(p*(1/unit));
     std::vector<Mat> rvecs, tvecs;
-    solvePnPGeneric(view.object, view.normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
+    solvePnPGeneric(object, view.normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
                     rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
     for (size_t i = 0; i < rvecs.size(); i++)
     {
         if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
             poses.push_back(makePose(view.turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
-                                     view.turn.t()*Vec3d(tvecs[i].ptr<double>()) + view.origin));
+                                     view.turn.t()*(unit*Vec3d(tvecs[i].ptr<double>())) + view.origin));
     }
     return poses;
 }
