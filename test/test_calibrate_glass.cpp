@@ -353,7 +353,7 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
                    Catch::Contains("did not converge in 1 iterations"));
         CHECK(start->window().normal == Vec3d(0, 0, 1));
         for (const TermCriteria& bad : { TermCriteria(0, 10, 1e-9), TermCriteria(TermCriteria::COUNT, 0, 0),
-                                         TermCriteria(TermCriteria::EPS, 0, -1) })
+                                         TermCriteria(TermCriteria::EPS, 0, -1), TermCriteria(TermCriteria::EPS, 0, INF) })
             CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(),
                                                    0, bad); }), Catch::Contains("criteria."));
         calibrateGlass(scene.object, scene.direct, scene.refracted, startCamera(camera, paperWindow()), noArray(),
@@ -362,6 +362,32 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
                        TermCriteria(TermCriteria::COUNT, 1, 0));
     }
     CHECK(camera->window().normal == before);       // a refusal leaves the start alone
+}
+
+TEST_CASE("A loose epsilon ends at the same minimum", "[calibrate_glass]")
+{
+    Random random(375);
+    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const CalibrationScene scene = makeScene(camera, 4, random, 0.1);
+    const auto found = [&](bool pairs, double epsilon, int flags)
+    {
+        const Ptr<RefractiveCamera> start = startCamera(camera, straight(camera->window()));
+        calibrateGlass(scene.object, pairs ? scene.direct : std::vector<std::vector<Point2d> >(), scene.refracted, start,
+                       noArray(), noArray(), flags, TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, epsilon));
+        return start->window().normal;
+    };
+    CAPTURE(seed());
+    for (bool pairs : { true, false })
+    {
+        const Vec3d tight = found(pairs, 1e-12, 0);
+        for (double epsilon : { 1e-9, 1e-6, 1e-3, 1. })
+        {
+            CAPTURE(pairs, epsilon);
+            CHECK(angleBetween(found(pairs, epsilon, 0), tight) < 1e-3);    // degrees
+        }
+    }
+    CHECK(angleBetween(found(true, 1e-4, GLASS_FREE_THICKNESS | GLASS_FREE_INTRINSICS),
+                       found(true, 1e-12, GLASS_FREE_THICKNESS | GLASS_FREE_INTRINSICS)) < 1e-3);
 }
 
 TEST_CASE("A distance that ends on zero is held there", "[calibrate_glass]")

@@ -82,7 +82,7 @@ public:
 
 private:
     void PrepareForEvaluation(bool wantsDerivatives, bool isNewPoint) override;
-    ceres::TerminationType solveInside(TrustRegion& region, double cauchy);
+    void solveInside(TrustRegion& region, double cauchy);
     bool isAtMinimum();
 
     RigProblem rig_;

@@ -101,14 +101,14 @@ bool BundleProblem::isAtMinimum()
 bool BundleProblem::solve(const TermCriteria& criteria, double cauchy)
 {
     return takeTurns(criteria, [this, cauchy](TrustRegion& region) {
-        const ceres::TerminationType outcome = solveInside(region, cauchy);
+        solveInside(region, cauchy);
         evaluate(true);
-        return outcome != ceres::FAILURE && !(rig_.isOnBound() && rig_.holdAtBounds()) && outcome == ceres::CONVERGENCE
-               && (cauchy > 0 || isAtMinimum());
+        return region.outcome != ceres::FAILURE && !(rig_.isOnBound() && rig_.holdAtBounds())
+               && region.outcome == ceres::CONVERGENCE && (cauchy > 0 || isAtMinimum());
     });
 }
 
-ceres::TerminationType BundleProblem::solveInside(TrustRegion& region, double cauchy)
+void BundleProblem::solveInside(TrustRegion& region, double cauchy)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
@@ -144,7 +144,7 @@ ceres::TerminationType BundleProblem::solveInside(TrustRegion& region, double ca
         ordering->AddElementToGroup(values, 0);     // by address in it: as they are kept, one after the other
     }
 
-    return region.solve(problem, ordering);
+    region.solve(problem, ordering);
 }
 
 }} // namespace

@@ -24,8 +24,8 @@ TermCriteria checkedCriteria(TermCriteria criteria)
         criteria.maxCount = 1000;
     if (criteria.maxCount < 1)
         CV_Error_(Error::StsOutOfRange, ("criteria.maxCount is %d; it must be at least 1", criteria.maxCount));
-    if ((criteria.type & TermCriteria::EPS) && !(criteria.epsilon >= 0))
-        CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must not be negative", criteria.epsilon));
+    if ((criteria.type & TermCriteria::EPS) && !(criteria.epsilon >= 0 && std::isfinite(criteria.epsilon)))
+        CV_Error_(Error::StsOutOfRange, ("criteria.epsilon is %g; it must be finite and not negative", criteria.epsilon));
     return criteria;
 }
 

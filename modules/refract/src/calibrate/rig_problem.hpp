@@ -183,7 +183,7 @@ private:
 
     void PrepareForEvaluation(bool, bool isNewPoint) override { if (isNewPoint) updateCameras(); }
 
-    ceres::TerminationType solveInside(TrustRegion& region);
+    void solveInside(TrustRegion& region);
     bool isAtMinimum() const;
     String startFault() const;      //!< empty, or which point has no image at the start
 

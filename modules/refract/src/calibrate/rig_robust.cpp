@@ -102,6 +102,8 @@ void RobustFit::graduate()
                 rootWeights.push_back(std::max(0., 1 - std::pow(r/(TUKEY*scales[i]), 2)));
             problem_.setRootWeights(i, rootWeights);
         }
+        if (problem_.pointCount() == 0)     // none has an image, as where given poses are turned round
+            checkMajority(0);
         problem_.solve(few);
     }
 }
@@ -156,7 +158,7 @@ void RobustFit::checkMajority(int count) const
 {
     if (2*count < seenCount_)
         CV_Error_(Error::StsNoConv, ("only %d of %d points fit; are the target's size, its square and the order of its points "
-                                     "right?", count, seenCount_));
+                                     "right, and the poses, if they were given (target to camera 1)?", count, seenCount_));
 }
 
 bool RobustFit::decide()

@@ -82,8 +82,9 @@ bool RigProblem::solve(const TermCriteria& criteria)
     if (!fault.empty())
         CV_Error(Error::StsBadArg, fault);
     return takeTurns(criteria, [this](TrustRegion& region) {
-        const ceres::TerminationType outcome = solveInside(region);
-        return outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && outcome == ceres::CONVERGENCE && isAtMinimum();
+        solveInside(region);
+        return region.outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && region.outcome == ceres::CONVERGENCE
+               && isAtMinimum();
     });
 }
 
@@ -132,7 +133,7 @@ void RigProblem::addPose(ceres::Problem& problem, int view)
                                  nullptr, values);
 }
 
-ceres::TerminationType RigProblem::solveInside(TrustRegion& region)
+void RigProblem::solveInside(TrustRegion& region)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
@@ -163,9 +164,8 @@ ceres::TerminationType RigProblem::solveInside(TrustRegion& region)
         ordering->AddElementToGroup(poses_[view].data(), 0);
         addPose(problem, view);
     }
-    const ceres::TerminationType outcome = region.solve(problem, ordering);
+    region.solve(problem, ordering);
     updateCameras();
-    return outcome;
 }
 
 }} // namespace

@@ -9,8 +9,7 @@
 
 namespace cv { namespace refract {
 
-ceres::TerminationType TrustRegion::solve(ceres::Problem& problem,
-                                          const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering)
+void TrustRegion::solve(ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering)
 {
     ceres::Solver::Options options;
     const double firstRadius = options.initial_trust_region_radius;
@@ -27,9 +26,12 @@ ceres::TerminationType TrustRegion::solve(ceres::Problem& problem,
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     iterations = std::max(1, (int)summary.iterations.size() - 1);
-    const bool isUsable = summary.IsSolutionUsable();
+    const double COLLAPSED = 1e-20;                     // Ceres takes no start below 1e-32
+    const bool isUsable = summary.IsSolutionUsable() && !summary.iterations.empty();
     radius = isUsable ? summary.iterations.back().trust_region_radius : firstRadius;
-    return isUsable ? summary.termination_type : ceres::FAILURE;
+    if (!(radius > COLLAPSED))
+        radius = firstRadius;
+    outcome = isUsable ? summary.termination_type : ceres::FAILURE;
 }
 
 bool takeTurns(const TermCriteria& criteria, const std::function<bool(TrustRegion&)>& isDone)
@@ -37,16 +39,21 @@ bool takeTurns(const TermCriteria& criteria, const std::function<bool(TrustRegio
     const int ITERATIONS_BETWEEN = 20;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
     const double change = stopsByChange ? criteria.epsilon : 0., firstRadius = ceres::Solver::Options().initial_trust_region_radius;
-    TrustRegion regions[] = { { ceres::LEVENBERG_MARQUARDT, change, 0, firstRadius },
-                              { ceres::DOGLEG, change, 0, firstRadius } };
-    int left = criteria.maxCount;
-    for (int turn = 0; left > 0; turn = 1 - turn)
+    const double STRICTER = 1e-2;
+    const int IDLE = 40;                // turns of a single step in a row: more would not help either
+    TrustRegion regions[] = { { ceres::LEVENBERG_MARQUARDT, change, 0, firstRadius, ceres::NO_CONVERGENCE },
+                              { ceres::DOGLEG, change, 0, firstRadius, ceres::NO_CONVERGENCE } };
+    int left = criteria.maxCount, idle = 0;
+    for (int turn = 0; left > 0 && idle < IDLE; turn = 1 - turn)
     {
         TrustRegion& region = regions[turn];
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
         if (isDone(region))
             return true;
         left -= region.iterations;
+        idle = region.iterations > 1 ? 0 : idle + 1;
+        if (region.outcome == ceres::CONVERGENCE)
+            region.change *= STRICTER;
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
     return !stopsByChange;

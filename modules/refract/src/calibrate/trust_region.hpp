@@ -22,15 +22,18 @@ struct TrustRegion
     double change;          //!< of the cost, relative, that ends them
     int iterations;         //!< at most; out: how many were made
     double radius;          //!< of the first step; out: of the next
+    ceres::TerminationType outcome;     //!< out
 
     //! The group 0 of the ordering is eliminated.
-    ceres::TerminationType solve(ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering);
+    void solve(ceres::Problem& problem, const std::shared_ptr<ceres::ParameterBlockOrdering>& ordering);
 };
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
-domain those of the dogleg do: they take turns.
+domain those of the dogleg do: they take turns. Where a change of the cost is small that is not at a minimum, a smaller one is
+asked for.
 @param isDone makes some iterations; true where that ended in a minimum
-@return false if criteria.maxCount iterations did not reach it, and the criteria ask for a change of the cost (EPS) */
+@return false if criteria.maxCount iterations, or all that moved anything, did not reach it, and the criteria ask for a change of
+the cost (EPS) */
 bool takeTurns(const TermCriteria& criteria, const std::function<bool(TrustRegion&)>& isDone);
 
 }} // namespace
