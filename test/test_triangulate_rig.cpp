@@ -645,6 +645,22 @@ TEST_CASE("Bad arguments of triangulateRefractive for a rig are named", "[triang
     CHECK_THAT(thrown([&] { Mat a, b, c;
                             triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, rig.pixels, a, b, 0, 0.1, Mat::eye(3, 3, CV_64F), c); }),
                Contains("calibrationCovariance") && Contains("9"));
+    int parameters = 6*((int)rig.cameras.size() - 1);
+    for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+        parameters += (int)camera->lensParameters().total() + 6 + 2*(int)camera->window().thickness.size();
+    const auto withCovariance = [&](double entry12, double entry21, double variance)
+    {
+        Mat C = Mat::eye(parameters, parameters, CV_64F)*1e-6, a, b, c;
+        C.at<double>(1, 1) = variance;
+        C.at<double>(1, 2) = entry12;
+        C.at<double>(2, 1) = entry21;
+        return thrown([&] { triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, rig.pixels, a, b, 0, 0.1, C, c); });
+    };
+    CHECK(withCovariance(1e-7, 1e-7, 1e-6) == "");
+    CHECK(withCovariance(0, 0, 0) == "");           // known exactly
+    CHECK_THAT(withCovariance(0, 0, -1e-6), Contains("calibrationCovariance") && Contains("below 0 on its diagonal"));
+    CHECK_THAT(withCovariance(0, 1e-7, 1e-6), Contains("calibrationCovariance is not symmetric"));
+    CHECK_THAT(withCovariance(2e-6, 2e-6, 1e-6), Contains("calibrationCovariance gives some quantities a variance below 0"));
     CHECK_THAT(thrown([&] { Mat a, b, c; triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, rig.pixels, a, b, 0, -1., noArray(), c); }),
                Contains("pixelSigma") && Contains("-1"));
 }

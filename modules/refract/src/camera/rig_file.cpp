@@ -6,6 +6,7 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
+#include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
 #include <fstream>
 
@@ -102,20 +103,15 @@ int parametersOf(const std::vector<Ptr<RefractiveCamera> >& cameras)
 }
 
 //! Throws unless a covariance, if there is one, is that of these cameras; `where` begins the text.
-void checkCovariance(const Mat& C, const std::vector<Ptr<RefractiveCamera> >& cameras, const String& where)
+void checkRigCovariance(const Mat& C, const std::vector<Ptr<RefractiveCamera> >& cameras, const String& where)
 {
-    const double ROUNDING = 1e-12;
     const int count = parametersOf(cameras);
-    double least = 0, most = 0;
     if (C.empty())
         return;
     if (C.size() != Size(count, count))
         CV_Error_(Error::StsBadSize, ("%scovariance is %dx%d; the cameras have %d parameters", where.c_str(), C.rows, C.cols,
                                       count));
-    minMaxIdx(C.diag(), &least, &most);
-    if (!checkRange(C) || least < -ROUNDING*most)
-        CV_Error_(Error::StsBadArg, ("%scovariance holds a number that is not finite, or one below 0 on its diagonal",
-                                     where.c_str()));
+    checkCovariance(C, where + "covariance");
 }
 
 //! The name of a numbered file, "camera-%d.cameramodel"; any other is that of all numbers.
@@ -194,7 +190,7 @@ void read(const String& filename, std::vector<Ptr<RefractiveCamera> >& cameras, 
     if (covariance)
     {
         *covariance = readStoredMatrix(root, "covariance", filename);
-        checkCovariance(*covariance, found, filename + ": ");
+        checkRigCovariance(*covariance, found, filename + ": ");
     }
     cameras = found;
     writeExtrinsics(places, Rs, Ts);
@@ -235,7 +231,7 @@ void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >&
         CV_Error_(Error::StsUnmatchedSizes, ("windowOfCamera has %d elements; cameras has %d", (int)windowOfCamera.size(), count));
     Mat C;
     covariance.getMat().convertTo(C, CV_64F);
-    checkCovariance(C, cameras, "");
+    checkRigCovariance(C, cameras, "");
     if (isCameraModel(filename) && !C.empty())
         CV_Error_(Error::StsBadArg, ("%s: a .cameramodel cannot state a covariance; leave it out, or save the rig as YAML",
                                      filename.c_str()));

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "points/triangulate.hpp"
+#include "math/covariance_matrix.hpp"
 #include "math/least_squares.hpp"
 #include "math/rotation.hpp"
 #include <array>
@@ -38,6 +39,8 @@ PointCovariance::PointCovariance(const PlacedCameras& cameras, InputArray calibr
     const std::vector<double> c = readNumbers(calibration, "calibrationCovariance");
     if (!c.empty() && c.size() != (size_t)count*count)
         CV_Error_(Error::StsBadSize, ("calibrationCovariance has %d values; it must be %dx%d", (int)c.size(), count, count));
+    if (!c.empty())
+        checkCovariance(Mat(count, count, CV_64F, const_cast<double*>(c.data())), "calibrationCovariance");
     calibration_->covariance = c;
 }
 
