@@ -208,5 +208,6 @@ TEST_CASE("Bad arguments of refractiveUndistortPoints are named", "[undistort]")
     CHECK_THAT(undistort(500., Matx22d::eye(), noArray()), Contains("R is 2x2"));
     CHECK_THAT(undistort(500., Matx33d::eye()*3, noArray()), Contains("R is not a rotation"));
     CHECK_THAT(undistort(500., noArray(), Matx22d::eye()), Contains("P is 2x2"));
+    CHECK_THAT(undistort(500., noArray(), Matx33d::zeros()), Contains("P is singular"));
     CHECK_THAT(undistort(500., noArray(), Matx33d(1, 0, INF, 0, 1, 0, 0, 0, 1)), Contains("P[2]") && Contains("inf"));
 }

@@ -295,11 +295,12 @@ Matx33d readProjection(InputArray a, const char* name)
         return Matx33d::eye();
     Matx34d P;
     const int count = readSmall(a, 12, P.val, name);
-    if (hasShape(a, 3, 3))
-        return Matx33d(P.val);
-    if (count != 12 || !hasShape(a, 3, 4))
+    if (!hasShape(a, 3, 3) && (count != 12 || !hasShape(a, 3, 4)))
         wrongShape(a, name, "3x3 or 3x4");
-    return P.get_minor<3, 3>(0, 0);
+    const Matx33d projection = hasShape(a, 3, 3) ? Matx33d(P.val) : P.get_minor<3, 3>(0, 0);
+    if (determinant(projection) == 0)
+        CV_Error_(Error::StsBadArg, ("%s is singular", name));
+    return projection;
 }
 
 template<typename Float, typename Double>
