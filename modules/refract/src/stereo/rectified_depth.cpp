@@ -28,8 +28,6 @@ struct Geometry
         base = (second.centre - first.centre)[axis];
         shift = first.K(axis, 2) - second.K(axis, 2);
         centreZ = first.centre[2];
-        if (base == 0)
-            CV_Error(Error::StsBadArg, "P1 and P2 are those of one pinhole");
     }
     double focal, base, shift, centreZ;
     int axis;

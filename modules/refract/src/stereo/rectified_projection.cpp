@@ -20,4 +20,13 @@ RectifiedProjection::RectifiedProjection(InputArray P, const char* name)
     centre = -(inverseK*Vec3d(matrix(0, 3), matrix(1, 3), matrix(2, 3)));
 }
 
+int axisOf(const RectifiedProjection& first, const RectifiedProjection& second)
+{
+    const Vec3d base = second.centre - first.centre;
+    const int axis = std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
+    if (base[axis] == 0)
+        CV_Error(Error::StsBadArg, "P1 and P2 are those of one pinhole");
+    return axis;
+}
+
 }} // namespace

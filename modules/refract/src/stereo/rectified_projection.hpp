@@ -18,12 +18,8 @@ struct RectifiedProjection
     Vec3d centre;
 };
 
-//! Along which the second image's pinhole is: 0 x, 1 y.
-inline int axisOf(const RectifiedProjection& first, const RectifiedProjection& second)
-{
-    const Vec3d base = second.centre - first.centre;
-    return std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
-}
+//! Along which the second image's pinhole is: 0 x, 1 y. Throws if it is the first's.
+int axisOf(const RectifiedProjection& first, const RectifiedProjection& second);
 
 }} // namespace
 

@@ -16,6 +16,16 @@ static Vec4d planeOf(InputArray depth, Size size, bool isNeeded, const char* nam
     return scenePlane(depth, isNeeded, name);
 }
 
+//! A pinhole is where the camera's rays nearly pass: near its centre of projection, or in its window.
+static void checkCentre(const Camera& camera, double fromCentre, double lengthOfT, const char* name)
+{
+    const double PRINTED = 1e-4, WINDOWS = 2;
+    const double total = camera.refracts() ? camera.layers().stack().total : 0;
+    if (fromCentre > PRINTED*lengthOfT + WINDOWS*total)
+        CV_Error_(Error::StsBadArg, ("%s has its pinhole %g from the camera's centre of projection; it was made for another camera "
+                                     "or another T", name, fromCentre));
+}
+
 RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
                              const Names& names)
     : R_(readRotation(R, names.R)), projection_(P, names.P), pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
@@ -23,6 +33,7 @@ RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, I
     const Vec3d t = T.empty() ? Vec3d() : readVec3(T, "T");
     pinhole_.newToCamera = R_.t()*projection_.inverseK;
     pinhole_.centre = R_.t()*projection_.centre + t;
+    checkCentre(camera, norm(pinhole_.centre), norm(t), names.P);
     Vec4d plane(0, 0, 1, 0);
     if (!depth.empty() && depth.size() == size && (depth.type() == CV_32F || depth.type() == CV_64F) && size.area() > 1)
         depths_ = depth.getMat();
