@@ -302,6 +302,7 @@ TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
     const std::string first = " --glass=" + folder / "points1.csv", second = " --glass2=" + folder / "points2.csv",
                       third = " --glass3=" + folder / "points3.csv", size = " --image-size=1280x1024";
     std::ofstream(folder / "poses.csv") << "view,rx_deg,ry_deg,rz_deg,tx,ty,tz\nother,0,0,0,0,0,500\n";
+    std::ofstream(folder / "behind.csv") << "view,rx_deg,ry_deg,rz_deg,tx,ty,tz\ncal,0,0,0,0,0,-500\n";
     const struct { std::string arguments, words; } cases[] = {
         {first + third + size, "no --glass2"},
         {first + second, "--image-size"},
@@ -310,6 +311,7 @@ TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
         {first + second + size + " --window-of-camera=1,1 --shared-window", "excludes"},
         {" --glass='*.png'", "--size"},
         {first + size + " --poses=" + folder / "poses.csv", "no pose of view 'cal'"},
+        {first + size + " --poses=" + folder / "behind.csv --camera=" + folder / "camera1.yml", "no image through the window at the start"},
         {first + size + " --glass17=" + folder / "points3.csv", "glass17"},
         {first + " --image-size=300x200", "outside of an image of 300x200"}};
     for (const auto& k : cases)

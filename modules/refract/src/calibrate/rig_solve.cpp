@@ -59,7 +59,7 @@ String RigProblem::startFault() const
             camera->project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
             if (status != REFRACT_OK)
                 return format("view %d of camera %d, point (%g, %g, %g): no image %s at the start (RefractiveStatus %d); "
-                              "check the window's distance and thickness, the lens and the units", image.view,
+                              "check the window's distance and thickness, the lens, the units, and given poses", image.view,
                               image.camera + 1, point.x, point.y, point.z,
                               image.refracted ? "through the window" : "without window", status);
         }
