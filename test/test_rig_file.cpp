@@ -7,6 +7,10 @@
 #include "temporary_folder.hpp"
 
 #include <fstream>
+#ifndef _WIN32
+#include <csignal>
+#include <sys/resource.h>
+#endif
 
 #include <opencv2/calib3d.hpp>
 
@@ -266,10 +270,40 @@ TEST_CASE("A rig that cannot be written is named and leaves what was there", "[r
     bad.covariance = rig.covariance.clone();
     bad.covariance.at<double>(1, 1) = NaN;
     CHECK_THAT(refused(bad), Contains("covariance"));
+    bad.covariance = rig.covariance.clone();
+    bad.covariance.at<double>(0, 1) += 0.1*std::sqrt(rig.covariance.at<double>(0, 0)*rig.covariance.at<double>(1, 1));
+    CHECK_THAT(refused(bad), Contains("covariance is not symmetric"));
     CHECK_THAT(refused(Rig()), Contains("cameras is empty"));
     CHECK_THAT(thrown([&] { writeRig("no/such/folder/rig.yml", rig.cameras, rig.Rs, rig.Ts); }),
                Contains("no/such/folder/rig.yml"));
 }
+
+#ifndef _WIN32
+TEST_CASE("A disk that is full is told, and leaves what was there", "[rig_file]")
+{
+    Random random;
+    const Rig rig = makeRig(2, random);
+    const TemporaryFolder folder;
+    rlimit before;
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+    for (const char* name : { "rig.yml", "rig.xml", "rig.json", "rig.yml.gz" })
+    {
+        const std::string path = folder/name;
+        writeRig(path, rig.cameras, rig.Rs, rig.Ts);
+        const std::string old = contentsOf(path);
+        const auto previous = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit few = { 200, before.rlim_max };
+        REQUIRE(setrlimit(RLIMIT_FSIZE, &few) == 0);
+        const std::string sentence = thrown([&] { writeRig(path, rig.cameras, rig.Rs, rig.Ts, {}, rig.covariance); });
+        setrlimit(RLIMIT_FSIZE, &before);
+        std::signal(SIGXFSZ, previous);
+        CAPTURE(name, old.size());
+        CHECK_THAT(sentence, Contains(std::string(name) + " cannot be written"));
+        CHECK(contentsOf(path) == old);
+    }
+    CHECK(folder.count() == 4);
+}
+#endif
 
 TEST_CASE("A rig of mrcal is a numbered file for each camera", "[rig_file]")
 {

@@ -168,18 +168,17 @@ void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const
 void writeTruth(const std::string& path, const Scene& scene, const Target* target, const std::vector<Job>& jobs,
                 const std::string& command)
 {
-    OutputFile file(path);
-    FileStorage fs(file.temporary(), FileStorage::WRITE);
-    fs << "command" << command;
-    if (target)
-        writeTarget(fs, scene.target, *target);
-    writeRig(fs, calibrationOf(modelOf(scene.cameras)));
-    if (target)
-        writeViews(fs, scene, target, jobs);
-    if (!scene.surfaces.surfaces.empty())
-        writeViews(fs, scene, nullptr, jobs);
-    fs.release();
-    file.commit();
+    writeStorage(path, ".yml", [&](FileStorage& fs)
+    {
+        fs << "command" << command;
+        if (target)
+            writeTarget(fs, scene.target, *target);
+        writeRig(fs, calibrationOf(modelOf(scene.cameras)));
+        if (target)
+            writeViews(fs, scene, target, jobs);
+        if (!scene.surfaces.surfaces.empty())
+            writeViews(fs, scene, nullptr, jobs);
+    });
 }
 
 //! The poses of the target as refract_calib takes them, each once.

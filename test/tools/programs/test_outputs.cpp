@@ -4,6 +4,8 @@
 // What the tools write never takes the place of what they read.
 #include "run_tool.hpp"
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <fcntl.h>
 #include <map>
 #include <regex>
@@ -163,4 +165,42 @@ TEST_CASE("Links stay links, pipes stay pipes, and what is read-only stays", "[t
     CHECK(refused.code == 1);
     CHECK(refused.err.find("may not be written") != std::string::npos);
     CHECK(readFile(f / "kept.csv") == "kept");
+}
+
+TEST_CASE("A disk that is full is told, and what was there stays", "[tools][outputs]")
+{
+    const Inputs in;
+    const TemporaryFolder& f = in.folder;
+    const std::string full = "trap '' XFSZ; ulimit -f 2;";          // a file ends at some kB
+    const std::string commands[] = {
+        "refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO + "/direct1/*' --glass='" + STEREO
+            + "/glass1/*' --no-cross-validation --quiet --out=",
+        "refract_export " + in.calib + " --to=opencv --range=400,800 --out=",
+        "refract_board" + TARGET + " --out="};
+    for (const std::string& command : commands)
+    {
+        const std::string out = f/(command.find("board") == std::string::npos ? "old.yml" : "old.pdf");
+        std::ofstream(out) << "old";
+        const ToolResult result = runTool(command + out, full);
+        CAPTURE(command, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, "is the disk full?"));
+        CHECK(readFile(out) == "old");
+    }
+}
+
+TEST_CASE("JSON is what others read too", "[tools][outputs]")
+{
+    const Inputs in;
+    for (const std::string& command : {"refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO + "/direct1/*' --glass='"
+                                          + STEREO + "/glass1/*' --note=by='O\"Neill' --no-cross-validation --quiet --out=",
+                                      "refract_export " + in.calib + " --to=opencv --range=400,800 --out="})
+    {
+        const std::string out = in.folder / "c.json";
+        const ToolResult result = runTool(command + out);
+        CAPTURE(command, result.err);
+        CHECK(result.code != 1);
+        CHECK(nlohmann::json::accept(readFile(out)));
+        CHECK(cv::FileStorage(out, cv::FileStorage::READ).isOpened());
+    }
 }

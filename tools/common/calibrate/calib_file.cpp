@@ -310,28 +310,25 @@ void writeRig(FileStorage& fs, const Calibration& calibration)
 
 void writeCalibration(const std::string& filename, const Calibration& calibration)
 {
-    OutputFile file(filename, ".yml");
-    FileStorage fs;
-    if (!fs.open(file.temporary(), FileStorage::WRITE))
-        throw Failure("cannot write '" + filename + "'");
-    fs << "command" << calibration.command << "refract_version" << REFRACT_VERSION << "opencv_version" << CV_VERSION
-       << "calibration_time" << calibration.time;
-    if (!calibration.verdict.empty())
-        fs << "verdict" << calibration.verdict;
-    if (!calibration.contradictions.empty())
-        fs << "contradictions" << calibration.contradictions;
-    writeLabel(fs, calibration.label);
-    if (calibration.square > 0)
-        fs << "unit" << calibration.unit << "target_square" << calibration.square;
-    if (calibration.channel != BRIGHTNESS)
-        fs << "channel" << nameOf(calibration.channel);
-    writeRig(fs, calibration);
-    if (calibration.freedom > 0)
-        fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;
-    if (!calibration.covariance.empty())
-        fs << "covariance" << calibration.covariance;
-    fs.release();
-    file.commit();
+    writeStorage(filename, ".yml", [&](FileStorage& fs)
+    {
+        fs << "command" << calibration.command << "refract_version" << REFRACT_VERSION << "opencv_version" << CV_VERSION
+           << "calibration_time" << calibration.time;
+        if (!calibration.verdict.empty())
+            fs << "verdict" << calibration.verdict;
+        if (!calibration.contradictions.empty())
+            fs << "contradictions" << calibration.contradictions;
+        writeLabel(fs, calibration.label);
+        if (calibration.square > 0)
+            fs << "unit" << calibration.unit << "target_square" << calibration.square;
+        if (calibration.channel != BRIGHTNESS)
+            fs << "channel" << nameOf(calibration.channel);
+        writeRig(fs, calibration);
+        if (calibration.freedom > 0)
+            fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;
+        if (!calibration.covariance.empty())
+            fs << "covariance" << calibration.covariance;
+    });
 }
 
 } // namespace tools

@@ -142,14 +142,54 @@ void OutputFile::commit()
     committed_ = true;
 }
 
-void writeText(const std::string& path, const std::string& text)
+static void writeInto(const OutputFile& file, const std::string& path, const std::string& text)
 {
-    OutputFile file(path);
     std::ofstream out(file.temporary(), std::ios::binary);
     out << text;
     out.close();
     if (!out)
         throw Failure("cannot write '" + path + "': is the disk full?");
+}
+
+void writeText(const std::string& path, const std::string& text)
+{
+    OutputFile file(path);
+    writeInto(file, path, text);
+    file.commit();
+}
+
+//! cv::FileStorage escapes ' in JSON, which has no such escape.
+static std::string validJson(const std::string& text)
+{
+    std::string valid;
+    for (size_t i = 0; i < text.size(); i++)
+    {
+        const bool isEscape = text[i] == '\\' && i + 1 < text.size();
+        if (isEscape && text[i + 1] != '\'')
+            valid += text[i];
+        i += isEscape;
+        valid += text[i];
+    }
+    return valid;
+}
+
+void writeStorage(const std::string& path, const std::string& extension, const std::function<void(cv::FileStorage&)>& write)
+{
+    OutputFile file(path, extension);
+    fs::path format = file.temporary();
+    const bool isCompressed = format.extension() == ".gz";
+    if (isCompressed)
+        format.replace_extension();
+    // FileStorage does not tell what a full disk swallowed.
+    cv::FileStorage memory(format.string(), cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    write(memory);
+    const std::string text = memory.releaseAndGetString();
+    writeInto(file, path, format.extension() == ".json" ? validJson(text) : text);
+    if (isCompressed)       // where there was room for the text there is for this
+    {
+        cv::FileStorage compressed(file.temporary(), cv::FileStorage::WRITE);
+        write(compressed);
+    }
     file.commit();
 }
 

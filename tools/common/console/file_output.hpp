@@ -6,6 +6,7 @@
 
 #include <opencv2/core.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ void requireWritable(const std::string& path);
 std::filesystem::path temporaryFolder();
 
 void writeText(const std::string& path, const std::string& text);
+
+//! YAML, XML or JSON, as the path's extension says. @param extension where the path has none
+void writeStorage(const std::string& path, const std::string& extension, const std::function<void(cv::FileStorage&)>& write);
 void writeImage(const std::string& path, const cv::Mat& image, const std::vector<int>& parameters = {});
 
 //! Makes the folder and its parents; throws Failure if it cannot.

@@ -18,10 +18,12 @@ static void writeCamera(cv::FileStorage& fs, const CentralRig& rig, const Export
 
 void writeOpenCV(const std::string& path, const CentralRig& rig)
 {
-    OutputFile file(path, ".yml");
+    writeStorage(path, ".yml", [&](cv::FileStorage& fs)
     {
-        cv::FileStorage fs(file.temporary(), cv::FileStorage::WRITE);
-        fs.writeComment(headText(rig));
+        if (fs.getFormat() == cv::FileStorage::FORMAT_JSON)     // which has no comments
+            fs << "comment" << headText(rig);
+        else
+            fs.writeComment(headText(rig));
         const std::vector<ExportedCamera>& cameras = rig.cameras;
         if (cameras.size() == 1)
             writeCamera(fs, rig, cameras[0]);
@@ -37,8 +39,7 @@ void writeOpenCV(const std::string& path, const CentralRig& rig)
             const cv::Matx33d R = cameras[c].R*cameras[0].R.t();
             fs << "R" + number << cv::Mat(R) << "T" + number << cv::Mat(cameras[c].T - R*cameras[0].T);
         }
-    }
-    file.commit();
+    });
 }
 
 } // namespace tools

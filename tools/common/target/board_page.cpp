@@ -39,12 +39,19 @@ bool isSvg(const std::string& path)
     return end == "svg";
 }
 
-Surface makeSurface(const std::string& path, const std::string& as, Size2d paper)
+cairo_status_t append(void* bytes, const unsigned char* data, unsigned length)
+{
+    static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+//! A page whose bytes are there once it is finished. (To a file cairo writes without asking whether the disk is full.)
+Surface makeSurface(std::string& bytes, bool asSvg, Size2d paper)
 {
     const double width = paper.width/POINT, height = paper.height/POINT;
-    if (isSvg(as))
-        return Surface(cairo_svg_surface_create(path.c_str(), width, height), cairo_surface_destroy);
-    Surface surface(cairo_pdf_surface_create(path.c_str(), width, height), cairo_surface_destroy);
+    if (asSvg)
+        return Surface(cairo_svg_surface_create_for_stream(append, &bytes, width, height), cairo_surface_destroy);
+    Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, width, height), cairo_surface_destroy);
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");      // equal input, equal bytes
     return surface;
 }
@@ -190,8 +197,9 @@ void BoardPage::drawBoard(cairo_t* cairo) const
 
 void BoardPage::write(const std::string& path, const std::vector<std::string>& lines) const
 {
-    OutputFile file(path);
-    const Surface surface = makeSurface(file.temporary(), path, paper_);
+    requireWritable(path);
+    std::string bytes;
+    const Surface surface = makeSurface(bytes, isSvg(path), paper_);
     const Context context(cairo_create(surface.get()), cairo_destroy);
     cairo_t* cairo = context.get();
     cairo_scale(cairo, 1/POINT, 1/POINT);       // from here on in millimetres
@@ -205,7 +213,7 @@ void BoardPage::write(const std::string& path, const std::vector<std::string>& l
     for (const cairo_status_t status : {cairo_surface_status(surface.get()), cairo_status(cairo)})
         if (status != CAIRO_STATUS_SUCCESS)
             throw Failure("'" + path + "' cannot be written: " + cairo_status_to_string(status));
-    file.commit();
+    writeText(path, bytes);
 }
 
 } // namespace tools

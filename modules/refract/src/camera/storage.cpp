@@ -168,15 +168,33 @@ void saveWhole(const String& filename, const std::function<bool(const String& pa
     CV_Error_(Error::StsError, ("%s cannot be written", filename.c_str()));
 }
 
+static bool isCompressed(const String& filename)
+{
+    return filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0;
+}
+
+//! FileStorage does not tell what a full disk swallowed; the text is written by a stream that does.
+static bool writeStorage(const String& path, const std::function<void(FileStorage&)>& write)
+{
+    const String plain = isCompressed(path) ? path.substr(0, path.size() - 3) : path;
+    FileStorage memory(plain, FileStorage::WRITE | FileStorage::MEMORY);
+    if (!memory.isOpened())
+        return false;
+    write(memory);
+    std::ofstream out(path.c_str(), std::ios::binary);
+    out << memory.releaseAndGetString();
+    out.close();
+    if (!out || !isCompressed(path))
+        return (bool)out;
+    FileStorage compressed(path, FileStorage::WRITE);       // where there was room for the text there is for this
+    if (compressed.isOpened())
+        write(compressed);
+    return compressed.isOpened();
+}
+
 void saveStorage(const String& filename, const std::function<void(FileStorage&)>& write)
 {
-    saveWhole(filename, [&](const String& path)
-    {
-        FileStorage fs(path, FileStorage::WRITE);
-        if (fs.isOpened())
-            write(fs);
-        return fs.isOpened();
-    });
+    saveWhole(filename, [&](const String& path) { return writeStorage(path, write); });
 }
 
 }} // namespace
