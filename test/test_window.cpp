@@ -136,6 +136,7 @@ TEST_CASE("A missing window reads as the default, a bad one throws and changes n
                             Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], materials: N-BK7}", "materials" },
                             Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], materials: [air, N-BK8, air]}", "N-BK7" },
                             Bad{ "{normal: [0, 0, 1], thickness: [1], materials: [air, K9, air], wavelength: 100}", "100" },
+                            Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], outer_indx: 1.333}", "outer_indx" },
                             Bad{ "{normal: [0, 0, 1], thickness: [1], index: [1.5], wavelength: -1}", "wavelength" } })
     {
         CAPTURE(bad.text);

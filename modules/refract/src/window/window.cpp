@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "precomp.hpp"
+#include <set>
 
 namespace cv { namespace refract {
 
@@ -169,10 +170,22 @@ static void readMaterials(const FileNode& node, GlassWindow& window)
         window = catalogue;
 }
 
+//! A slip in a name would leave what it names at its default: air.
+static void checkKeys(const FileNode& map)
+{
+    const std::set<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "materials",
+                                          "wavelength" };
+    for (FileNodeIterator it = map.begin(); it != map.end(); it++)
+        if (known.count((*it).name()) == 0)
+            CV_Error_(Error::StsParseError, ("glass_window has '%s', which is none of normal, distance, thickness, index, "
+                                             "inner_index, outer_index, materials, wavelength", (*it).name().c_str()));
+}
+
 void GlassWindow::read(const FileNode& node)
 {
     if (!node.isMap())
         CV_Error(Error::StsParseError, "glass_window is not a map of normal, distance, thickness, index");
+    checkKeys(node);
     const std::vector<double> n = readSequence(node, "normal");
     if (n.size() != 3)
         CV_Error_(Error::StsParseError, ("glass_window.normal has %d numbers; it must have 3", (int)n.size()));
