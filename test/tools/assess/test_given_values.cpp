@@ -82,6 +82,21 @@ TEST_CASE("Of values given, the one that is wrong is named", "[given_values]")
           == Approx(1.333).margin(1e-3));
 }
 
+TEST_CASE("Layers given wrong are contradicted by their sum", "[given_values]")
+{
+    GlassWindow layers = RIGHT;         // the same pane, in two
+    layers.thickness = {10, 5};
+    layers.index = {1.49, 1.49};
+    CHECK(contradicted(calibrated(layers, 0, true)) == "");
+    layers.thickness = {13, 5};
+    const std::string thickness = contradicted(calibrated(layers, 0, true));
+    CAPTURE(thickness);
+    const size_t at = thickness.find("the images contradict --thickness: set free, the sum");       // the exact poses hide less
+    REQUIRE(at != std::string::npos);
+    CHECK(numberAfter("the images contradict --thickness: set free, the sum over the layers would be ", thickness.substr(at))
+          == Approx(15).margin(0.3));
+}
+
 TEST_CASE("Poses that are not as exact as they are said to be are named first", "[given_values]")
 {
     const std::string exact = contradicted(calibrated(RIGHT, 1, true));

@@ -5,9 +5,11 @@
 #include "assess/wrong_values.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/starting_model.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace cv;
 using namespace cv::refract;
@@ -32,11 +34,11 @@ struct GivenValue
 std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
-    const bool oneLayer = window.thickness.size() == 1, equalMedia = window.innerIndex == window.outerIndex;
+    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
     return {
-        {GLASS_FREE_THICKNESS, "thickness", "--thickness", oneLayer && options.thicknessStd == 0.,
+        {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers && options.thicknessStd == 0.,
          [](const GlassWindow& w) { return w.thickness[0]; }, [](const ParameterColumns& at) { return at.thickness; }},
-        {GLASS_FREE_INDEX, "index", "--index", oneLayer && options.indexStd == 0.,
+        {GLASS_FREE_INDEX, "index", "--index", layers && options.indexStd == 0.,
          [](const GlassWindow& w) { return w.index[0]; }, [](const ParameterColumns& at) { return at.index; }},
         {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia,
          [](const GlassWindow& w) { return w.distance; }, [](const ParameterColumns& at) { return at.distance; }},
@@ -77,6 +79,47 @@ std::vector<Contradiction> contradictedBy(const RigCalibration& c, const GivenVa
         const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
         if (std::abs(estimate - before) > SURE*std)
             contradictions.push_back({sentenceOf(given, where, typed(c.options, given, before), before, estimate, std), fit.sigma});
+    }
+    return contradictions;
+}
+
+/** The thicknesses or indices of several layers, which images seldom tell apart: each free by a part of what it is, so that the prior
+shares among them what the images say of their sum. */
+std::vector<Contradiction> contradictedLayers(const RigCalibration& c, const GivenValue& given)
+{
+    const bool ofThickness = given.flag == GLASS_FREE_THICKNESS;
+    RigOptions options = c.options;
+    const std::vector<double>& values = ofThickness ? options.window.thickness : options.window.index;
+    (ofThickness ? options.thicknessStd : options.indexStd) = 0.2**std::min_element(values.begin(), values.end());
+    RigModel rig = c.fit.rig.clone();
+    rig.known.resize(rig.cameras.size());
+    for (size_t k = 0; k < rig.cameras.size(); k++)
+    {
+        const Mat lens = rig.known[k].lens;
+        rig.known[k] = knownOf(*rig.cameras[k], options, (int)k);
+        if (!lens.empty())
+            rig.known[k].lens = lens;
+    }
+    const auto sumOf = [&](const GlassWindow& w) {
+        const std::vector<double>& values = ofThickness ? w.thickness : w.index;
+        return std::accumulate(values.begin(), values.end(), 0.);
+    };
+    std::vector<Contradiction> contradictions;
+    const Fit fit = fitImages(c.data, rig, c.fit.moments, c.options.flags);
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        if (!rig.ownsWindow(k))
+            continue;
+        const ParameterColumns at = columnsOf(fit.rig, k);
+        const int first = ofThickness ? at.thickness : at.index;
+        const double std = std::sqrt(sum(fit.covariance(Rect(first, first, at.layers, at.layers)))[0]);
+        const double before = sumOf(c.fit.rig.cameras[k]->window()), estimate = sumOf(fit.rig.cameras[k]->window());
+        const String where = countWindows(rig) == 1 ? "" : format(" of camera %d's window", k + 1);
+        if (std::abs(estimate - before) > SURE*std)
+            contradictions.push_back({format("the images contradict %s: set free, the sum over the layers%s would be ", given.option,
+                                             where.c_str()) + plusMinus(estimate, std)
+                                      + format(" and not %.5g, %.0f standard deviations away", before,
+                                               std::abs(estimate - before)/std), fit.sigma});
     }
     return contradictions;
 }
@@ -124,7 +167,11 @@ std::vector<Contradiction> contradictedValues(const RigCalibration& c)
     };
     for (const GivenValue& given : givenValues(c.options))
         if (given.isGiven && !(c.options.flags & given.flag))
-            add([&] { return contradictedBy(c, given); });
+        {
+            const bool ofLayers = given.flag == GLASS_FREE_THICKNESS || given.flag == GLASS_FREE_INDEX;
+            add([&] { return ofLayers && c.options.window.thickness.size() > 1 ? contradictedLayers(c, given)
+                                                                              : contradictedBy(c, given); });
+        }
     if (hasExactPoses(c))
         add([&] { return contradictedPoses(c); });
     keepTheBest(contradictions);

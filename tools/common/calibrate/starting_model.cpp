@@ -50,37 +50,6 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, source.rms);
 }
 
-/** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
-with the given deviations. */
-KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, int c)
-{
-    const GlassWindow window = camera.window();
-    const int lens = camera.lensParameters().rows, layers = (int)window.thickness.size();
-    KnownCamera known{camera.lensParameters(), window.thickness, window.index, Mat()};
-    // Without a covariance the lens of a file is exact, unless the caller wants it free.
-    const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
-    const bool windowKnown = layers > 0 && (options.thicknessStd > 0. || options.indexStd > 0.);
-    if (!lensKnown && !windowKnown)
-        return known;
-    known.covariance = Mat::zeros(lens, lens, CV_64F);
-    if (!lensKnown)
-        known.covariance.diag().setTo(NAN);         // nothing is known
-    else if (!options.knownCovariance[c].empty())
-        options.knownCovariance[c].copyTo(known.covariance);
-    if (!windowKnown)
-        return known;
-    const ParameterColumns at = columnsOf(camera);
-    Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
-    known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
-    for (int i = 0; i < layers; i++)
-    {
-        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd*options.thicknessStd;
-        covariance.at<double>(at.index + i, at.index + i) = options.indexStd*options.indexStd;
-    }
-    known.covariance = covariance;
-    return known;
-}
-
 //! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.
 void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camera, const LensSource& source)
 {
@@ -228,6 +197,35 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
 }
 
 } // namespace
+
+KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, int c)
+{
+    const GlassWindow window = camera.window();
+    const int lens = camera.lensParameters().rows, layers = (int)window.thickness.size();
+    KnownCamera known{camera.lensParameters(), window.thickness, window.index, Mat()};
+    // Without a covariance the lens of a file is exact, unless the caller wants it free.
+    const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
+    const bool windowKnown = layers > 0 && (options.thicknessStd > 0. || options.indexStd > 0.);
+    if (!lensKnown && !windowKnown)
+        return known;
+    known.covariance = Mat::zeros(lens, lens, CV_64F);
+    if (!lensKnown)
+        known.covariance.diag().setTo(NAN);         // nothing is known
+    else if (!options.knownCovariance[c].empty())
+        options.knownCovariance[c].copyTo(known.covariance);
+    if (!windowKnown)
+        return known;
+    const ParameterColumns at = columnsOf(camera);
+    Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
+    known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
+    for (int i = 0; i < layers; i++)
+    {
+        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd*options.thicknessStd;
+        covariance.at<double>(at.index + i, at.index + i) = options.indexStd*options.indexStd;
+    }
+    known.covariance = covariance;
+    return known;
+}
 
 bool RigOptions::hasMaterials() const
 {

@@ -38,6 +38,10 @@ struct LensSource
 //! A window's distance to start from, where nothing is known of it; away from its bound, 0. @param square of a board; 0: there is none
 double startDistance(const RigData& data, double square);
 
+/** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
+with the given deviations. */
+KnownCamera knownOf(const cv::refract::RefractiveCamera& camera, const RigOptions& options, int c);
+
 //! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
 
