@@ -263,6 +263,7 @@ TEST_CASE("refract_export says what it cannot do, and leaves nothing behind", "[
     refused(" --to=opencv --range=900,550" + out, "--range");
     refused(" --to=opencv --range=550" + out, "--range");
     refused(" --to=opencv --range=1,40" + out, "beyond its window");
+    refused(" --to=opencv --range=1e-9,1e9" + out, "beyond its window");
     refused(" --to=opencv" + RANGE, "--out=FILE");
     refused(" --to=mrcal" + RANGE + out, "--out-dir=DIR");
     refused(" --to=mrcal --coefficients=14" + RANGE + " --out-dir=" + (folder / "m"), "--coefficients=14");

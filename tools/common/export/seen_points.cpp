@@ -5,6 +5,7 @@
 #include "console/cli.hpp"
 
 #include <cmath>
+#include <numeric>
 
 namespace tools {
 
@@ -13,6 +14,24 @@ using cv::Point3d;
 using cv::Ptr;
 using cv::Vec3d;
 using cv::refract::RefractiveCamera;
+
+//! Nearly all pixels see z beyond the window; not all of a wide lens do, which looks along a tilted one.
+static bool isBeyondWindow(const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, double z)
+{
+    const cv::refract::GlassWindow window = camera->window();
+    const double lastSurface = std::accumulate(window.thickness.begin(), window.thickness.end(), window.distance);
+    std::vector<Vec3d> origins, directions;
+    cv::refract::refractiveUnprojectPoints(pixels, origins, directions, camera);
+    size_t forward = 0, within = 0;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (directions[i][2] > 0)
+        {
+            const Vec3d X = origins[i] + (z - origins[i][2])/directions[i][2]*directions[i];
+            forward++;
+            within += window.normal.dot(X) < lastSurface;
+        }
+    return 10*within <= forward;
+}
 
 SeenPoints seenPoints(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths)
 {
@@ -33,14 +52,15 @@ SeenPoints seenPoints(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& rang
                 all.pixels.push_back(grid[i]);
             }
     }
+    all.allBeyondWindow = isBeyondWindow(camera, grid, range[0]);
     return all;
 }
 
 void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name)
 {
     const size_t FEWEST = 100;
-    if (seen.points.size() < FEWEST)
-        throw Failure(cv::format("%s sees next to nothing between z = %g and %g: give a range beyond its window", name.c_str(),
+    if (seen.points.size() < FEWEST || !seen.allBeyondWindow)
+        throw Failure(cv::format("%s sees little or nothing of z = %g to %g: give a range beyond its window", name.c_str(),
                                  range[0], range[1]));
 }
 

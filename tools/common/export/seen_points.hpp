@@ -13,6 +13,7 @@ struct SeenPoints
 {
     std::vector<cv::Point3d> points;
     std::vector<cv::Point2d> pixels;
+    bool allBeyondWindow = true;        //!< hardly a pixel meets one of the depths within its window
 };
 
 //! Pixels all over the image, seen at depths whose inverses are evenly spaced.
