@@ -16,7 +16,7 @@ const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
 TEST_CASE("A settings file stands for options, and the command line goes first", "[tools][settings]")
 {
     const TemporaryFolder folder;
-    writeFile(folder / "run.toml", "# the bundled rig, camera 1\nsize = \"6x5\"\nsquare = 39\n\nthickness = [20]    # mm\nindex = 1.5\n"
+    writeFile(folder / "run.toml", "\xEF\xBB\xBF# the bundled rig, camera 1\nsize = \"6x5\"\nsquare = 39\n\nthickness = [20]    # mm\nindex = 1.5\n"
         "direct = \"" + STEREO + "/direct1/*\"\nglass = '" + STEREO + "/glass1/*'\nfree = [\"thickness\", \"index\"]\n"
         "no-cross-validation = true\nquiet = true\nunpaired = false\nnote = [\"where=Lab 3\", \"who=A\"]\nout = \""
         + (folder / "file.yml") + "\"\n");
@@ -68,6 +68,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
                                  "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
+        {"quiet = true\nquiet = false\n", "'quiet' is set twice"},
         {"config = \"other.toml\"\n", "'config' belongs on the command line"}, {"\x01\x02\x03\x04\n\xff\xfe\xfd", "no setting"}};
     for (const std::string& tool : tools)
         for (const auto& b : bad)

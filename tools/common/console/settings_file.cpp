@@ -4,6 +4,11 @@
 #include "console/settings_file.hpp"
 #include "console/cli.hpp"
 
+#include <iterator>
+#include <regex>
+#include <set>
+#include <sstream>
+
 namespace tools {
 
 const CLI::Option& SettingsFile::optionOf(const CLI::ConfigItem& item) const
@@ -33,9 +38,24 @@ void SettingsFile::noteArguments(const CLI::Option& option, const CLI::ConfigIte
             arguments_.push_back("--" + item.name + (isFlag ? "" : "=" + value));
 }
 
+//! The text without a byte order mark; CLI11 joins a setting that comes twice, as if it were a list.
+static std::string checkedText(std::istream& in)
+{
+    const std::string MARK = "\xEF\xBB\xBF", text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    std::istringstream lines(text.compare(0, MARK.size(), MARK) == 0 ? text.substr(MARK.size()) : text);
+    const std::regex setting("\\s*[\"']?([A-Za-z][A-Za-z0-9._-]*)[\"']?\\s*=.*");
+    std::set<std::string> names;
+    std::smatch match;
+    for (std::string line; std::getline(lines, line); )
+        if (std::regex_match(line, match, setting) && !names.insert(match[1]).second)
+            throw Failure("--config: '" + match[1].str() + "' is set twice; several values are a list: name = [one, two]");
+    return lines.str();
+}
+
 std::vector<CLI::ConfigItem> SettingsFile::from_config(std::istream& in) const
 {
-    std::vector<CLI::ConfigItem> items = CLI::ConfigTOML::from_config(in);
+    std::istringstream text(checkedText(in));
+    std::vector<CLI::ConfigItem> items = CLI::ConfigTOML::from_config(text);
     for (CLI::ConfigItem& item : items)
     {
         const CLI::Option& option = optionOf(item);
