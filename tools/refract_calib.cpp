@@ -182,8 +182,19 @@ Options parseOptions(Command& command)
     for (const std::string& text : maxErrors)
         o.limits.errors.push_back(parseErrorLimit(text));
     for (const std::string& text : notes)
-        o.label.notes.push_back(parseNote(text));
+    {
+        const auto note = parseNote(text);
+        for (const auto& other : o.label.notes)
+            if (other.first == note.first)
+                throw Failure("--note=" + text + ": there is another note '" + note.first + "'");
+        o.label.notes.push_back(note);
+    }
     o.distanceGiven = distance->count() > 0;
+    bool allKnown = true;
+    for (int c = 0; c < o.images.cameraCount(); c++)
+        allKnown = allKnown && !o.camera[c].empty();
+    if (app.get_option("--lens")->count() > 0 && allKnown)
+        throw Failure("--lens=" + o.lens + " is for a lens that the images determine; these are those of --camera: leave one out");
     o.images.channel = channelOf(o.channel);
     for (int c = 0; c < o.images.cameraCount(); c++)
         if (o.images.glass[c].empty())

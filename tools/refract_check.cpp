@@ -53,7 +53,7 @@ void addOptions(CLI::App& app, Options& o)
         ->check(CLI::IsMember(unitNames()));
     o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "probability of \"moved\" although nothing did")->check(CLI::Range(1e-9, 0.5))
+    app.add_option("--false-alarm", o.falseAlarm, "probability of \"moved\" although nothing did")->check(between(1e-9, 0.5))
         ->capture_default_str();
     app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
     app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "

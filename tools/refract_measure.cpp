@@ -391,7 +391,8 @@ std::vector<Calibration> readOthers(const Options& options, const Calibration& c
 void printTable(const Options& options, const Calibration& calibration, const std::vector<Calibration>& others,
                 const std::vector<Sight>& sights, const std::vector<Measurement>& results)
 {
-    const bool lengthsMeasured = options.lengthsMeasured();
+    const bool lengthsMeasured = options.lengthsMeasured()
+        && std::any_of(sights.begin(), sights.end(), [](const Sight& s) { return !s.moment.neighbours.empty(); });
     Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
                                                            "mean error", "largest"}
                                 : std::vector<std::string>{"", "points", "depth z", "mean sz"});
@@ -422,7 +423,7 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("--out", options.out, "points.csv to write");
     app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
     app.add_option("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: that "
-                   "of the calibration's residuals)")->check(CLI::PositiveNumber);
+                   "of the calibration's residuals)")->check(moreThanZero());
     app.add_flag("--compare", options.compare, "show also what comes out if the glass is ignored");
     app.add_option("--compare-with", options.compareWith, "show also what another calibration gives");
 }
@@ -432,6 +433,8 @@ void checkCombination(const Options& options, const Calibration& calibration)
     const size_t cameras = calibration.cameras.size(), images = options.images.size();
     if (options.points.empty() == (images == 0))
         throw Failure("give images of the target, or --points=FILE");
+    if (!options.points.empty() && options.target.given())
+        throw Failure("--points are those of no target: leave --size and --square out");
     if (images > cameras)
         throw Failure(format("'%s' has %s camera%s, but there are images of %s: calibrate ", options.calibration.c_str(),
                              cameras == 1 ? "one" : std::to_string(cameras).c_str(), cameras == 1 ? "" : "s",

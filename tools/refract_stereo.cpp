@@ -81,7 +81,9 @@ struct PairResult
 cv::Vec2d parseDepthRange(const std::string& text)
 {
     const size_t comma = text.find(',');
-    const std::string farText = comma == std::string::npos ? "" : text.substr(comma + 1);
+    if (comma == std::string::npos)
+        throw Failure("--depth=" + text + ": give the near and the far end of the scene, as in --depth=400,1200");
+    const std::string farText = text.substr(comma + 1);
     const std::vector<double> near = parseNumbers(text.substr(0, comma), "--depth");
     const std::vector<double> far = farText == "inf" ? std::vector<double>{std::numeric_limits<double>::infinity()}
                                                      : parseNumbers(farText, "--depth");
@@ -465,6 +467,8 @@ int main(int argc, char** argv)
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
         refuseOverwriting(options, command.settings(), first, second, files);
+        if (!options.out.empty() && fs::path(options.out).extension() != ".ply" && !isSpecialFile(options.out))
+            throw Failure("--out=" + options.out + ": the cloud is a .ply");
         sayAlone(frames.alone1, 1, command);
         sayAlone(frames.alone2, 2, command);
 

@@ -139,6 +139,7 @@ TEST_CASE("refract_check says when it cannot tell, and why", "[tools][check]")
         {"refract_check " + folder / "none.yml" + TARGET + pair("pair3.jpg"), "none.yml"},
         {check + TARGET, "--glass"},
         {check + TARGET + pair("pair3.jpg") + " --false-alarm=2", "--false-alarm"},
+        {check + TARGET + pair("pair3.jpg") + " --false-alarm=nan", "--false-alarm"},
     };
     for (const auto& c : cases)
     {

@@ -432,6 +432,9 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
     for (size_t i = 0; i < noise.size(); i++)
         noise[i] = (char)(i*i*2654435761u >> 13);
     const std::string first = image("measure1/z600_1"), second = image("measure2/z600_1");
+    const std::string pages = folder / "pages.tiff";
+    const cv::Mat page = cv::imread(first);
+    REQUIRE(cv::imwritemulti(pages, std::vector<cv::Mat>(2, page)));
     const std::string both = first + " " + second + TARGET, out = " --out=" + (folder / "points.csv");
 
     struct Case { std::string arguments, expected; };
@@ -460,6 +463,11 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
         {calib + " " + first + TARGET + " --plane=0,0,0,600", "--plane"},
         {calib + " " + first + TARGET + " --plane=0,0,1,-600", "no point"},
         {calib + " " + both + " --plane=0,0,1,600", "--plane"},
+        {calib + " " + both + " --pixel-sigma=nan", "--pixel-sigma"},
+        {calib + " " + both + " --pixel-sigma=inf", "--pixel-sigma"},
+        {calib + " " + both + " --marker=20", "--marker and --dictionary are for"},
+        {calib + " --points=" + (folder / "empty.yml") + TARGET, "leave --size and --square out"},
+        {calib + " " + pages + " " + second + TARGET, "has 2 pages"},
     };
     const size_t files = folder.count();
     for (const Case& c : cases)

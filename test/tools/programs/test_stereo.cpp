@@ -341,6 +341,8 @@ TEST_CASE("refract_stereo refuses with one sentence and writes nothing", "[tools
         {"refract_stereo " + (folder / "small.yml") + " " + LEFT + " " + (folder / "half.png") + DEPTH + out, "of one size"},
         {"refract_stereo " + (folder / "apart.yml") + PAIR + DEPTH + out, ""},
         {"refract_stereo " + (folder / "none.yml") + PAIR + DEPTH + out, "none.yml"},
+        {tool + PAIR + DEPTH + " --out=" + (folder / "c.obj"), "the cloud is a .ply"},
+        {tool + PAIR + " --depth=400" + out, "as in --depth=400,1200"},
         {tool + LEFT + " " + (folder / "half.png") + DEPTH + out, "320x240"},
         {tool + LEFT + " " + LEFT + DEPTH + out, "both cameras"},
         {tool + LEFT + " " + (folder / "none.png") + DEPTH + out, "none.png"},

@@ -65,6 +65,7 @@ TEST_CASE("Watching ends when it is quiet, and says what is wrong with a file", 
     CAPTURE(result.out, result.err);
     CHECK(result.code == 1);            // as one image is not enough, and the other is none
     CHECK(mentions(result.out, "bad.jpg: '"));
+    CHECK(mentions(result.out, "take it out of the folder"));
     CHECK(mentions(result.out, "pair1.jpg: board found, 30 of 30 points (1 so far)"));
     const ToolResult quiet = runTool(call(folder) + " --watch-quiet=0.3 --quiet");
     CHECK(quiet.out.empty());

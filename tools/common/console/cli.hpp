@@ -91,9 +91,20 @@ inline CLI::Validator moreThanZero()
 {
     return CLI::Validator([](std::string& text) {
         double number;
-        return parseNumber(text, number) && number > 0 ? std::string()
-                                                                     : "give a number more than 0, not " + text;
+        return parseNumber(text, number) && number > 0 && std::isfinite(number) ? std::string()
+                                                                                : "give a number more than 0, not " + text;
     }, "> 0");
+}
+
+//! The same within limits; CLI11's own lets nan through.
+inline CLI::Validator between(double least, double most)
+{
+    const std::string range = cv::format("%g to %g", least, most);
+    return CLI::Validator([=](std::string& text) {
+        double number;
+        return parseNumber(text, number) && number >= least && number <= most ? std::string()
+                                                                              : "give a number from " + range + ", not " + text;
+    }, range);
 }
 
 //! "a,b,c" -> numbers; all finite.

@@ -51,6 +51,15 @@ bool isCutJpeg(const std::vector<uchar>& bytes)
     return true;
 }
 
+//! The first page of several would be taken for all there is.
+void requireOnePage(const std::string& path, const std::vector<uchar>& bytes)
+{
+    const bool isTiff = bytes.size() > 4 && ((bytes[0] == 'I' && bytes[1] == 'I') || (bytes[0] == 'M' && bytes[1] == 'M'));
+    const size_t pages = isTiff ? cv::imcount(path, cv::IMREAD_UNCHANGED) : 1;
+    if (pages > 1)
+        throw Failure("'" + path + "' has " + std::to_string(pages) + " pages: save each as an image of its own");
+}
+
 /* As the sensor saw it: the orientation in the EXIF data is ignored, which turns with how the camera was held, while
 the lens does not. */
 cv::Mat decode(const std::string& path, int flags)
@@ -75,6 +84,7 @@ cv::Mat decode(const std::string& path, int flags)
                       "short: turn it into one of these, or take or copy it again");
     if (exifOrientation(bytes) != 1)
         noteTurnedImage(path);
+    requireOnePage(path, bytes);
     return image;
 }
 

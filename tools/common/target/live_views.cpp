@@ -157,7 +157,7 @@ void watchImages(const WatchOptions& options, const std::vector<std::string>& pa
                 std::this_thread::sleep_for(STEP);
                 continue;
             }
-            watcher.say(path, e.what());
+            watcher.say(path, std::string(e.what()) + "; take it out of the folder before the watch ends");
         }
         files.finish(path);
         last = Clock::now();

@@ -67,6 +67,8 @@ Target::Target(const TargetOptions& options)
     if (std::min(size_.width, size_.height) < least || (int64_t)size_.width*size_.height > 100000)
         throw Failure("--size=" + options.size + ": a target of at least " + std::to_string(least) + "x"
                       + std::to_string(least) + " points is needed, and no more than 100000 in all");
+    if (pattern_ != CHARUCO && (marker_ > 0 || options.dictionary != TargetOptions().dictionary))
+        throw Failure("--marker and --dictionary are for --pattern=charuco: leave them out");
     if (pattern_ == CHARUCO)
     {
         marker_ = marker_ > 0 ? marker_ : 0.75*square_;
