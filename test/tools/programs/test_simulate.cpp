@@ -73,11 +73,11 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
     struct Kind { std::string target, options; int count; bool turned; double limit; };
     for (const Kind& kind : {Kind{CHESSBOARD, "--size=6x5 --square=39", 30, true, 0.05},
                              Kind{"{ pattern: acircles, size: \"4x7\", square: 25. }",
-                                  "--pattern=acircles --size=4x7 --square=25", 28, false, 0.05},
+                                  "--pattern=acircles --size=4x7 --square=25", 28, false, 0.02},
                              Kind{"{ pattern: charuco, size: \"6x5\", square: 39., marker: 30. }",
                                   "--pattern=charuco --size=6x5 --square=39 --marker=30", 30, true, 0.1},
                              Kind{"{ pattern: circles, size: \"6x5\", square: 39. }",
-                                  "--pattern=circles --size=6x5 --square=39", 30, false, 0.05}})
+                                  "--pattern=circles --size=6x5 --square=39", 30, false, 0.02}})
     {
         const TemporaryFolder folder;
         writeFile(folder / "rig.yml", scene(kind.target, "   glass: { window: 1, poses: [ fixed ] }\n"));

@@ -3,6 +3,7 @@
 
 #include "target/circle_grid.hpp"
 #include "target/limited_search.hpp"
+#include "target/refine_dots.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 #include <algorithm>
@@ -66,67 +67,147 @@ std::vector<Vec2d> gridOf(Size size, bool asymmetric)
     return grid;
 }
 
-//! Board -> image near a dot, to second order.
-struct LocalMap
+/** Board -> image: a homography, and what lens and window add to it, a polynomial of a degree that the dots allow. */
+class BoardMap
 {
-    Matx22d first;
-    Vec2d xx, xy, yy;           //!< second derivatives
+public:
+    BoardMap(const std::vector<Vec2d>& grid, const std::vector<Point2d>& centres)
+        : degree_(grid.size() < 12 ? 0 : grid.size() < 30 ? 3 : 4)
+    {
+        Mat mean;
+        reduce(Mat(grid).reshape(1), mean, 0, REDUCE_AVG);
+        middle_ = Vec2d(mean.ptr<double>());
+        for (const Vec2d& g : grid)
+            scale_ = std::max(scale_, norm(g - middle_));
+        std::vector<Point2d> places;
+        for (const Vec2d& g : grid)
+            places.emplace_back((g - middle_)/scale_);
+        homography_ = findHomography(places, centres);
+        Mat_<double> terms, rest((int)grid.size(), 2);
+        for (size_t i = 0; i < places.size(); i++)
+        {
+            terms.push_back(Mat(termsAt(places[i])).reshape(1, 1));
+            const Vec2d off = Vec2d(centres[i].x, centres[i].y) - throughHomography(places[i]);
+            rest((int)i, 0) = off[0];
+            rest((int)i, 1) = off[1];
+        }
+        solve(terms, rest, coefficients_, DECOMP_SVD);
+    }
+
+    Point2d at(const Vec2d& board) const
+    {
+        const Point2d place((board - middle_)/scale_);
+        const Mat_<double> added = Mat(termsAt(place)).reshape(1, 1)*coefficients_;
+        return Point2d(throughHomography(place)) + Point2d(added(0), added(1));
+    }
+
+private:
+    Vec2d throughHomography(const Point2d& p) const
+    {
+        const Vec3d h = homography_*Vec3d(p.x, p.y, 1);
+        return Vec2d(h[0]/h[2], h[1]/h[2]);
+    }
+    std::vector<double> termsAt(const Point2d& p) const
+    {
+        std::vector<double> terms;
+        for (int i = 0; i <= degree_; i++)
+            for (int j = 0; i + j <= degree_; j++)
+                terms.push_back(std::pow(p.x, i)*std::pow(p.y, j));
+        return terms;
+    }
+
+    int degree_;
+    Vec2d middle_;
+    double scale_ = 0.;
+    Matx33d homography_;
+    Mat_<double> coefficients_;
 };
 
-//! From the dots nearest to one.
-LocalMap localMap(const std::vector<Vec2d>& grid, const std::vector<Point2f>& centres, size_t at)
+//! Area and middle of the image of a disc.
+struct DiscImage
 {
-    const size_t NEAREST = 16;
-    std::vector<size_t> near(grid.size());
-    std::iota(near.begin(), near.end(), 0);
-    std::stable_sort(near.begin(), near.end(), [&](size_t a, size_t b) { return norm(grid[a] - grid[at]) < norm(grid[b] - grid[at]); });
-    near.resize(std::min(near.size(), NEAREST));
-    Mat_<double> terms((int)near.size(), 6), pixels((int)near.size(), 2), c;
-    for (int i = 0; i < terms.rows; i++)
+    double area;
+    Point2d middle;
+};
+
+DiscImage discImage(const BoardMap& map, const Vec2d& centre, double radius)
+{
+    const int CORNERS = 48;
+    const Point2d origin = map.at(centre);
+    std::vector<Point2d> rim;
+    for (int i = 0; i < CORNERS; i++)
+        rim.push_back(map.at(centre + radius*Vec2d(std::cos(2*CV_PI*i/CORNERS), std::sin(2*CV_PI*i/CORNERS))) - origin);
+    double twice = 0.;
+    Point2d sum;
+    for (int i = 0; i < CORNERS; i++)
     {
-        const Vec2d d = grid[near[i]] - grid[at];
-        const double row[] = {1., d[0], d[1], 0.5*d[0]*d[0], d[0]*d[1], 0.5*d[1]*d[1]};
-        std::copy(row, row + 6, terms[i]);
-        pixels(i, 0) = centres[near[i]].x;
-        pixels(i, 1) = centres[near[i]].y;
+        const Point2d &p = rim[i], &q = rim[(i + 1) % CORNERS];
+        twice += p.cross(q);
+        sum += p.cross(q)*(p + q);
     }
-    solve(terms, pixels, c, DECOMP_SVD);
-    return {Matx22d(c(1, 0), c(2, 0), c(1, 1), c(2, 1)), Vec2d(c(3, 0), c(3, 1)), Vec2d(c(4, 0), c(4, 1)), Vec2d(c(5, 0), c(5, 1))};
+    return {0.5*std::abs(twice), origin + sum*(1/(3*twice))};
 }
 
-/** From the image of a disc's centre to the middle of the disc's image, for a squared radius of 1: the mean over the disc of
-board -> image, weighted by how much image a piece of the board has. */
-Vec2d offsetOf(const LocalMap& map)
+double median(std::vector<double> values)
 {
-    const Matx22d inverse = map.first.inv();
-    const auto trace2 = [&](const Vec2d& byX, const Vec2d& byY) {      // of inverse*[byX byY]: how the area changes
-        return inverse(0, 0)*byX[0] + inverse(0, 1)*byX[1] + inverse(1, 0)*byY[0] + inverse(1, 1)*byY[1]; };
-    const Vec2d growth(trace2(map.xx, map.xy), trace2(map.xy, map.yy));
-    return 0.25*(0.5*(map.xx + map.yy) + map.first*growth);
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+//! Of the dots on the board, from the areas of their images.
+double dotRadius(const BoardMap& map, const std::vector<Vec2d>& grid, const std::vector<double>& areas)
+{
+    const double TRIAL = 0.3;       // of the distance between dots
+    std::vector<double> radii;
+    for (size_t i = 0; i < grid.size(); i++)
+        if (areas[i] > 0)
+            radii.push_back(TRIAL*std::sqrt(areas[i]/discImage(map, grid[i], TRIAL).area));
+    return radii.empty() ? 0. : median(radii);
+}
+
+//! The ellipse to which a board maps a disc, to first order.
+DotImage dotAt(const BoardMap& map, const Vec2d& centre, double radius)
+{
+    const double STEP = 0.01;
+    const Point2d x = map.at(centre + Vec2d(STEP, 0)) - map.at(centre - Vec2d(STEP, 0));
+    const Point2d y = map.at(centre + Vec2d(0, STEP)) - map.at(centre - Vec2d(0, STEP));
+    return {map.at(centre), (Matx22d(x.x, y.x, x.y, y.y)*(0.5*radius/STEP)).inv()};
 }
 
 /** Of a board seen at an angle the middle of a dot's image is not the image of its centre: tenths of a pixel, all in one direction.
-The neighbours say how the board is seen, the blobs how large the dots are. */
-std::vector<Point2d> imagesOfCentres(const std::vector<Point2f>& centres, const std::vector<Point2f>& diameters,
+All dots together say how the board is seen, their areas how large they are. */
+std::vector<Point2d> imagesOfCentres(const Mat& grey, const std::vector<Point2d>& blobs, std::vector<double> areas,
                                      const std::vector<Vec2d>& grid)
 {
     const size_t FEWEST = 9;
-    const double RIM = 0.5;         // pixels: a blob's contour runs through the middles of its outermost pixels
-    std::vector<Point2d> images(centres.begin(), centres.end());
-    std::vector<LocalMap> maps;
-    std::vector<double> radii;      // squared, on the board
-    for (size_t i = 0; i < images.size() && images.size() >= FEWEST; i++)
+    const double RIM = 0.1;         // of a radius, that is left to the next dot
+    if (blobs.size() < FEWEST)
+        return blobs;
+    const BoardMap roughly(grid, blobs);
+    const double radius = dotRadius(roughly, grid, areas);
+    if (!(radius > 0))
+        return blobs;
+    std::vector<DotImage> dots;
+    for (size_t i = 0; i < blobs.size(); i++)
     {
-        maps.push_back(localMap(grid, centres, i));
-        if (diameters[i].x > 0)
-            radii.push_back(std::pow(0.5*diameters[i].x + RIM, 2)/std::abs(determinant(maps[i].first)));
+        dots.push_back(dotAt(roughly, grid[i], radius));
+        dots[i].centre = blobs[i];
     }
-    if (radii.empty())
-        return images;
-    std::nth_element(radii.begin(), radii.begin() + radii.size()/2, radii.end());
-    for (size_t i = 0; i < images.size(); i++)
-        images[i] -= Point2d(radii[radii.size()/2]*offsetOf(maps[i]));
-    return images;
+    double nearest = INFINITY;
+    for (size_t i = 1; i < grid.size(); i++)
+        nearest = std::min(nearest, norm(grid[i] - grid[0]));
+    refineDots(grey, dots, nearest/radius - 1 - RIM);
+    std::vector<Point2d> centres;
+    for (size_t i = 0; i < dots.size(); i++)
+    {
+        centres.push_back(dots[i].centre);
+        areas[i] = dots[i].area();
+    }
+    const BoardMap map(grid, centres);
+    const double exactly = dotRadius(map, grid, areas);
+    for (size_t i = 0; i < dots.size(); i++)
+        centres[i] -= discImage(map, grid[i], exactly).middle - map.at(grid[i]);
+    return centres;
 }
 
 } // namespace
@@ -135,7 +216,10 @@ std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetri
 {
     const std::vector<Point2f> found = searchLimited(SECONDS, 2*size.area(), [&] { return findDots(grey, size, asymmetric); });
     const auto middle = found.begin() + found.size()/2;
-    return imagesOfCentres({found.begin(), middle}, {middle, found.end()}, gridOf(size, asymmetric));
+    std::vector<double> areas;
+    for (auto diameter = middle; diameter != found.end(); diameter++)
+        areas.push_back(0.25*CV_PI*diameter->x*diameter->x);
+    return imagesOfCentres(grey, {found.begin(), middle}, areas, gridOf(size, asymmetric));
 }
 
 } // namespace tools
