@@ -33,12 +33,13 @@ GlassWindow windowIn(Medium medium, bool second)
 enum Scene { DEEP, FLAT };
 
 //! A pair with a wide lens.
-Matched matchedScene(Medium medium, Random& random, int count, Scene scene = DEEP)
+Matched matchedScene(Medium medium, Random& random, int count, Scene scene = DEEP,
+                     const Vec3d& rvec = Vec3d(0.05, 0.35, -0.04))
 {
     Matched m;
     m.camera1 = makeCamera(allLenses()[2], windowIn(medium, false));
     m.camera2 = makeCamera(allLenses()[2], windowIn(medium, true));
-    m.rvec = Vec3d(0.05, 0.35, -0.04);
+    m.rvec = rvec;
     m.T = Vec3d(-200, 15, 40);
     const Vec2d slope = scene == FLAT ? Vec2d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)) : Vec2d();
     while ((int)m.points.size() < count)
@@ -262,6 +263,63 @@ TEST_CASE("A flat scene gives the right one of its two poses, or none", "[pose][
         CHECK(refused <= TRIALS/2);
         CHECK(axes.two() > 0.95 - 3*std::sqrt(0.95*0.05/TRIALS));   // three axes of a trial are hardly more than one
     }
+}
+
+TEST_CASE("Few and noisy matches of a deep scene have one pose, upside down as well", "[pose][recover]")
+{
+    struct Kind { Medium medium; int count; double sigma; Vec3d rvec; };
+    for (const Kind& kind : { Kind{ NOTHING, 12, 0.2, Vec3d(0.05, 0.35, -0.04) }, Kind{ WATER, 12, 0.2, Vec3d(0.05, 0.35, -0.04) },
+                              Kind{ NOTHING, 30, 0.5, Vec3d(0.05, 0.35, -0.04) }, Kind{ AIR, 30, 0.5, Vec3d(0.05, 0.35, -0.04) },
+                              Kind{ WATER, 60, 0.5, Vec3d(0, 0, CV_PI) } })
+    {
+        int refused = 0, wrong = 0;
+        const int TRIALS = trials(20);
+        for (int trial = 0; trial < TRIALS; trial++)
+        {
+            Random random(6700 + trial);
+            Matched m = matchedScene(kind.medium, random, kind.count, DEEP, kind.rvec);
+            disturb(m, random, kind.sigma, 0);
+            Mat R, T;
+            if (refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T) == 0)
+            {
+                refused++;
+                continue;
+            }
+            Matx33d truth;
+            Rodrigues(m.rvec, truth);
+            wrong += norm(R, Mat(truth)) > 0.1;
+        }
+        CAPTURE(kind.medium, kind.count, kind.sigma, seed());
+        std::cout << "[numbers] refractiveRecoverPose, " << kind.count << " matches, " << kind.sigma << " px: " << refused << " of "
+                  << TRIALS << " refused, " << wrong << " wrong" << std::endl;
+        CHECK(refused <= TRIALS/10);
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("Copies of matches change nothing", "[pose][recover]")
+{
+    Random random(6800);
+    Matched m = matchedScene(WATER, random, 40);
+    disturb(m, random, 0.2, 5);
+    Mat R, T, C, R2, T2, C2;
+    Vec2d interval, interval2;
+    std::vector<uchar> mask, mask2;
+    const int count = refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, mask, C, interval);
+    for (int i = 0; i < 300; i++)
+    {
+        m.pixels1.push_back(m.pixels1[5 + i % 6]);
+        m.pixels2.push_back(m.pixels2[5 + i % 6]);
+    }
+    CAPTURE(seed());
+    REQUIRE(count >= 30);
+    const int more = refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R2, T2, 0.999, 1, mask2, C2, interval2);
+    CHECK(more > count);
+    CHECK(more == countNonZero(mask2));
+    CHECK(norm(R, R2) == 0);
+    CHECK(norm(C, C2) == 0);
+    for (int i = 0; i < 340; i++)
+        CHECK(mask2[i] == mask[i < 40 ? i : 5 + (i - 40) % 6]);
 }
 
 TEST_CASE("Where both poses of a flat scene are as likely there is no answer", "[pose][recover]")

@@ -18,8 +18,8 @@ elsewhere, and where two ends are as likely there is no answer. */
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
 #include <array>
+#include <map>
 #include <numeric>
-#include <set>
 
 namespace cv { namespace refract {
 
@@ -366,32 +366,19 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     return true;
 }
 
-//! How many of the matches are not copies of others, which tell nothing.
-int countDifferent(const PixelMatches& matches, const std::vector<int>& chosen)
-{
-    std::set<std::array<double, 4> > different;
-    for (int i : chosen)
-        different.insert({ { matches.pixel1[i].x, matches.pixel1[i].y, matches.pixel2[i].x, matches.pixel2[i].y } });
-    return (int)different.size();
-}
-
-//! Whether strewn matches would have agreed as well.
-bool isChance(const PixelMatches& matches, const std::vector<int>& agreeing, double limit)
-{
-    std::vector<int> all(matches.size());
-    std::iota(all.begin(), all.end(), 0);
-    return isChance(countDifferent(matches, all), countDifferent(matches, agreeing), samplingOf(matches, limit));
-}
-
 //! Where the search from pinholes' poses ends, each place once.
 std::vector<Candidate> placesOf(const MatchedCameras& pair, const PixelMatches& matches, double limit,
                                 const std::vector<RelativePose>& starts)
 {
     const double NEAR = 0.01;               // radians
+    const double SAME = 1e-6;               // of several limits the same matches may agree
     std::vector<Candidate> places;
-    for (const RelativePose& start : starts)
+    for (auto start = starts.begin(); start != starts.end(); start++)
     {
-        const Candidate c = fromCentral(pair, matches, start, limit);
+        if (std::any_of(starts.begin(), start, [&](const RelativePose& other)
+                        { return norm(other.R - start->R) < SAME && norm(other.baseline - start->baseline) < SAME; }))
+            continue;
+        const Candidate c = fromCentral(pair, matches, *start, limit);
         const auto same = std::find_if(places.begin(), places.end(), [&](const Candidate& place)
                                        { return norm(rotationVector(place.pose.R.t()*c.pose.R)) < NEAR; });
         if (same == places.end())
@@ -402,23 +389,36 @@ std::vector<Candidate> placesOf(const MatchedCameras& pair, const PixelMatches& 
     return places;
 }
 
+//! From one rotation vector to another, which may turn the long way round.
+Vec3d difference(const Vec3d& from, Vec3d to)
+{
+    const double angle = norm(to);
+    const Vec3d otherWay = angle > 0 ? to*(1 - 2*CV_PI/angle) : to;
+    return norm(otherWay - from) < norm(to - from) ? otherWay - from : to - from;
+}
+
 /** Whether another estimate, and none of those that the covariance speaks of, is as likely. Which of two poses of a plane is right
 shows in no single match: each is off both by noise alone, in directions of its own. So the costs differ by the sum of as many
-random numbers, and by more only if one of the poses is wrong (@cite Vuong1989). */
-bool isRival(const Estimate& e, const Estimate& other)
+random numbers, and by more only if one of the poses is wrong (@cite Vuong1989); if both agree with nearly as many matches, as
+what was cut off is no noise. The covariance may be that at one length, at which both are compared. */
+bool isRival(const MatchedCameras& pair, const PixelMatches& matches, const Estimate& e, const Estimate& other)
 {
     const double FAR = 5, CERTAIN = 3;      // standard deviations
     const double LEFT = 1e-6;               // square pixels, that refineAtLength leaves
-    const Vec3d off = rotationVector(other.pose.R) - rotationVector(e.pose.R);
+    const double AS_MANY = 0.9;
     double sum = 0, squares = 0;
     for (size_t i = 0; i < e.squares.size(); i++)
     {
-        const double difference = other.squares[i] - e.squares[i];
-        sum += difference;
-        squares += difference*difference;
+        const double apart = other.squares[i] - e.squares[i];
+        sum += apart;
+        squares += apart*apart;
     }
-    return sum <= LEFT + CERTAIN*std::sqrt(squares)
-           && off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off) > FAR*FAR;
+    if ((double)other.agreeing.size() < AS_MANY*(double)e.agreeing.size() || sum > LEFT + CERTAIN*std::sqrt(squares))
+        return false;
+    RelativePose pose = other.pose;
+    costAt(pair, select(matches, other.agreeing), e.pose.length, pose);
+    const Vec3d off = difference(rotationVector(e.pose.R), rotationVector(pose.R));
+    return off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off) > FAR*FAR;
 }
 
 bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& matches, double prob, double threshold,
@@ -435,7 +435,7 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
     for (const Candidate& place : places)
     {
         Estimate here;
-        if (2*place.agreeing.size() >= most && countDifferent(matches, place.agreeing) > 6
+        if (2*place.agreeing.size() >= most && place.agreeing.size() > 6
             && estimate(pair, matches, threshold, place, here))
             estimates.push_back(here);
     }
@@ -443,11 +443,33 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
         return false;
     e = *std::min_element(estimates.begin(), estimates.end(),
                           [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
-    return !isChance(matches, e.agreeing, threshold)
-           && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other) { return isRival(e, other); });
+    return !isChance((int)matches.size(), (int)e.agreeing.size(), samplingOf(matches, threshold))
+           && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other) { return isRival(pair, matches, e, other); });
 }
 
 } // namespace
+
+/** Those that both cameras saw, each once: a copy tells nothing.
+@param index of each, in the result; of one that was not seen: the result's size */
+static PixelMatches differentMatches(const std::vector<Point2d>& all1, const std::vector<Point2d>& all2, std::vector<int>& index)
+{
+    PixelMatches matches;
+    std::map<std::array<double, 4>, int> known;
+    for (size_t i = 0; i < all1.size(); i++)
+    {
+        index.push_back(-1);
+        if (!isSeen(all1[i]) || !isSeen(all2[i]))
+            continue;
+        const auto entry = known.insert({ { { all1[i].x, all1[i].y, all2[i].x, all2[i].y } }, (int)matches.size() });
+        index.back() = entry.first->second;
+        if (!entry.second)
+            continue;
+        matches.pixel1.push_back(all1[i]);
+        matches.pixel2.push_back(all2[i]);
+    }
+    std::replace(index.begin(), index.end(), -1, (int)matches.size());
+    return matches;
+}
 
 static int recoverPose(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
                        const Ptr<RefractiveCamera>& camera2, OutputArray R, OutputArray T, double prob, double threshold,
@@ -464,26 +486,22 @@ static int recoverPose(InputArray points1, InputArray points2, const Ptr<Refract
         CV_Error_(Error::StsOutOfRange, ("prob is %g; it must lie between 0 and 1", prob));
     if (!(threshold > 0) || !std::isfinite(threshold))
         CV_Error_(Error::StsOutOfRange, ("threshold is %g; it must be positive", threshold));
-    PixelMatches matches;
     std::vector<int> index;
-    for (int i = 0; i < count; i++)
-        if (isSeen(all1[i]) && isSeen(all2[i]))
-        {
-            matches.pixel1.push_back(all1[i]);
-            matches.pixel2.push_back(all2[i]);
-            index.push_back(i);
-        }
+    const PixelMatches matches = differentMatches(all1, all2, index);
     const bool found = recover(c1, c2, matches, prob, threshold, e);
-    Mat agrees(count, 1, CV_8U, Scalar(0));
+    std::vector<uchar> chosen(matches.size() + 1, 0);           // the last: what was not seen
     for (size_t i = 0; found && i < e.agreeing.size(); i++)
-        agrees.at<uchar>(index[e.agreeing[i]]) = 1;
+        chosen[e.agreeing[i]] = 1;
+    Mat agrees(count, 1, CV_8U);
+    for (int i = 0; i < count; i++)
+        agrees.at<uchar>(i) = chosen[index[i]];
     if (mask.needed())
         agrees.copyTo(mask);
     if (!found)
         return 0;
     Mat(e.pose.R).copyTo(R);
     Mat(e.T).copyTo(T);
-    return (int)e.agreeing.size();
+    return countNonZero(agrees);
 }
 
 int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
