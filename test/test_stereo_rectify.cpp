@@ -641,6 +641,30 @@ TEST_CASE("Depths of a disparity of any size, orientation and fault", "[stereo_r
     CHECK((fault.empty() || Contains("disparity").match(fault)));
 }
 
+TEST_CASE("What refractiveStereoRectify gives is taken, of wide lenses behind tilted windows too", "[stereo_rectify]")
+{
+    Random random(6900);
+    const Matx33d K(600, 0, 640, 0, 600, 512, 0, 0, 1);
+    double farthest = 0;
+    for (int i = 0; i < 20; i++)
+    {
+        const auto window = [&] { return GlassWindow(Vec3d(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), 1), 15, 1.5, 30,
+                                                     i % 2 ? 1 : 1.333); };
+        const StereoRig rig = { "wide", RefractiveCamera::createFisheye(K, noArray(), window()),
+                                RefractiveCamera::createFisheye(K, noArray(), window()), turned(random.vector(0.1)),
+                                Vec3d(-200, 0, 0) + random.vector(20), Size(1280, 1024), Vec2d(500, 3000) };
+        const Rectified r = rectify(rig, -1, Size(), 0);
+        Mat map1, map2, points;
+        CAPTURE(i, seed());
+        const std::vector<double> depth = { 900 };
+        CHECK_NOTHROW(initRefractiveStereoRectifyMap(rig.camera2, depth, r.R2, r.P2, rig.T, Size(64, 48), CV_32FC1, map1, map2));
+        CHECK_NOTHROW(refractiveReprojectImageTo3D(Mat(48, 64, CV_32F, Scalar(100)), points, rig.camera1, rig.camera2, rig.R, rig.T,
+                                                   r.R1, r.R2, r.P1, r.P2, depth, depth));
+        farthest = std::max(farthest, norm(Vec3d(Mat(r.P1.colRange(0, 3).inv()*r.P1.col(3)).ptr<double>())));
+    }
+    std::cout << "[numbers] wide lenses: pinholes up to " << farthest << " from the centres of projection, windows 45 deep" << std::endl;
+}
+
 TEST_CASE("Lenses wider than a half-space are rectified, if all of the image is not asked for", "[stereo_rectify]")
 {
     const Matx33d K(400, 0, 640, 0, 400, 512, 0, 0, 1);
