@@ -9,18 +9,21 @@ namespace cv { namespace refract {
 
 static const double PRINTED = 1e-6;     // parts of a standard deviation that six printed digits leave
 
-//! Between quantities in units of their standard deviations; 0 beside those that are known exactly.
-static Mat correlationOf(const Mat& C, double leastVariance)
+/** Between quantities in units of their standard deviations; 0 beside those that are known exactly, whose variance is up to
+`rounding`. False if these are said to vary with others. */
+static bool correlationOf(const Mat& C, double most, double rounding, Mat& correlation)
 {
-    Mat correlation = Mat::zeros(C.size(), CV_64F);
+    correlation = Mat::zeros(C.size(), CV_64F);
     for (int r = 0; r < C.rows; r++)
         for (int c = 0; c < C.cols; c++)
         {
-            const double square = C.at<double>(r, r)*C.at<double>(c, c);
-            if (C.at<double>(r, r) > leastVariance && C.at<double>(c, c) > leastVariance && square > 0)
-                correlation.at<double>(r, c) = C.at<double>(r, c)/std::sqrt(square);
+            const double first = C.at<double>(r, r), second = C.at<double>(c, c), both = C.at<double>(r, c);
+            if (first > rounding && second > rounding)
+                correlation.at<double>(r, c) = both/(std::sqrt(first)*std::sqrt(second));
+            else if (std::abs(both) > std::max(rounding, PRINTED*std::sqrt(most)*std::sqrt(std::max(0., std::max(first, second)))))
+                return false;
         }
-    return correlation;
+    return true;
 }
 
 void checkCovariance(const Mat& C, const String& name)
@@ -31,7 +34,9 @@ void checkCovariance(const Mat& C, const String& name)
         minMaxIdx(C.diag(), &least, &most);
     if (!checkRange(C) || least < -ROUNDING*most || most < 0)
         CV_Error_(Error::StsBadArg, ("%s holds a number that is not finite, or one below 0 on its diagonal", name.c_str()));
-    Mat correlation = correlationOf(C, std::min(least, 0.));
+    Mat correlation;
+    if (!correlationOf(C, most, std::max(-least, 0.), correlation))
+        CV_Error_(Error::StsBadArg, ("%s has quantities without variance that vary with others", name.c_str()));
     if (norm(correlation, correlation.t(), NORM_INF) > 2*PRINTED)
         CV_Error_(Error::StsBadArg, ("%s is not symmetric", name.c_str()));
     correlation += 2*PRINTED*C.rows*Mat::eye(C.size(), CV_64F);
