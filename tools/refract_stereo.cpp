@@ -467,7 +467,8 @@ int main(int argc, char** argv)
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
         refuseOverwriting(options, command.settings(), first, second, files);
-        if (!options.out.empty() && fs::path(options.out).extension() != ".ply" && !isSpecialFile(options.out))
+        const std::string extension = fs::path(options.out).extension().string();
+        if (!options.out.empty() && extension != ".ply" && extension != ".PLY" && !isSpecialFile(options.out))
             throw Failure("--out=" + options.out + ": the cloud is a .ply");
         sayAlone(frames.alone1, 1, command);
         sayAlone(frames.alone2, 2, command);

@@ -189,6 +189,15 @@ TEST_CASE("A disk that is full is told, and what was there stays", "[tools][outp
     }
 }
 
+TEST_CASE("A table that cannot be printed is a failure", "[tools][outputs]")
+{
+    const Inputs in;
+    const std::string said = in.folder / "said";
+    const ToolResult result = runTool("refract_board" + TARGET + " --out=" + (in.folder / "b.pdf") + " >/dev/full 2>" + said + "; exit $?");
+    CHECK(result.code == 1);
+    CHECK(mentions(readFile(said), "is the disk full?"));
+}
+
 TEST_CASE("JSON is what others read too", "[tools][outputs]")
 {
     const Inputs in;

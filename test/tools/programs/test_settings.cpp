@@ -69,6 +69,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
         {"quiet = true\nquiet = false\n", "'quiet' is set twice"},
+        {"quiet = true\r\n'quiet' =false\r\n", "'quiet' is set twice"}, {std::string(1000000, 'x') + "\n", "no setting"},
         {"config = \"other.toml\"\n", "'config' belongs on the command line"}, {"\x01\x02\x03\x04\n\xff\xfe\xfd", "no setting"}};
     for (const std::string& tool : tools)
         for (const auto& b : bad)

@@ -56,21 +56,18 @@ TEST_CASE("Dots of a tilted board are found where their centres are", "[target][
             const std::vector<Point2d> found = detectCircleGrid(boardImage(dots, radius, H.inv(), 0.4, 1), size, false);
             CAPTURE(tilt, radius);
             REQUIRE(found.size() == dots.size());
-            double squares = 0, uncorrected = 0;
+            double squares[2] = {0, 0}, uncorrected = 0;        // counted from either end
             for (size_t i = 0; i < dots.size(); i++)
             {
                 const Vec3d h = H*Vec3d(dots[i].x, dots[i].y, 1);
-                // Some order is the grid's: the nearest.
-                double nearest = INFINITY;
-                for (const Point2d& p : found)
-                    nearest = std::min(nearest, norm(p - Point2d(h[0]/h[2], h[1]/h[2])));
-                squares += nearest*nearest;
+                for (int end : {0, 1})
+                    squares[end] += std::pow(norm(found[end ? dots.size() - 1 - i : i] - Point2d(h[0]/h[2], h[1]/h[2])), 2);
                 const Matx33d dual = H*Matx33d(dots[i].x*dots[i].x - radius*radius, dots[i].x*dots[i].y, dots[i].x, dots[i].x*dots[i].y,
                                                dots[i].y*dots[i].y - radius*radius, dots[i].y, dots[i].x, dots[i].y, 1)*H.t();
                 const Point2d off = Point2d(dual(0, 2)/dual(2, 2), dual(1, 2)/dual(2, 2)) - Point2d(h[0]/h[2], h[1]/h[2]);
                 uncorrected += off.dot(off);
             }
-            const double rms = std::sqrt(squares/(double)dots.size());
+            const double rms = std::sqrt(std::min(squares[0], squares[1])/(double)dots.size());
             std::cout << "[numbers] dots of " << radius << " of their distance, tilted by " << tilt << " degrees: " << rms
                       << " px RMS off; the middles of their images are "
                       << std::sqrt(uncorrected/(double)dots.size()) << " off" << std::endl;

@@ -101,6 +101,8 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     try
     {
         const int code = body(command);
+        if (!std::cout.flush())
+            throw Failure("what is printed could not be written: is the disk full?");
         const std::string turned = takeTurnedImagesNotice();
         if (!turned.empty())
             command.warn(turned);

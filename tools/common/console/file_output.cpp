@@ -176,20 +176,11 @@ static std::string validJson(const std::string& text)
 void writeStorage(const std::string& path, const std::string& extension, const std::function<void(cv::FileStorage&)>& write)
 {
     OutputFile file(path, extension);
-    fs::path format = file.temporary();
-    const bool isCompressed = format.extension() == ".gz";
-    if (isCompressed)
-        format.replace_extension();
     // FileStorage does not tell what a full disk swallowed.
-    cv::FileStorage memory(format.string(), cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    cv::FileStorage memory(file.temporary(), cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     write(memory);
     const std::string text = memory.releaseAndGetString();
-    writeInto(file, path, format.extension() == ".json" ? validJson(text) : text);
-    if (isCompressed)       // where there was room for the text there is for this
-    {
-        cv::FileStorage compressed(file.temporary(), cv::FileStorage::WRITE);
-        write(compressed);
-    }
+    writeInto(file, path, fs::path(file.temporary()).extension() == ".json" ? validJson(text) : text);
     file.commit();
 }
 

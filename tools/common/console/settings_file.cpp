@@ -4,8 +4,9 @@
 #include "console/settings_file.hpp"
 #include "console/cli.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <iterator>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -38,17 +39,30 @@ void SettingsFile::noteArguments(const CLI::Option& option, const CLI::ConfigIte
             arguments_.push_back("--" + item.name + (isFlag ? "" : "=" + value));
 }
 
+//! What stands before the first '=' of a line, without blanks and quotes; empty if that is no name.
+static std::string nameOf(const std::string& line)
+{
+    const std::string AROUND = " \t\"'";
+    const size_t equals = line.find('='), begin = line.find_first_not_of(AROUND);
+    if (equals == std::string::npos || begin >= equals)
+        return "";
+    const std::string name = line.substr(begin, line.find_last_not_of(AROUND, equals - 1) + 1 - begin);
+    const auto isOfName = [](char c) { return std::isalnum((unsigned char)c) || c == '.' || c == '_' || c == '-'; };
+    return std::all_of(name.begin(), name.end(), isOfName) ? name : "";
+}
+
 //! The text without a byte order mark; CLI11 joins a setting that comes twice, as if it were a list.
 static std::string checkedText(std::istream& in)
 {
     const std::string MARK = "\xEF\xBB\xBF", text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     std::istringstream lines(text.compare(0, MARK.size(), MARK) == 0 ? text.substr(MARK.size()) : text);
-    const std::regex setting("\\s*[\"']?([A-Za-z][A-Za-z0-9._-]*)[\"']?\\s*=.*");
     std::set<std::string> names;
-    std::smatch match;
     for (std::string line; std::getline(lines, line); )
-        if (std::regex_match(line, match, setting) && !names.insert(match[1]).second)
-            throw Failure("--config: '" + match[1].str() + "' is set twice; several values are a list: name = [one, two]");
+    {
+        const std::string name = nameOf(line);
+        if (!name.empty() && !names.insert(name).second)
+            throw Failure("--config: '" + name + "' is set twice; several values are a list: name = [one, two]");
+    }
     return lines.str();
 }
 
