@@ -237,6 +237,7 @@ struct Estimate
     Matx66d covariance;
     Vec2d interval;
     std::vector<int> agreeing;
+    double variance;                    //!< of an error
     std::vector<double> squares;        //!< errors of all matches, squared, cut off at the limit
     double cost() const { return std::accumulate(squares.begin(), squares.end(), 0.); }
 };
@@ -360,6 +361,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
         return false;
     e.covariance = covarianceOf(pair, some, e.pose, e.T, variance, e.interval[1] == INFINITE);
     e.agreeing = best.agreeing;
+    e.variance = variance;
     e.squares.assign(matches.size(), limit*limit);
     for (size_t i = 0; i < best.agreeing.size(); i++)
         e.squares[best.agreeing[i]] = best.errors[i]*best.errors[i];
@@ -418,7 +420,7 @@ bool isRival(const MatchedCameras& pair, const PixelMatches& matches, const Esti
     RelativePose pose = other.pose;
     costAt(pair, select(matches, other.agreeing), e.pose.length, pose);
     const Vec3d off = difference(rotationVector(e.pose.R), rotationVector(pose.R));
-    return off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off) > FAR*FAR;
+    return off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off)*e.variance > FAR*FAR*std::max(e.variance, LEFT);
 }
 
 bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& matches, double prob, double threshold,
