@@ -16,17 +16,6 @@ static Vec4d planeOf(InputArray depth, Size size, bool isNeeded, const char* nam
     return scenePlane(depth, isNeeded, name);
 }
 
-//! A pinhole is at the camera's centre of projection or, through a window, anywhere on the window's axis.
-static void checkCentre(const Camera& camera, const Vec3d& centre, double lengthOfT, const char* name)
-{
-    const double PRINTED = 1e-4;
-    const Vec3d normal = camera.layers().normal();
-    const double off = norm(camera.refracts() ? centre - centre.dot(normal)*normal : centre);
-    if (off > PRINTED*(lengthOfT + norm(centre)))
-        CV_Error_(Error::StsBadArg, ("%s has its pinhole %g beside the axis of the camera's window; it was made for another camera "
-                                     "or another T", name, off));
-}
-
 RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
                              const Names& names)
     : R_(readRotation(R, names.R)), projection_(P, names.P), pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
@@ -34,7 +23,6 @@ RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, I
     const Vec3d t = T.empty() ? Vec3d() : readVec3(T, "T");
     pinhole_.newToCamera = R_.t()*projection_.inverseK;
     pinhole_.centre = R_.t()*projection_.centre + t;
-    checkCentre(camera, pinhole_.centre, norm(t), names.P);
     Vec4d plane(0, 0, 1, 0);
     if (!depth.empty() && depth.size() == size && (depth.type() == CV_32F || depth.type() == CV_64F) && size.area() > 1)
         depths_ = depth.getMat();
