@@ -362,6 +362,28 @@ TEST_CASE("A short visible part of a long curve is found", "[epilines]")
     }
 }
 
+TEST_CASE("A line that takes too many points is empty", "[epilines]")
+{
+    Random random(1900);
+    const std::vector<LensKind> lenses = allLenses();
+    const Rig rig(lenses[1], lenses[1], makeWindow(AIR_GLASS_WATER, random), makeWindow(AIR_GLASS_WATER, random), random);
+    const std::vector<Vec2d> pixels(3, Vec2d(640, 480));
+    std::vector<Mat> lines;
+    std::vector<uchar> status;
+    computeRefractiveEpilines(pixels, 1, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(400, 4000), lines, 1e-13, status);
+    for (int i = 0; i < 3; i++)
+    {
+        CHECK(status[i] == REFRACT_NOT_CONVERGED);
+        CHECK(lines[i].empty());
+    }
+    computeRefractiveEpilines(pixels, 1, rig.camera1, rig.camera2, rig.R, rig.T, Vec2d(400, 4000), lines, 1e-4, status);
+    for (int i = 0; i < 3; i++)
+    {
+        CHECK(status[i] == REFRACT_OK);
+        CHECK(lines[i].total() >= 2);
+    }
+}
+
 TEST_CASE("Bad arguments of computeRefractiveEpilines are named", "[epilines]")
 {
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray());

@@ -115,6 +115,34 @@ TEST_CASE("The distance is the one from a dense polyline, near and far off", "[e
     }
 }
 
+TEST_CASE("Of pixels anywhere in the image the distance is seldom not the least", "[epipolar][slow]")
+{
+    int count = 0, other = 0;
+    for (WindowKind kind : allWindows())
+        for (int lens : { 1, 3, 7 })
+        {
+            Random random(5150 + kind);
+            MatchedPair m = matchedPair(allLenses()[lens], kind, random, 40);
+            for (Point2d& p : m.pixels2)
+                p = Point2d(random.uniform(0, 1280), random.uniform(0, 1024));
+            const Vec2d range(250, 5000);
+            std::vector<double> distances;
+            refractiveEpipolarDistance(m.pixels1, m.pixels2, m.camera1, m.camera2, m.rvec, m.T, distances, noArray(), 1, range);
+            const std::vector<double> expected = byPolylines(m, 1, range);
+            for (size_t i = 0; i < expected.size(); i++)
+                if (expected[i] < INF)
+                {
+                    count++;
+                    other += !(std::abs(std::abs(distances[i]) - expected[i]) < 1e-3*(1 + expected[i]));
+                }
+        }
+    std::cout << "[numbers] refractiveEpipolarDistance of pixels anywhere: " << other << " of " << count
+              << " are more than a thousandth off" << std::endl;
+    CAPTURE(seed());
+    REQUIRE(count > 500);
+    CHECK(other < count/50);
+}
+
 TEST_CASE("The distance's derivative against differences", "[epipolar]")
 {
     double largest = 0;
