@@ -190,10 +190,9 @@ Options parseOptions(Command& command)
         o.label.notes.push_back(note);
     }
     o.distanceGiven = distance->count() > 0;
-    bool allKnown = true;
-    for (int c = 0; c < o.images.cameraCount(); c++)
-        allKnown = allKnown && !o.camera[c].empty();
-    if (app.get_option("--lens")->count() > 0 && allKnown)
+    const auto isGiven = [](const std::string& file) { return !file.empty(); };
+    if (app.get_option("--lens")->count() > 0
+        && std::all_of(o.camera.begin(), o.camera.begin() + o.images.cameraCount(), isGiven))
         throw Failure("--lens=" + o.lens + " is for a lens that the images determine; these are those of --camera: leave one out");
     o.images.channel = channelOf(o.channel);
     for (int c = 0; c < o.images.cameraCount(); c++)

@@ -92,6 +92,13 @@ cv::Vec2d parseDepthRange(const std::string& text)
     return cv::Vec2d(near[0], far[0]);
 }
 
+void requirePly(const std::string& cloud)
+{
+    const std::string extension = fs::path(cloud).extension().string();
+    if (!cloud.empty() && extension != ".ply" && extension != ".PLY" && !isSpecialFile(cloud))
+        throw Failure("--out=" + cloud + ": the cloud is a .ply");
+}
+
 void checkCombination(const Options& options)
 {
     const bool single = !options.out.empty() || !options.depthMap.empty() || !options.picture.empty();
@@ -467,9 +474,7 @@ int main(int argc, char** argv)
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
         refuseOverwriting(options, command.settings(), first, second, files);
-        const std::string extension = fs::path(options.out).extension().string();
-        if (!options.out.empty() && extension != ".ply" && extension != ".PLY" && !isSpecialFile(options.out))
-            throw Failure("--out=" + options.out + ": the cloud is a .ply");
+        requirePly(options.out);
         sayAlone(frames.alone1, 1, command);
         sayAlone(frames.alone2, 2, command);
 

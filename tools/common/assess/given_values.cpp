@@ -20,15 +20,23 @@ namespace {
 
 const double SURE = 6.;         // standard deviations; corners err a little together, so that they seem more sure than they are
 
-//! One kind of value: how it is set free, and where it stands then.
+typedef std::vector<double> Values;
+
+//! One kind of value, of which each layer may have its own: how it is set free, and where it stands then.
 struct GivenValue
 {
     int flag;
     const char* word;
     const char* option;
     bool isGiven;
-    double (*valueOf)(const GlassWindow&);
+    Values (*valuesOf)(const GlassWindow&);
     int (*columnOf)(const ParameterColumns&);
+
+    double sumOf(const GlassWindow& window) const
+    {
+        const Values values = valuesOf(window);
+        return std::accumulate(values.begin(), values.end(), 0.);
+    }
 };
 
 std::vector<GivenValue> givenValues(const RigOptions& options)
@@ -37,13 +45,13 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
     const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
     return {
         {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers && options.thicknessStd == 0.,
-         [](const GlassWindow& w) { return w.thickness[0]; }, [](const ParameterColumns& at) { return at.thickness; }},
+         [](const GlassWindow& w) { return w.thickness; }, [](const ParameterColumns& at) { return at.thickness; }},
         {GLASS_FREE_INDEX, "index", "--index", layers && options.indexStd == 0.,
-         [](const GlassWindow& w) { return w.index[0]; }, [](const ParameterColumns& at) { return at.index; }},
+         [](const GlassWindow& w) { return w.index; }, [](const ParameterColumns& at) { return at.index; }},
         {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia,
-         [](const GlassWindow& w) { return w.distance; }, [](const ParameterColumns& at) { return at.distance; }},
+         [](const GlassWindow& w) { return Values{w.distance}; }, [](const ParameterColumns& at) { return at.distance; }},
         {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia,
-         [](const GlassWindow& w) { return w.outerIndex; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
+         [](const GlassWindow& w) { return Values{w.outerIndex}; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
 }
 
 //! As it was given; the value may have come by the name of a material.
@@ -63,34 +71,20 @@ std::string sentenceOf(const GivenValue& given, const std::string& where, const 
         + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - before)/std);
 }
 
-//! A given value that is set free.
-std::vector<Contradiction> contradictedBy(const RigCalibration& c, const GivenValue& given)
+std::string sentenceOfLayers(const GivenValue& given, const std::string& where, double before, double estimate, double std)
 {
-    std::vector<Contradiction> contradictions;
-    const Fit fit = fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
-    const int windows = countWindows(c.fit.rig);
-    for (int k = 0; k < c.data.cameraCount; k++)
-    {
-        if (!c.fit.rig.ownsWindow(k))
-            continue;
-        const double before = given.valueOf(c.fit.rig.cameras[k]->window());
-        const double estimate = given.valueOf(fit.rig.cameras[k]->window());
-        const double std = fit.stdDeviations.at<double>(given.columnOf(columnsOf(fit.rig, k)));
-        const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
-        if (std::abs(estimate - before) > SURE*std)
-            contradictions.push_back({sentenceOf(given, where, typed(c.options, given, before), before, estimate, std), fit.sigma});
-    }
-    return contradictions;
+    return format("the images contradict %s: set free, the sum over the layers%s would be ", given.option, where.c_str())
+        + plusMinus(estimate, std) + format(" and not %.5g, %.0f standard deviations away", before, std::abs(estimate - before)/std);
 }
 
 /** The thicknesses or indices of several layers, which images seldom tell apart: each free by a part of what it is, so that the prior
 shares among them what the images say of their sum. */
-std::vector<Contradiction> contradictedLayers(const RigCalibration& c, const GivenValue& given)
+RigModel withLayersFree(const RigCalibration& c, const GivenValue& given)
 {
-    const bool ofThickness = given.flag == GLASS_FREE_THICKNESS;
+    const double PART = 0.2;
+    const Values values = given.valuesOf(c.options.window);
     RigOptions options = c.options;
-    const std::vector<double>& values = ofThickness ? options.window.thickness : options.window.index;
-    (ofThickness ? options.thicknessStd : options.indexStd) = 0.2**std::min_element(values.begin(), values.end());
+    (given.flag == GLASS_FREE_THICKNESS ? options.thicknessStd : options.indexStd) = PART**std::min_element(values.begin(), values.end());
     RigModel rig = c.fit.rig.clone();
     rig.known.resize(rig.cameras.size());
     for (size_t k = 0; k < rig.cameras.size(); k++)
@@ -100,26 +94,28 @@ std::vector<Contradiction> contradictedLayers(const RigCalibration& c, const Giv
         if (!lens.empty())
             rig.known[k].lens = lens;
     }
-    const auto sumOf = [&](const GlassWindow& w) {
-        const std::vector<double>& values = ofThickness ? w.thickness : w.index;
-        return std::accumulate(values.begin(), values.end(), 0.);
-    };
+    return rig;
+}
+
+//! A given value that is set free.
+std::vector<Contradiction> contradictedBy(const RigCalibration& c, const GivenValue& given)
+{
+    const int count = (int)given.valuesOf(c.options.window).size();
+    const Fit fit = count > 1 ? fitImages(c.data, withLayersFree(c, given), c.fit.moments, c.options.flags)
+                              : fitImages(c.data, c.fit.rig, c.fit.moments, c.options.flags | given.flag);
+    const int windows = countWindows(c.fit.rig);
     std::vector<Contradiction> contradictions;
-    const Fit fit = fitImages(c.data, rig, c.fit.moments, c.options.flags);
     for (int k = 0; k < c.data.cameraCount; k++)
     {
-        if (!rig.ownsWindow(k))
+        if (!c.fit.rig.ownsWindow(k))
             continue;
-        const ParameterColumns at = columnsOf(fit.rig, k);
-        const int first = ofThickness ? at.thickness : at.index;
-        const double std = std::sqrt(sum(fit.covariance(Rect(first, first, at.layers, at.layers)))[0]);
-        const double before = sumOf(c.fit.rig.cameras[k]->window()), estimate = sumOf(fit.rig.cameras[k]->window());
-        const String where = countWindows(rig) == 1 ? "" : format(" of camera %d's window", k + 1);
+        const double before = given.sumOf(c.fit.rig.cameras[k]->window()), estimate = given.sumOf(fit.rig.cameras[k]->window());
+        const int first = given.columnOf(columnsOf(fit.rig, k));
+        const double std = std::sqrt(sum(fit.covariance(Rect(first, first, count, count)))[0]);
+        const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
         if (std::abs(estimate - before) > SURE*std)
-            contradictions.push_back({format("the images contradict %s: set free, the sum over the layers%s would be ", given.option,
-                                             where.c_str()) + plusMinus(estimate, std)
-                                      + format(" and not %.5g, %.0f standard deviations away", before,
-                                               std::abs(estimate - before)/std), fit.sigma});
+            contradictions.push_back({count > 1 ? sentenceOfLayers(given, where, before, estimate, std)
+                                      : sentenceOf(given, where, typed(c.options, given, before), before, estimate, std), fit.sigma});
     }
     return contradictions;
 }
@@ -167,11 +163,7 @@ std::vector<Contradiction> contradictedValues(const RigCalibration& c)
     };
     for (const GivenValue& given : givenValues(c.options))
         if (given.isGiven && !(c.options.flags & given.flag))
-        {
-            const bool ofLayers = given.flag == GLASS_FREE_THICKNESS || given.flag == GLASS_FREE_INDEX;
-            add([&] { return ofLayers && c.options.window.thickness.size() > 1 ? contradictedLayers(c, given)
-                                                                              : contradictedBy(c, given); });
-        }
+            add([&] { return contradictedBy(c, given); });
     if (hasExactPoses(c))
         add([&] { return contradictedPoses(c); });
     keepTheBest(contradictions);

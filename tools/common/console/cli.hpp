@@ -86,25 +86,24 @@ bool parseNumber(const std::string& text, double& number);
 //! "6x5" -> Size(6, 5); `option` names the option in the error text.
 cv::Size parseSize(const std::string& text, const std::string& option);
 
-//! Check of an option's number; CLI11's own names the largest double in its error.
-inline CLI::Validator moreThanZero()
+//! Check of an option's number; CLI11's own names the largest double in its error, and lets nan through.
+inline CLI::Validator numberThat(const std::function<bool(double)>& isGood, const std::string& words, const std::string& range)
 {
-    return CLI::Validator([](std::string& text) {
+    return CLI::Validator([=](std::string& text) {
         double number;
-        return parseNumber(text, number) && number > 0 && std::isfinite(number) ? std::string()
-                                                                                : "give a number more than 0, not " + text;
-    }, "> 0");
+        return parseNumber(text, number) && isGood(number) ? std::string() : "give a number " + words + ", not " + text;
+    }, range);
 }
 
-//! The same within limits; CLI11's own lets nan through.
+inline CLI::Validator moreThanZero()
+{
+    return numberThat([](double number) { return number > 0 && std::isfinite(number); }, "more than 0", "> 0");
+}
+
 inline CLI::Validator between(double least, double most)
 {
     const std::string range = cv::format("%g to %g", least, most);
-    return CLI::Validator([=](std::string& text) {
-        double number;
-        return parseNumber(text, number) && number >= least && number <= most ? std::string()
-                                                                              : "give a number from " + range + ", not " + text;
-    }, range);
+    return numberThat([=](double number) { return number >= least && number <= most; }, "from " + range, range);
 }
 
 //! "a,b,c" -> numbers; all finite.

@@ -55,18 +55,6 @@ std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
     return {};
 }
 
-//! Where the dots are on the board, in units of --square.
-std::vector<Vec2d> gridOf(Size size, bool asymmetric)
-{
-    std::vector<Vec2d> grid;
-    for (int i = 0; i < size.area(); i++)
-    {
-        const int row = i/size.width, column = i % size.width;
-        grid.emplace_back(asymmetric ? 2*column + row % 2 : column, row);
-    }
-    return grid;
-}
-
 /** Board -> image: a homography, and what lens and window add to it, a polynomial of a degree that the dots allow. */
 class BoardMap
 {
@@ -148,12 +136,6 @@ DiscImage discImage(const BoardMap& map, const Vec2d& centre, double radius)
     return {0.5*std::abs(twice), origin + sum*(1/(3*twice))};
 }
 
-double median(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
-
 //! Of the dots on the board, from the areas of their images.
 double dotRadius(const BoardMap& map, const std::vector<Vec2d>& grid, const std::vector<double>& areas)
 {
@@ -162,7 +144,10 @@ double dotRadius(const BoardMap& map, const std::vector<Vec2d>& grid, const std:
     for (size_t i = 0; i < grid.size(); i++)
         if (areas[i] > 0)
             radii.push_back(TRIAL*std::sqrt(areas[i]/discImage(map, grid[i], TRIAL).area));
-    return radii.empty() ? 0. : median(radii);
+    if (radii.empty())
+        return 0.;
+    std::nth_element(radii.begin(), radii.begin() + radii.size()/2, radii.end());
+    return radii[radii.size()/2];
 }
 
 //! The ellipse to which a board maps a disc, to first order.
@@ -211,6 +196,17 @@ std::vector<Point2d> imagesOfCentres(const Mat& grey, const std::vector<Point2d>
 }
 
 } // namespace
+
+std::vector<Vec2d> gridOf(Size size, bool asymmetric)
+{
+    std::vector<Vec2d> grid;
+    for (int i = 0; i < size.area(); i++)
+    {
+        const int row = i/size.width, column = i % size.width;
+        grid.emplace_back(asymmetric ? 2*column + row % 2 : column, row);
+    }
+    return grid;
+}
 
 std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric)
 {

@@ -77,9 +77,8 @@ Target::Target(const TargetOptions& options)
         dictionary_ = charucoDictionary(options.dictionary);
         requireMarkers(size_, dictionary_);
     }
-    for (int row = 0; row < size_.height; row++)
-        for (int column = 0; column < size_.width; column++)
-            objectPoints_.emplace_back(square_*(pattern_ == ACIRCLES ? 2*column + row % 2 : column), square_*row, 0);
+    for (const cv::Vec2d& place : gridOf(size_, pattern_ == ACIRCLES))
+        objectPoints_.emplace_back(square_*place[0], square_*place[1], 0);
 }
 
 cv::Mat Target::drawing(int pixelsPerSquare) const

@@ -59,4 +59,11 @@ Matx33d Rotation::derivativeOf(const Vec3d& v) const
     return d;
 }
 
+Matx33d turnToZ(const Vec3d& a)
+{
+    const Vec3d axis = a.cross(Vec3d(0, 0, 1));
+    const double sine = norm(axis);
+    return sine > 0 ? rotationMatrix(axis*(std::atan2(sine, a[2])/sine)) : Matx33d::eye();
+}
+
 }} // namespace

@@ -16,6 +16,9 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian = NULL);
 //! The rotation vector of a rotation matrix.
 Vec3d rotationVector(const Matx33d& R);
 
+//! Turns a unit vector to the z axis, the shortest way.
+Matx33d turnToZ(const Vec3d& a);
+
 //! A rotation vector's matrix and the derivatives of the matrix.
 struct Rotation
 {

@@ -42,13 +42,15 @@ bool appendSegments(const EpipolarCurve& curve, const Projection& p, int begin, 
     for (int j = 0; j < segments; j++)
         if (allClose || !std::isnan(slack[j]) || std::isnan(u[middles + j]))
             line.push_back(Vec2d(u[j + 1], v[j + 1]));
+        else if (depth == 0 || line.size() >= most)
+            return false;
         else
         {
             const double nodes[] = { t[j], t[middles + j], t[j + 1] };
             Projection halves(p.camera());
             addSegments(curve, nodes, 2, halves);
             halves.run();
-            if (depth == 0 || line.size() >= most || !appendSegments(curve, halves, 0, 2, tolerance, depth - 1, most, line))
+            if (!appendSegments(curve, halves, 0, 2, tolerance, depth - 1, most, line))
                 return false;
         }
     return true;

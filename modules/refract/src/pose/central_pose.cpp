@@ -10,10 +10,12 @@ namespace cv { namespace refract {
 
 Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
 {
-    const Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
     Bearings b;
-    std::vector<Vec3d> directions(pixels.size(), Vec3d(none.x, none.x, none.x));
+    b.normalized.assign(pixels.size(), Point2d(NaN, NaN));
+    std::vector<Vec3d> directions(pixels.size(), Vec3d::all(NaN));
     Vec3d look;
+    double sumTau = 0;
     int found = 0;
     for (size_t i = 0; i < pixels.size(); i++)
     {
@@ -25,16 +27,13 @@ Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
             continue;
         directions[i] = d;
         look += d;
-        b.centre += tau*camera.layers().normal();
+        sumTau += tau;
         found++;
     }
-    b.normalized.assign(pixels.size(), none);
     if (!(norm(look) > 0))
         return b;
-    b.centre *= 1./found;
-    const Vec3d axis = normalize(look).cross(Vec3d(0, 0, 1));
-    const double sine = norm(axis);
-    b.turn = sine > 0 ? rotationMatrix(axis*(std::atan2(sine, normalize(look)[2])/sine)) : Matx33d::eye();
+    b.turn = turnToZ(look/norm(look));
+    b.centre = camera.layers().normal()*(sumTau/found);
     for (size_t i = 0; i < pixels.size(); i++)
     {
         const Vec3d d = b.turn*directions[i];

@@ -9,6 +9,7 @@ found by cv::solvePnP on the rays' directions, in a frame that looks along their
 and moved by the mean origin. A planar target has two such poses (IPPE gives both); the likelihood decides. */
 
 #include "pose/poses.hpp"
+#include "pose/central_pose.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"
@@ -36,14 +37,6 @@ namespace {
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-//! Rotation that turns the unit vector a to the z axis.
-Matx33d turnToZ(const Vec3d& a)
-{
-    const Vec3d axis = a.cross(Vec3d(0, 0, 1));
-    const double sine = norm(axis);
-    return sine > 0 ? rotationMatrix(axis*(std::atan2(sine, a[2])/sine)) : Matx33d::eye();
-}
-
 Pose makePose(const Matx33d& R, const Vec3d& t)
 {
     Pose pose;
@@ -56,48 +49,21 @@ Pose makePose(const Matx33d& R, const Vec3d& t)
 //! The points that have a ray in front, as a pinhole at the rays' mean origin sees them.
 struct CentralView
 {
+    CentralView(const Camera& camera, const ImagePoints& points) : bearings(bearingsOf(camera, points.pixel))
+    {
+        for (size_t i = 0; i < points.pixel.size(); i++)
+            if (isSeen(bearings.normalized[i]))
+            {
+                object.push_back(points.object[i]);
+                normalized.push_back(bearings.normalized[i]);
+                point.push_back((int)i);
+            }
+    }
+    Bearings bearings;
     std::vector<Point3d> object;
     std::vector<Point2d> normalized;
     std::vector<int> point;         //!< in the image
-    Matx33d turn;                   //!< camera -> pinhole
-    Vec3d origin;                   //!< of the pinhole, in the camera
 };
-
-CentralView centralView(const Camera& camera, const ImagePoints& points)
-{
-    CentralView view;
-    const int count = (int)points.pixel.size();
-    std::vector<Vec3d> directions(count);
-    std::vector<uchar> status(count, REFRACT_OK);
-    Vec3d look;
-    double sumTau = 0;
-    int found = 0;
-    for (int i = 0; i < count; i++)
-    {
-        double tau;
-        Vec3d& d = directions[i];
-        camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status[i]);
-        if (status[i] != REFRACT_OK)
-            continue;
-        look += d;
-        sumTau += tau;
-        found++;
-    }
-    if (!(norm(look) > 0))
-        return view;
-    view.turn = turnToZ(look/norm(look));
-    view.origin = camera.layers().normal()*(sumTau/found);
-    for (int i = 0; i < count; i++)
-    {
-        const Vec3d d = view.turn*directions[i];
-        if (status[i] != REFRACT_OK || !(d[2] > 0.05))      // normalised coordinates end before 90 degrees
-            continue;
-        view.object.push_back(points.object[i]);
-        view.normalized.push_back(Point2d(d[0]/d[2], d[1]/d[2]));
-        view.point.push_back(i);
-    }
-    return view;
-}
 
 //! Farthest distance of a point from the mean of all.
 double radiusOf(const std::vector<Point3d>& points)
@@ -113,11 +79,12 @@ double radiusOf(const std::vector<Point3d>& points)
 
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
 {
-    const CentralView view = centralView(camera, points);
+    const CentralView view(camera, points);
     std::vector<Pose> poses;
     const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
     if (rank < 2)
         return poses;
+    const Matx33d back = view.bearings.turn.t();
     const double unit = radiusOf(view.object);      // IPPE finds no pose of targets that are millions across
     std::vector<Point3d> object;
     for (const Point3d& p : view.object)
@@ -128,8 +95,8 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
     for (size_t i = 0; i < rvecs.size(); i++)
     {
         if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
-            poses.push_back(makePose(view.turn.t()*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
-                                     view.turn.t()*(unit*Vec3d(tvecs[i].ptr<double>())) + view.origin));
+            poses.push_back(makePose(back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
+                                     back*(unit*Vec3d(tvecs[i].ptr<double>())) + view.bearings.centre));
     }
     return poses;
 }
@@ -201,7 +168,7 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
     const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what the rays' different origins do
     const int TRIALS = 500;                     // a third of the points right: still 6 samples of four right ones
     const ImagePoints points = observed(objectPoints, imagePoints);
-    const CentralView view = centralView(camera, points);
+    const CentralView view(camera, points);
     std::vector<Point2d> agreeing;
     if (view.object.size() < 4 || scatterRank(view.object) < 2)
         return agreeing;

@@ -249,25 +249,23 @@ double quantile95(double freedom)
     return z*z*(1 + (z*z + 1)/(2*freedom));
 }
 
-//! Of N parameters that move rotation vector and T as the columns of `motion` say.
+//! Of errors with a variance of 1, by N parameters that move rotation vector and T as the columns of `motion` say.
 template<int N>
-Matx66d covarianceOf(const std::vector<double>& errors, const std::vector<Matx16d>& byPose, const Matx<double, 6, N>& motion,
-                     double variance)
+Matx66d covarianceOf(const std::vector<Matx16d>& byPose, const Matx<double, 6, N>& motion)
 {
     SumOfSquares<N> sum;
-    for (size_t i = 0; i < errors.size(); i++)
-        sum.add(errors[i], (byPose[i]*motion).val);
-    return variance*(motion*inverseOfPositive(sum.curvature)*motion.t());
+    for (const Matx16d& by : byPose)
+        sum.add(0, (by*motion).val);
+    return motion*inverseOfPositive(sum.curvature)*motion.t();
 }
 
+//! How the errors move with rotation vector and T, and their covariance if the errors' variance is 1.
 Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose, const Vec3d& T,
-                     double variance, bool atLength)
+                     bool atLength, std::vector<Matx16d>& byPose)
 {
     std::vector<double> errors;
-    std::vector<Matx16d> byPose;
     sampsonErrors(pair, matches, pose.R, T, errors, &byPose);
-    return atLength ? covarianceOf(errors, byPose, motionAtLength(pair, pose), variance)
-                    : covarianceOf(errors, byPose, Matx66d::eye(), variance);
+    return atLength ? covarianceOf(byPose, motionAtLength(pair, pose)) : covarianceOf(byPose, Matx66d::eye());
 }
 
 //! The matches that agree, without those that stand out among them.
@@ -285,24 +283,6 @@ std::vector<int> usual(const Candidate& candidate)
     return some;
 }
 
-//! By N parameters that move rotation vector and T as the columns of `motion` say: how much of each match's error its own pull takes.
-template<int N>
-std::vector<double> leveragesOf(const std::vector<double>& errors, const std::vector<Matx16d>& byPose,
-                                const Matx<double, 6, N>& motion)
-{
-    SumOfSquares<N> sum;
-    for (size_t i = 0; i < errors.size(); i++)
-        sum.add(errors[i], (byPose[i]*motion).val);
-    const Matx<double, N, N> inverse = inverseOfPositive(sum.curvature);
-    std::vector<double> leverages;
-    for (const Matx16d& by : byPose)
-    {
-        const Matx<double, 1, N> row = by*motion;
-        leverages.push_back((row*inverse*row.t())(0));
-    }
-    return leverages;
-}
-
 /** Without matches that alone tell something of the pose, of whatever many others: none of these would show that one is wrong, and a
 pose gains by turning until it agrees with a wrong one. So before a plane a single match off it is not believed. */
 std::vector<int> confirmed(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose,
@@ -313,14 +293,11 @@ std::vector<int> confirmed(const MatchedCameras& pair, const PixelMatches& match
     Vec3d T;
     if (chosen.size() < MANY || !translation(pair, pose, T))
         return chosen;
-    std::vector<double> errors;
     std::vector<Matx16d> byPose;
-    sampsonErrors(pair, select(matches, chosen), pose.R, T, errors, &byPose);
-    const std::vector<double> leverages = pair.refracts() ? leveragesOf(errors, byPose, Matx66d::eye())
-                                                          : leveragesOf(errors, byPose, motionAtLength(pair, pose));
+    const Matx66d C = covarianceOf(pair, select(matches, chosen), pose, T, !pair.refracts(), byPose);
     std::vector<int> some;
     for (size_t i = 0; i < chosen.size(); i++)
-        if (!(leverages[i] > MOST))
+        if (!((byPose[i]*C*byPose[i].t())(0) > MOST))       // what part of its error a match's own pull takes
             some.push_back(chosen[i]);
     return some;
 }
@@ -359,7 +336,8 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
         costAt(pair, some, e.interval[0] > 0 ? e.interval[0] : 1, e.pose);
     if (!translation(pair, e.pose, e.T))
         return false;
-    e.covariance = covarianceOf(pair, some, e.pose, e.T, variance, e.interval[1] == INFINITE);
+    std::vector<Matx16d> byPose;
+    e.covariance = variance*covarianceOf(pair, some, e.pose, e.T, e.interval[1] == INFINITE, byPose);
     e.agreeing = best.agreeing;
     e.variance = variance;
     e.squares.assign(matches.size(), limit*limit);
@@ -437,16 +415,17 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
     for (const Candidate& place : places)
     {
         Estimate here;
-        if (2*place.agreeing.size() >= most && place.agreeing.size() > 6
-            && estimate(pair, matches, threshold, place, here))
+        if (2*place.agreeing.size() >= most && estimate(pair, matches, threshold, place, here))
             estimates.push_back(here);
     }
     if (estimates.empty())
         return false;
-    e = *std::min_element(estimates.begin(), estimates.end(),
-                          [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
+    const auto best = std::min_element(estimates.begin(), estimates.end(),
+                                       [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
+    e = *best;
     return !isChance((int)matches.size(), (int)e.agreeing.size(), samplingOf(matches, threshold))
-           && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other) { return isRival(pair, matches, e, other); });
+           && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other)
+                           { return &other != &*best && isRival(pair, matches, e, other); });
 }
 
 } // namespace

@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "precomp.hpp"
-#include <set>
 
 namespace cv { namespace refract {
 
@@ -173,12 +172,14 @@ static void readMaterials(const FileNode& node, GlassWindow& window)
 //! A slip in a name would leave what it names at its default: air.
 static void checkKeys(const FileNode& map)
 {
-    const std::set<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "materials",
-                                          "wavelength" };
+    const std::vector<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "materials",
+                                             "wavelength" };
+    std::string names;
+    for (const std::string& name : known)
+        names += (names.empty() ? "" : ", ") + name;
     for (FileNodeIterator it = map.begin(); it != map.end(); it++)
-        if (known.count((*it).name()) == 0)
-            CV_Error_(Error::StsParseError, ("glass_window has '%s', which is none of normal, distance, thickness, index, "
-                                             "inner_index, outer_index, materials, wavelength", (*it).name().c_str()));
+        if (std::find(known.begin(), known.end(), (*it).name()) == known.end())
+            CV_Error_(Error::StsParseError, ("glass_window has '%s', which is none of %s", (*it).name().c_str(), names.c_str()));
 }
 
 void GlassWindow::read(const FileNode& node)
