@@ -20,6 +20,7 @@ not show a tilt of --detect degrees with a probability of 95 %.)";
 #include "assess/measurement.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/units.hpp"
+#include "console/cli.hpp"
 #include "console/colour.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"

@@ -3,6 +3,7 @@
 
 #include "assess/measurement.hpp"
 #include "calibrate/rig_model.hpp"
+#include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 #include "console/outputs.hpp"

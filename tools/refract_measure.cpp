@@ -5,6 +5,7 @@
 #include "assess/measurement.hpp"
 #include "assess/target_lengths.hpp"
 #include "calibrate/units.hpp"
+#include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/rig_model.hpp"
+#include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"

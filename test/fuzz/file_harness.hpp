@@ -4,7 +4,7 @@
 #ifndef REFRACT_FUZZ_FILE_HARNESS_HPP
 #define REFRACT_FUZZ_FILE_HARNESS_HPP
 
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "harness.hpp"
 #include "scratch.hpp"
 

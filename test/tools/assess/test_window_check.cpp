@@ -4,6 +4,7 @@
 #include "assess/eigen_matrix.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
 #include "paper_rig.hpp"
 #include <Eigen/Eigenvalues>

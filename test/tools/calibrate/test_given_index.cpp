@@ -3,7 +3,8 @@
 
 // Indices as users give them: numbers and names.
 #include "calibrate/given_index.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/refract.hpp>
 #include <cmath>

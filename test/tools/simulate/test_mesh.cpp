@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Meshes against planes and against each triangle alone; what files of them must hold.
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "scenes.hpp"
 #include "simulate/mesh_file.hpp"
 #include "simulate/surfaces_file.hpp"

@@ -1,7 +1,6 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "console/cli.hpp"
 #include "scene_pair.hpp"
 #include "stereo/depth_search.hpp"
 #include "stereo/match_support.hpp"

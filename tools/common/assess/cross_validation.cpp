@@ -5,6 +5,7 @@
 #include "assess/measurement.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
+#include "console/failure.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include "assess/eigen_matrix.hpp"
 #include "assess/point_derivatives.hpp"
 #include "calibrate/rig_model.hpp"
+#include "console/failure.hpp"
 #include <opencv2/calib3d.hpp>
 #include <Eigen/LU>
 #include <Eigen/SVD>

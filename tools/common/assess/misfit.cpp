@@ -6,6 +6,7 @@
 #include "assess/mixed_up_images.hpp"
 #include "assess/wrong_target.hpp"
 #include "assess/wrong_values.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 

@@ -3,6 +3,7 @@
 
 #include "assess/sight.hpp"
 #include "assess/eigen_matrix.hpp"
+#include "console/failure.hpp"
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <Eigen/Eigenvalues>

@@ -6,6 +6,7 @@
 #include "assess/f_distribution.hpp"
 #include "assess/sight.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "console/failure.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/few_points.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/given_index.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 #include <opencv2/refract.hpp>
 #include <cctype>
 #include <cmath>
@@ -65,11 +66,11 @@ GivenIndex readIndex(const std::string& text, const Light& light, const std::str
 std::vector<GivenIndex> readIndices(const std::string& text, const Light& light, const std::string& option)
 {
     std::vector<GivenIndex> indices;
-    for (const std::string& item : CLI::detail::split(text, ','))
+    for (const std::string& item : splitAtCommas(text))
     {
         if (item.find('=') != std::string::npos)
             throw Failure(option + "=" + text + ": '" + item + "': a layer's material stands without parameters");
-        indices.push_back(readIndex(CLI::detail::trim_copy(item), light, option));
+        indices.push_back(readIndex(item, light, option));
     }
     return indices;
 }

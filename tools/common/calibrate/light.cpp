@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/light.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 
 using namespace cv;
 using namespace cv::refract;

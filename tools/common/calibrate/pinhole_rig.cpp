@@ -3,7 +3,7 @@
 
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/pinhole_camera.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include <opencv2/calib3d.hpp>
 #include <cmath>
 

@@ -3,7 +3,8 @@
 
 #include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 #include "console/csv.hpp"
 #include <opencv2/calib3d.hpp>
 #include <cmath>

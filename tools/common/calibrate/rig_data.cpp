@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/rig_data.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <numeric>

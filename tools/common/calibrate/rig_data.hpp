@@ -8,6 +8,8 @@
 #include <array>
 #include <optional>
 
+namespace CLI { class App; }
+
 /* Which images belong together: what the cameras saw of a target at each of its poses. */
 namespace tools {
 

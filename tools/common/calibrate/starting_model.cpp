@@ -4,6 +4,7 @@
 #include "calibrate/starting_model.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/units.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "console/table.hpp"
 #include <cmath>
 #include <map>

@@ -4,11 +4,11 @@
 #ifndef REFRACT_TOOLS_CLI_HPP
 #define REFRACT_TOOLS_CLI_HPP
 
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 #include <CLI/CLI.hpp>
-#include <opencv2/core.hpp>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,20 +28,7 @@
     } */
 namespace tools {
 
-enum ExitCode {
-    DONE = 0,           //!< done and within limits
-    CANNOT = 1,         //!< could not do it; one sentence on stderr says why and what to do
-    LIMIT_NOT_MET = 2   //!< done, but a limit that the caller set was not met, or the result is not to be trusted
-};
-
 class SettingsFile;
-
-//! Could not do it. what() is one sentence that says what is wrong and what to do.
-class Failure : public std::runtime_error
-{
-public:
-    using std::runtime_error::runtime_error;
-};
 
 class Command
 {
@@ -80,12 +67,6 @@ Options parsed(Command& command, void (*add)(CLI::App& app, Options& options))
 //! Runs the body; turns every exception into exit code 1 and one sentence on stderr.
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body);
 
-//! Takes all of the text, or nothing; whatever the user's locale says about decimal commas.
-bool parseNumber(const std::string& text, double& number);
-
-//! "6x5" -> Size(6, 5); `option` names the option in the error text.
-cv::Size parseSize(const std::string& text, const std::string& option);
-
 //! Check of an option's number; CLI11's own names the largest double in its error, and lets nan through.
 inline CLI::Validator numberThat(const std::function<bool(double)>& isGood, const std::string& words, const std::string& range)
 {
@@ -105,15 +86,6 @@ inline CLI::Validator between(double least, double most)
     const std::string range = cv::format("%g to %g", least, most);
     return numberThat([=](double number) { return number >= least && number <= most; }, "from " + range, range);
 }
-
-//! "a,b,c" -> numbers; all finite.
-std::vector<double> parseNumbers(const std::string& text, const std::string& option);
-
-//! "'a', 'b' and 3 more"
-std::string listed(const std::vector<std::string>& names);
-
-//! --plane=a,b,c,d: a x + b y + c z = d.
-cv::Vec4d parsePlane(const std::string& text);
 
 } // namespace tools
 

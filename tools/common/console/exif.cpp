@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/exif.hpp"
-#include "console/cli.hpp"
+#include "console/numbers.hpp"
 
 #include <libexif/exif-data.h>
 #include <algorithm>

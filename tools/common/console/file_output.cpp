@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/file_output.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>

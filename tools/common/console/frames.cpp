@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/frames.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "console/images.hpp"
 
 #include <opencv2/core/utils/logger.hpp>

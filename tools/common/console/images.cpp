@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/images.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "console/exif.hpp"
 
 #include <opencv2/imgcodecs.hpp>

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/point_file.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
 
 #include <algorithm>
 #include <cctype>

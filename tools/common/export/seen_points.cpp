@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/seen_points.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/plot.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include <cmath>
 #include <cstdlib>

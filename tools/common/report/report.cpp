@@ -3,6 +3,7 @@
 
 #include "report/report.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/keys.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 
 #include <algorithm>
 

@@ -3,6 +3,7 @@
 
 #include "simulate/scene_file.hpp"
 #include "calibrate/rig_model.hpp"
+#include "console/failure.hpp"
 #include "simulate/keys.hpp"
 #include "simulate/surfaces_file.hpp"
 

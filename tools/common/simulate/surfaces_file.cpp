@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/surfaces_file.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "simulate/keys.hpp"
 #include "simulate/mesh_file.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/depth_comparison.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "console/images.hpp"
 
 #include <cmath>

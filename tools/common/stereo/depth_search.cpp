@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/depth_search.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "stereo/depth_picture.hpp"
 
 #include <opencv2/features2d.hpp>

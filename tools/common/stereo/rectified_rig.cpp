@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/rectified_rig.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/board_page.hpp"
+#include "console/failure.hpp"
 #include "console/file_output.hpp"
+#include "console/numbers.hpp"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/charuco.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
 #include "target/refine_corners.hpp"
 
 #include <opencv2/core/version.hpp>

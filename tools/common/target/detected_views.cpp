@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/detected_views.hpp"
+#include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "target/corners_vnl.hpp"
 #include "target/points_csv.hpp"

@@ -4,6 +4,7 @@
 #include "target/live_views.hpp"
 #include "target/next_view.hpp"
 
+#include "console/cli.hpp"
 #include <chrono>
 #include <filesystem>
 #include <map>

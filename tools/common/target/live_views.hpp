@@ -8,6 +8,8 @@
 #include "target/target.hpp"
 #include <iosfwd>
 
+namespace CLI { class App; }
+
 namespace tools {
 
 //! --watch, --watch-count, --watch-quiet

@@ -3,6 +3,7 @@
 
 #include "target/points_csv.hpp"
 #include "console/csv.hpp"
+#include "console/failure.hpp"
 
 #include <algorithm>
 #include <map>

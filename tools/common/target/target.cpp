@@ -6,6 +6,7 @@
 #include "target/chessboard.hpp"
 #include "target/circle_grid.hpp"
 #include "target/partial_chessboard.hpp"
+#include "console/cli.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

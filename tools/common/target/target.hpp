@@ -4,8 +4,12 @@
 #ifndef REFRACT_TOOLS_TARGET_HPP
 #define REFRACT_TOOLS_TARGET_HPP
 
-#include "console/cli.hpp"
+#include <opencv2/core.hpp>
+#include <string>
 #include <utility>
+#include <vector>
+
+namespace CLI { class App; }
 
 namespace tools {
 

@@ -1,0 +1,33 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_NUMBERS_HPP
+#define REFRACT_TOOLS_NUMBERS_HPP
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+//! Takes all of the text, or nothing; whatever the user's locale says about decimal commas.
+bool parseNumber(const std::string& text, double& number);
+
+//! "6x5" -> Size(6, 5); `option` names the option in the error text.
+cv::Size parseSize(const std::string& text, const std::string& option);
+
+//! "a, b,c" -> a b c: what stands between commas, without blanks around it.
+std::vector<std::string> splitAtCommas(const std::string& text);
+
+//! "a,b,c" -> numbers; all finite.
+std::vector<double> parseNumbers(const std::string& text, const std::string& option);
+
+//! "'a', 'b' and 3 more"
+std::string listed(const std::vector<std::string>& names);
+
+//! --plane=a,b,c,d: a x + b y + c z = d.
+cv::Vec4d parsePlane(const std::string& text);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_NUMBERS_HPP
