@@ -34,7 +34,8 @@ function(refract_kernel_options source_dir)
     endif()
   endif()
   foreach(level baseline avx2 avx512)
-    set_source_files_properties(${source_dir}/dispatch/kernels_${level}.cpp PROPERTIES COMPILE_OPTIONS "${common};${${level}}")
+    set_source_files_properties(${source_dir}/dispatch/kernels_${level}.cpp PROPERTIES
+      COMPILE_OPTIONS "${common};${${level}}" SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
 endfunction()
 

@@ -116,7 +116,7 @@ void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u,
 //! One run of a row, every pixel by itself; (-1, -1) where there is no answer. planeD: of each pixel, or null.
 void solveRow(const PinholeView& view, int row, int column, int n, const double* planeD, double* u, double* v)
 {
-    double columns[TILE], rows[TILE];
+    double columns[TILE] = {}, rows[TILE] = {};    // g++ 12 at -O2 does not see that all n are set
     uchar status[TILE];
     for (int i = 0; i < n; i++)
     {
