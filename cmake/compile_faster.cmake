@@ -3,8 +3,15 @@
 
 # What makes compiling and linking short, and changes nothing of what comes out.
 
+# The default of CMake is -O3, which takes a tenth longer; what gains from it are the kernels, which ask for it themselves
+# (modules/refract/cmake/kernels.cmake).
+if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")
+  set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+endif()
+
 # refract_precompile(TARGET HEADERS...): these, once for all sources of a target. The sources include what they use all the same:
-# test/run.sh --release compiles them without (CMAKE_DISABLE_PRECOMPILE_HEADERS=ON).
+# test/run.sh --release compiles them without (CMAKE_DISABLE_PRECOMPILE_HEADERS=ON). Headers of the system only: with a header of
+# this tree, whose path differs in each clone, a compiler cache would find nothing of another clone.
 function(refract_precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
   # What ccache asks of compilers, so that it caches what is compiled with a precompiled header too.
