@@ -15,12 +15,11 @@ commit=$1; shift
 turns=5
 case ${1:-} in [0-9]*) turns=$1; shift ;; esac
 
-launcher=""
-command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+. tools/compiler_cache.sh
 build() {   # build SOURCE DIRECTORY CMAKE_OPTION...
   source=$1; directory=$2; shift 2
   # shellcheck disable=SC2086  # an option or none
-  cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher "$@" >"$directory.log" 2>&1 ||
+  cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$directory.log" 2>&1 ||
     { cat "$directory.log"; exit 1; }
   cmake --build "$directory" --target refract_bench
 }

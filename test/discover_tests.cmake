@@ -31,10 +31,12 @@ endif()
   return()
 endif()
 
-execute_process(COMMAND ${PROGRAM} --list-tests OUTPUT_VARIABLE listed RESULT_VARIABLE count)
-if(NOT count GREATER 0)     # Catch2 ends with how many there are
-  message(FATAL_ERROR "${PROGRAM} --list-tests: ${count}")
+cmake_minimum_required(VERSION 3.18)
+execute_process(COMMAND ${PROGRAM} --list-tests OUTPUT_VARIABLE listed)
+if(NOT listed MATCHES "\n([0-9]+) test cases?\n")
+  message(FATAL_ERROR "${PROGRAM} --list-tests: ${listed}")
 endif()
+set(count ${CMAKE_MATCH_1})
 get_filename_component(suite ${PROGRAM} NAME_WE)
 # Names may have what separates items of lists here. Two blanks begin a name, six its tags.
 string(REPLACE ";" "@semicolon@" listed "${listed}")

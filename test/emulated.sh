@@ -29,8 +29,7 @@ kernels=$PWD/build/kernels      # of all architectures: what they are compared w
 root=$work/root
 toolchain="-DCMAKE_TOOLCHAIN_FILE=$PWD/test/emulated/toolchain.cmake -DREFRACT_ARCH=$arch"
 mkdir -p "$work" "$kernels"
-launcher=""
-command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+. tools/compiler_cache.sh
 logged() {      # logged LOG COMMAND...: what it says is shown only if it fails
   log=$1; shift
   "$@" >"$log" 2>&1 || { cat "$log"; exit 1; }
@@ -42,7 +41,7 @@ compute() {     # compute COLUMN CMAKE_OPTION...
   column=$1; shift
   directory=$kernels/$column
   # shellcheck disable=SC2086  # an option or none
-  logged "$directory.log" cmake -S test/kernels -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher "$@"
+  logged "$directory.log" cmake -S test/kernels -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
   logged "$directory.log" cmake --build "$directory"
   columns="$columns $directory.txt"
 }
@@ -85,7 +84,7 @@ if [ ! -e "$root.complete" ]; then
 fi
 
 # shellcheck disable=SC2086  # lists of options
-logged "$work/build.log" cmake -S . -B "$work/build" -G Ninja $toolchain -DREFRACT_ROOT="$root" -DREFRACT_WERROR=ON $launcher
+logged "$work/build.log" cmake -S . -B "$work/build" -G Ninja $toolchain -DREFRACT_ROOT="$root" -DREFRACT_WERROR=ON
 cmake --build "$work/build"
 
 # Whoever runs a tool, the tests too, gets a script that starts the emulator, whatever his PATH.

@@ -9,8 +9,8 @@
 #
 # Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93 [--short]
 #   the version is one of the package opencv-contrib-python-headless, whose source holds OpenCV's
-#   --short compiles the module, its tests and its sample in the tree, and generates its Python bindings, but neither
-#           compiles OpenCV nor runs anything
+#   --short reads the module, its tests and its sample in the tree (OpenCV 4 with Ceres, 5 without), and generates its Python
+#           bindings, but neither compiles OpenCV nor runs anything
 set -eu
 cd "$(dirname "$0")/.."
 version=${1:-}
@@ -23,6 +23,7 @@ case $version in
 esac
 
 tools/install_dependencies.sh in-tree
+. tools/compiler_cache.sh
 package=opencv-contrib-python-headless
 python=/usr/bin/python3                 # the one that Debian's NumPy belongs to
 work=$PWD/build/opencv-$version
@@ -49,10 +50,8 @@ configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds
               PROTOBUF QUIRC TIFF UNIFONT V4L VULKAN WEBP; do
     off="$off -DWITH_$part=OFF"
   done
-  launcher=""
-  command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache"
   # shellcheck disable=SC2086  # lists of options
-  cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher $off \
+  cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $off \
     -DOPENCV_EXTRA_MODULES_PATH="$PWD/modules" -DBUILD_LIST=refract,ts,python3,python_tests \
     -DOPENCV_CMAKE_HOOKS_DIR="$PWD/test/opencv_hooks" \
     -DBUILD_TESTS=ON -DBUILD_PERF_TESTS=ON -DBUILD_EXAMPLES=ON -DBUILD_DOCS=ON -DBUILD_opencv_apps=OFF \
@@ -79,6 +78,33 @@ without_ceres() {   # without_ceres DIRECTORY COMMANDS: that it is built, withou
   fi
 }
 
+looks_only() {  # looks_only COMMANDS OPTIONS...: the same commands, that the compiler only reads
+  file=$1; shift
+  sed "s/ -o / $* -fsyntax-only&/" "$file" >"$file.looks"
+  compile "$build" "$file.looks"
+}
+universal() {   # OpenCV's universal intrinsics, of every level, as compilers without vector types get them
+  commands "$build" | grep dispatch/kernels_ >"$work/commands_universal.txt"
+  looks_only "$work/commands_universal.txt" -DREFRACT_UNIVERSAL_INTRINSICS -Wno-uninitialized -Wno-maybe-uninitialized
+  echo "passed: kernels on OpenCV $version's universal intrinsics"
+}
+
+if [ $short = yes ]; then   # of the four combinations the diagonal: OpenCV 4 with Ceres, 5 without
+  case $version in
+    4.*) configure "$build" -DREFRACT_WITH_CERES=AUTO
+         commands "$build" >"$work/commands.txt" ;;
+    *) configure "$build" -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
+       without_ceres "$build" "$work/commands.txt" ;;
+  esac
+  looks_only "$work/commands.txt"
+  universal
+  # OpenCV warns, at length, that a tree without its other modules has no typing stubs.
+  ninja -C "$build" gen_opencv_python_source >"$work/python.log" 2>&1 || { cat "$work/python.log"; exit 1; }
+  grep -q triangulateRefractive "$build/modules/python_bindings_generator/pyopencv_generated_funcs.h"
+  echo "passed: OpenCV $version's build reads $(wc -l <"$work/commands.txt") files of the module and generates its Python bindings"
+  exit 0
+fi
+
 # Where one of the two is missing the module is built all the same: in OpenCV 4 as C++14, as it is Ceres that asks for C++17.
 for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
   configure "$work/without" $missing
@@ -90,20 +116,7 @@ rm -rf "$work/without"
 echo "passed: compiled so"
 
 configure "$build" -DREFRACT_WITH_CERES=AUTO
-# Its universal intrinsics, of every level, as compilers without vector types get them.
-commands "$build" | grep dispatch/kernels_ |
-  sed 's/ -o / -DREFRACT_UNIVERSAL_INTRINSICS -Wno-uninitialized -Wno-maybe-uninitialized -fsyntax-only&/' >"$work/commands_universal.txt"
-compile "$build" "$work/commands_universal.txt"
-echo "passed: kernels on OpenCV $version's universal intrinsics"
-if [ $short = yes ]; then
-  commands "$build" >"$work/commands.txt"
-  compile "$build" "$work/commands.txt"
-  # OpenCV warns, at length, that a tree without its other modules has no typing stubs.
-  ninja -C "$build" gen_opencv_python_source >"$work/python.log" 2>&1 || { cat "$work/python.log"; exit 1; }
-  grep -q triangulateRefractive "$build/modules/python_bindings_generator/pyopencv_generated_funcs.h"
-  echo "passed: OpenCV $version compiles $(wc -l <"$work/commands.txt") files of the module and generates its Python bindings"
-  exit 0
-fi
+universal
 ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example_refract_measure_behind_glass
 
 "$build/bin/opencv_test_refract"

@@ -38,7 +38,7 @@ if ! "$work/build/bin/pip" download -q --no-deps -d "$work/reach" pytest >"$work
 fi
 
 # A build directory of its own makes the next build an incremental one.
-command -v ccache >/dev/null && { CMAKE_CXX_COMPILER_LAUNCHER=ccache; export CMAKE_CXX_COMPILER_LAUNCHER; }
+. tools/compiler_cache.sh
 rm -rf "$work/wheel"
 "$work/build/bin/pip" wheel --no-deps -w "$work/wheel" --config-settings=build-dir="$work/cmake" . >"$work/wheel.log" 2>&1 ||
   { tail -40 "$work/wheel.log"; exit 1; }

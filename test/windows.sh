@@ -17,11 +17,10 @@ tools/install_dependencies.sh windows
 work=$PWD/build/windows
 toolchain=$PWD/test/windows/toolchain.cmake
 mkdir -p "$work/kernels"
-launcher=""
-command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+. tools/compiler_cache.sh
 compile() {     # compile SOURCE BUILD CMAKE_OPTION...: what is said is shown only if it fails
   source=$1; directory=$2; shift 2
-  { cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release $launcher "$@" &&
+  { cmake -S "$source" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" &&
     cmake --build "$directory"; } >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
 }
 

@@ -13,11 +13,10 @@ short=no
 
 tools/install_dependencies.sh test
 build=$PWD/build/without_ceres
-launcher=""
-command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+. tools/compiler_cache.sh
 configure() {   # configure DIRECTORY OPTIONS...
   directory=$1; shift
-  cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON $launcher -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON \
+  cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON \
     "$@" >"$directory.log" 2>&1
 }
 mkdir -p build

@@ -4,9 +4,9 @@
 
 # Installs what refract builds and runs with on Debian (root needed only if something is missing).
 # Usage: tools/install_dependencies.sh
-#            [build|test|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]
-#   test adds what only the tests use, in-tree what OpenCV's own build needs, wheel what the self-contained Python package
-#   does, aarch64 (and so on) what compiles for that processor and
+#            [build|test|lint|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]
+#   build has a compiler cache and a fast linker, too; test adds what only the tests use, lint what tools/lint.sh does, in-tree
+#   what OpenCV's own build needs, wheel what the self-contained Python package does, aarch64 (and so on) what compiles for that processor and
 #   runs it, windows what compiles for that system, fuzz the compiler that the fuzzers want, site what makes and tests the
 #   documentation's site; bare: what makes a bare Debian to try things in; libraries installs nothing, but names what a root
 #   of another architecture must hold
@@ -17,12 +17,13 @@ libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
 test_libraries="catch2 libgtest-dev libmrcal-dev"
 test_programs="file locales poppler-utils lintian"    # cpack makes the packages with file, lintian checks them; tests make a
                                                       # locale, and see PDFs
-build="build-essential cmake ninja-build pkg-config gnuplot-nox $libraries"
+build="build-essential ccache cmake gnuplot-nox mold ninja-build pkg-config $libraries"
 in_tree="python3-pip python3-dev python3-numpy"
 
 case "${1:-build}" in
   build) wanted=$build ;;
   test) wanted="$build $test_libraries $test_programs" ;;
+  lint) wanted="python3-venv shellcheck" ;;
   in-tree) wanted="$build $in_tree" ;;
   wheel) wanted="$build python3-venv python3-dev dpkg-dev libutfcpp-dev libstb-dev" ;;
   aarch64 | powerpc64le) wanted="$build g++-$1-linux-gnu qemu-user" ;;
@@ -32,7 +33,7 @@ case "${1:-build}" in
   bare) wanted="debootstrap git ca-certificates util-linux" ;;
   site) wanted="doxygen libjs-mathjax python3 chromium" ;;
   libraries) echo "$libraries $test_libraries"; exit 0 ;;
-  *) echo "usage: $0 [build|test|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]" >&2; exit 1 ;;
+  *) echo "usage: $0 [build|test|lint|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]" >&2; exit 1 ;;
 esac
 
 missing=""

@@ -18,11 +18,10 @@ case ${1:-} in
 esac
 
 tools/install_dependencies.sh fuzz
-launcher=""
-command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
+. tools/compiler_cache.sh
 build=build/sanitize        # as test/run.sh has it
 mkdir -p build
-cmake -S . -B $build -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 $launcher -DCMAKE_BUILD_TYPE=Debug \
+cmake -S . -B $build -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
   -DREFRACT_BUILD_BENCH=OFF >$build.log 2>&1 || { cat $build.log; exit 1; }
 cmake --build $build --target fuzzers

@@ -764,9 +764,8 @@ TEST_CASE("refract_calib writes the same bytes for the same input", "[calib_tool
     options.moments = 5;
     writeScene(f, options, 114);
     const bool gnuplot = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
-    std::vector<std::string> names = {"calib.yml", "summary.json"};
-    if (gnuplot)
-        names.push_back("report.html");
+    const std::vector<std::string> names = gnuplot ? std::vector<std::string>{"calib.yml", "summary.json", "report.html"}
+                                                   : std::vector<std::string>{"calib.yml", "summary.json"};
     std::vector<std::string> first;
     for (int run = 0; run < 2; run++)
     {

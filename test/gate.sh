@@ -1,0 +1,67 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
+# What `test/run.sh --all` does: sourced by it.
+
+# Beside the suites, one after the other: what waits for networks and configures for most of its time.
+beside() {  # beside NAME COMMAND...
+  name=$1; shift
+  code=0
+  "$@" >build/"$name".log 2>&1 || code=$?
+  echo "beside the rest, ended after $(after)" >>build/"$name".log
+  echo $code >build/"$name".code
+}
+result_of() {   # result_of NAME: what the command of that name printed, and how it ended
+  while [ ! -e build/"$1".code ] && kill -0 $lane 2>/dev/null; do sleep 1; done
+  cat build/"$1".log
+  return "$(cat build/"$1".code)"
+}
+rm -f build/*.code
+{
+  beside python test/python.sh
+  # OpenCV itself is not compiled here: that takes the whole script, without --short. OpenCV 4 with Ceres, 5 without.
+  beside opencv4 test/opencv_in_tree.sh 4.14.0.94 --short
+  beside opencv5 test/opencv_in_tree.sh 5.0.0.93 --short
+} &
+lane=$!
+
+run "style: shell, Python, white space, links" tools/lint.sh
+build build/release
+suite "all tests" build/release
+# A kernel's rounding, and what it accepts, differ from one instruction set to the next.
+kernels='^(kernels|lens|camera|project|undistort|undistort_map|plane|triangulate|triangulate_rig|epilines|epipolar|stereo_rectify|pnp)$'
+for disabled in AVX512-SKX AVX512-SKX,AVX2; do
+  export OPENCV_CPU_DISABLE=$disabled
+  suite "kernels without $disabled" build/release -L "$kernels" -LE 'slow|tools'
+done
+unset OPENCV_CPU_DISABLE
+run "installed package: find_package and pkg-config" test/consumer/run.sh build/release
+run "exported names: those of the committed list" test/exports.sh build/release
+run "Debian packages: clean, unpacked, tools and header work" test/package.sh build/release
+run "documentation: its commands run and print what it says; the quick ones" test/doc_blocks.py --short build/release/bin
+# Answers only: times depend on the machine. A machine without AVX runs the same level more than once.
+for isa in baseline avx2 avx512; do
+  run "answers of the benchmark, $isa at most" build/release/bin/refract_bench --quick --isa=$isa
+done
+for sample in build/release/bin/sample_*; do
+  run "$(basename "$sample")" "$sample"
+done
+
+# One build for the suites and the fuzzers, which want clang.
+build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
+  -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
+# Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
+# One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
+export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
+# The module, and what reads files. The tools' fits take ten times as long so: with --release.
+suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|tools|calib_tool|calib_rig|real'
+suite "parsers under sanitizers" build/sanitize -L '^refract_tools_tests$' \
+  -R 'CSV|csv|file|mesh|number|index|image|line' -LE 'slow|scene'
+unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
+run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh
+
+run "Python package, its tests and samples" result_of python
+run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
+run "in OpenCV 5.0's tree, without Ceres: the same" result_of opencv5
+run "the same hundred values from every build" test/agreement/run.sh build/release
