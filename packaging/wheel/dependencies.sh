@@ -9,6 +9,8 @@
 #   zig_cc, zig_cxx, zig_ar, zig_ranlib      the compiler for the oldest glibc
 # Each function makes one library; its source is Debian's, OpenCV's that of PyPI.
 
+# shellcheck disable=SC2154  # the variables above are those of build.sh
+
 once() {        # once NAME SOURCE: runs the function NAME unless that was done before, with the same source
   [ ! -e "$work/$1.done" ] || [ "$(cat "$work/$1.done")" != "$2" ] || return 0
   echo "Building $1"

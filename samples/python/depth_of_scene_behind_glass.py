@@ -35,7 +35,8 @@ for step in (1, 2):     # first for a plane, then for the depths found
     maps2 = refract.initRefractiveStereoRectifyMap(camera2, depth2, R2, P2, T, size, cv2.CV_16SC2)
     rectified1, rectified2 = cv2.remap(left, *maps1, cv2.INTER_LINEAR), cv2.remap(right, *maps2, cv2.INTER_LINEAR)
     disparity = matcher.compute(rectified1, rectified2)/np.float32(16)
-    if step == 1: depth1, depth2 = refract.refractiveRectifiedDepth(disparity, P1, P2, size, handleMissingValues=True)
+    if step == 1:
+        depth1, depth2 = refract.refractiveRectifiedDepth(disparity, P1, P2, size, handleMissingValues=True)
 points, _ = refract.refractiveReprojectImageTo3D(disparity, camera1, camera2, R, T, R1, R2, P1, P2, depth1, depth2,
                                                  handleMissingValues=True)
 

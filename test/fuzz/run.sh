@@ -25,6 +25,7 @@ cmake -S . -B $build -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
   -DREFRACT_BUILD_BENCH=OFF >$build.log 2>&1 || { cat $build.log; exit 1; }
 cmake --build $build --target fuzzers
+# shellcheck disable=SC2046  # names without blanks
 [ $# != 0 ] || set -- $(ls test/fuzz/fuzz_*.cpp | sed 's,.*/fuzz_\(.*\)\.cpp,\1,')
 
 # Ceres and OpenCV keep their thread pools until the process ends: leaks are not what this looks for.

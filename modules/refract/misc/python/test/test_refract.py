@@ -7,7 +7,6 @@ import functools
 import math
 import os
 import tempfile
-import unittest
 
 import cv2 as cv
 import numpy as np
