@@ -86,7 +86,7 @@ TEST_CASE("Many threads ask one camera while others change clones of it", "[came
     CHECK(wrong == 0);
 }
 
-TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera][threads]")
+TEST_CASE("A camera's first use by two threads at once gives what one thread gets", "[camera][threads][slow]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
     CAPTURE(kind.name, seed());
