@@ -6,6 +6,7 @@
 #define REFRACT_TEST_REAL_DATA_HPP
 
 #include "scenes.hpp"
+#include "paths.hpp"
 #include <nlohmann/json.hpp>
 #include <fstream>
 
@@ -19,8 +20,7 @@ typedef std::vector<cv::Point3d> Object;
 //! Not open (and a word on why) where the data set is absent.
 inline std::ifstream open(const std::string& path)
 {
-    const char* fromEnvironment = std::getenv("REFRACT_DATA_DIR");
-    const std::string full = std::string(fromEnvironment ? fromEnvironment : REFRACT_DATA_DIR) + "/" + path;
+    const std::string full = paths::data() + "/" + path;
     std::ifstream file(full);
     if (!file)
         WARN("SKIPPED: " << full << " is not there");

@@ -4,6 +4,7 @@
 // Against mrcal, which this project did not write. Skipped where mrcal or its data are missing.
 #include "scenes.hpp"
 #include "temporary_file.hpp"
+#include "paths.hpp"
 
 #ifdef HAVE_MRCAL
 extern "C" {        // mrcal 2.2 does not say so itself
@@ -109,7 +110,7 @@ bool haveData(const std::string& path)
     return false;
 }
 
-std::string dataFile(const char* name) { return std::string(REFRACT_DATA_DIR) + "/mrcal/" + name; }
+std::string dataFile(const char* name) { return paths::data() + "/mrcal/" + name; }
 
 } // namespace
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The rooms of the module and of the tools are those of doc/architecture.md, and no include climbs.
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string ROOT = std::string(REFRACT_TEST_DIR) + "/..";
+const std::string ROOT = paths::tests() + "/..";
 const std::string TREES[] = {"modules/refract/src", "tools/common"};
 
 std::string contentsOf(const std::string& path)

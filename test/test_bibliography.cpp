@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What the module and the pages cite is in refract.bib, and nothing else is.
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path ROOT = fs::path(REFRACT_TEST_DIR) / "..";
+const fs::path ROOT = fs::path(paths::tests()) / "..";
 
 std::string contentsOf(const fs::path& path)
 {

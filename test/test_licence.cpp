@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Every source file, script and CMake file says whose it is and under which licence, in its first lines.
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path ROOT = fs::path(REFRACT_TEST_DIR) / "..";
+const fs::path ROOT = fs::path(paths::tests()) / "..";
 const char* const OWN = "This file is part of the refract project. It is subject to the license terms in the LICENSE file at its "
                         "top level.\nSPDX-License-Identifier: Apache-2.0\n";
 const char* const OPENCV = "This file is part of OpenCV project.\n"

@@ -5,6 +5,7 @@
 // The data stay where they are (REFRACT_DATA_DIR); without them the cases are skipped.
 
 #include "real_data.hpp"
+#include "paths.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -366,8 +367,7 @@ TEST_CASE("openptv_cavity: the dots in depths of whole images", "[real]")
         return;
     const Object object = objectOf(data["object_points_mm"]);
     const TankCamera tankA = tankCamera(data, 3), tankB = tankCamera(data, 4);
-    const char* fromEnvironment = std::getenv("REFRACT_DATA_DIR");
-    const std::string folder = std::string(fromEnvironment ? fromEnvironment : REFRACT_DATA_DIR) + "/openptv_cavity/cal/";
+    const std::string folder = paths::data() + "/openptv_cavity/cal/";
     const Mat image1 = imread(folder + "cam3.tif", IMREAD_GRAYSCALE), image2 = imread(folder + "cam4.tif", IMREAD_GRAYSCALE);
     REQUIRE(!image1.empty());
     double ours = 0;
@@ -422,7 +422,7 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
 {
     for (int cameraNumber = 1; cameraNumber <= 3; cameraNumber++)
     {
-        const std::string path = std::string(REFRACT_DATA_DIR) + format("/myptv/cam%d_cal_points", cameraNumber);
+        const std::string path = paths::data() + format("/myptv/cam%d_cal_points", cameraNumber);
         std::ifstream file(path);
         if (!file)
         {

@@ -3,6 +3,7 @@
 
 // Our results against 60-digit ones, see reference/make_reference.py.
 #include "scenes.hpp"
+#include "paths.hpp"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,7 @@ const json& reference()
 {
     static const json cases = []
     {
-        std::ifstream file(REFRACT_TEST_DIR "/reference/projection.json");
+        std::ifstream file(paths::tests() + "/reference/projection.json");
         REQUIRE(file.good());
         return json::parse(file);
     }();

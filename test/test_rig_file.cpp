@@ -5,6 +5,7 @@
 #include "scenes.hpp"
 #include "temporary_file.hpp"
 #include "temporary_folder.hpp"
+#include "paths.hpp"
 
 #include <fstream>
 #ifndef _WIN32
@@ -150,7 +151,7 @@ TEST_CASE("A rig's file is what RefractiveCamera::read and FileStorage read", "[
 
 TEST_CASE("Rigs that the tools and mrcal write are read", "[rig_file]")
 {
-    const std::string path = std::string(REFRACT_BUNDLED_DIR) + "/stereo/truth.yml";
+    const std::string path = paths::bundled() + "/stereo/truth.yml";
     const FileStorage fs(path, FileStorage::READ);
     REQUIRE(fs.isOpened());
     const Rig rig = readAll(path);

@@ -5,6 +5,7 @@
 #define REFRACT_TEST_RUN_TOOL_HPP
 
 #include "temporary_folder.hpp"
+#include "paths.hpp"
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -50,7 +51,7 @@ inline ToolResult runTool(const std::string& commandLine, const std::string& env
 {
     const TemporaryFolder folder;
     const std::string out = folder / "out", err = folder / "err";
-    const int status = std::system((environment + ' ' + REFRACT_BIN_DIR + '/' + commandLine + " >" + out + " 2>" + err).c_str());
+    const int status = std::system((environment + ' ' + paths::programs() + '/' + commandLine + " >" + out + " 2>" + err).c_str());
     ToolResult result = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err), ""};
     result.progress = takeProgress(result.err);
     return result;

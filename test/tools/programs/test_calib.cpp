@@ -4,6 +4,7 @@
 // refract_calib as a user runs it: on corners files with known truth, on wrong input, on real images.
 #include "run_tool.hpp"
 #include "scenes.hpp"
+#include "paths.hpp"
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
 #include <iomanip>
@@ -645,7 +646,7 @@ TEST_CASE("refract_calib's report shows the images with their points", "[calib_t
         return;
     }
     const TemporaryFolder f;
-    const std::string data = REFRACT_BUNDLED_DIR "/stereo";
+    const std::string data = paths::bundled() + "/stereo";
     const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --direct='" + data + "/direct1/*.jpg' --glass='" + data
         + "/glass1/*.jpg'" + PANE + " --no-cross-validation --out=" + f / "calib.yml" + " --report=" + f / "report.html");
     INFO(r.out << r.err);
@@ -805,7 +806,7 @@ TEST_CASE("refract_calib says which combination of thickness and index is determ
 
 TEST_CASE("refract_calib on real images in air and water", "[calib_tool][real]")
 {
-    const std::string data = REFRACT_DATA_DIR "/ouc_laser3d";
+    const std::string data = paths::data() + "/ouc_laser3d";
     if (!std::filesystem::exists(data))
     {
         WARN("SKIPPED: " << data << " is absent");

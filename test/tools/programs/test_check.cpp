@@ -3,6 +3,7 @@
 
 // refract_check as a user runs it: on the bundled images, whose truth is known.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/refract.hpp>
@@ -11,7 +12,7 @@
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 const std::string TARGET = " --size=6x5 --square=39 --pixel-sigma=0.015";
 
 std::string pair(const std::string& name, bool second = true)
@@ -106,7 +107,7 @@ TEST_CASE("A verdict has a colour on a terminal alone", "[tools][check]")
     const std::string green = "\033[1;32munchanged\033[0m", red = "\033[1;31mmoved\033[0m";
     // script gives a program a terminal, and writes what it says.
     const auto onTerminal = [&](const std::string& environment, const std::string& file) {
-        const std::string command = environment + " " + REFRACT_BIN_DIR "/refract_check " + folder/file + arguments;
+        const std::string command = environment + " " + paths::programs() + "/refract_check " + folder/file + arguments;
         REQUIRE(std::system(("script -qec \"" + command + "\" /dev/null </dev/null >" + folder / "typescript").c_str()) != -1);
         return readFile(folder / "typescript");
     };

@@ -4,6 +4,7 @@
 // Colours that a window in front of water draws apart, and what brings them together again.
 #include "run_tool.hpp"
 #include "truth_file.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -235,7 +236,7 @@ sets:
 TEST_CASE("refract_stereo rectifies each colour by itself", "[tools][colours][stereo]")
 {
     const TemporaryFolder f;
-    std::string rig = readFile(REFRACT_BUNDLED_DIR "/water/rig.yml");
+    std::string rig = readFile(paths::bundled() + "/water/rig.yml");
     // A quarter of the pixels, for a test.
     for (const auto& change : std::vector<std::pair<std::string, std::string>>{
              {"image_width: 1280", "image_width: 640"}, {"image_height: 960", "image_height: 480"},

@@ -3,6 +3,7 @@
 
 // refract_export as a user runs it: what it writes is read by others, or as they would.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <opencv2/refract.hpp>
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>
@@ -19,7 +20,7 @@ using namespace cv::refract;
 
 namespace {
 
-const std::string CALIB = REFRACT_BUNDLED_DIR "/stereo/truth.yml", RANGE = " --range=550,900";
+const std::string CALIB = paths::bundled() + "/stereo/truth.yml", RANGE = " --range=550,900";
 
 //! The true rig, and points that both cameras see.
 struct Rig

@@ -4,6 +4,7 @@
 // refract_measure as a user runs it: on the bundled images, whose truth is known, and on wrong input.
 #include "run_tool.hpp"
 #include "truth_file.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 const std::string TARGET = " --size=6x5 --square=39";
 
 std::string image(const std::string& name) { return STEREO + "/" + name + ".jpg"; }

@@ -3,6 +3,7 @@
 
 // What the tools write never takes the place of what they read.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
@@ -14,7 +15,7 @@
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 const std::string TARGET = " --size=6x5 --square=39";
 
 //! A folder with a calibration and images that may be spoiled.

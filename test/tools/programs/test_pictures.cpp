@@ -4,6 +4,7 @@
 // refract_undistort and refract_epilines as a user runs them, on the bundled images.
 #include "run_tool.hpp"
 #include "truth_file.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,7 +14,7 @@
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 const std::string TARGET = " --size=6x5 --square=39";
 
 std::string image(const std::string& name) { return STEREO + "/" + name + ".jpg"; }

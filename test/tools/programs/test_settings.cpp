@@ -3,13 +3,14 @@
 
 // --config: options from a file, on every tool.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/core.hpp>
 #include <algorithm>
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 
 } // namespace
 

@@ -3,6 +3,7 @@
 
 // refract_stereo as a user runs it: on the bundled scene, and on one that refract_simulate renders.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string SCENE = REFRACT_BUNDLED_DIR "/scene";
+const std::string SCENE = paths::bundled() + "/scene";
 const std::string CALIB = SCENE + "/truth.yml", LEFT = SCENE + "/glass1/scene.jpg", RIGHT = SCENE + "/glass2/scene.jpg";
 const std::string PAIR = " " + LEFT + " " + RIGHT, DEPTH = " --depth=430,1250";
 
@@ -326,7 +327,7 @@ TEST_CASE("refract_stereo refuses with one sentence and writes nothing", "[tools
     const size_t numbers = apart.find("data", apart.find("\nR:"));       // camera 2 looks the other way
     apart.replace(numbers, apart.find(']', numbers) + 1 - numbers, "data: [ -1., 0., 0., 0., 1., 0., 0., 0., -1. ]");
     std::ofstream(folder / "apart.yml") << apart;
-    const std::string one = REFRACT_BUNDLED_DIR "/stereo/truth.yml";
+    const std::string one = paths::bundled() + "/stereo/truth.yml";
     std::ofstream(folder / "one.yml") << "%YAML:1.0\n---\n" + std::regex_replace(
         text.substr(text.find("camera1:") + 9, text.find("camera2:") - text.find("camera1:") - 9), std::regex("(^|\n)   "), "$1");
     fs::copy_file(LEFT, folder / "left.jpg");

@@ -3,6 +3,7 @@
 
 // refract_calib --watch: images come while it runs.
 #include "run_tool.hpp"
+#include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <chrono>
@@ -10,7 +11,7 @@
 
 namespace {
 
-const std::string STEREO = REFRACT_BUNDLED_DIR "/stereo";
+const std::string STEREO = paths::bundled() + "/stereo";
 
 std::string call(const TemporaryFolder& folder)
 {

@@ -6,11 +6,12 @@
 
 #include "calibrate/calib_file.hpp"
 #include "console/images.hpp"
+#include "paths.hpp"
 
 //! The bundled scene: planes and spheres 450 to 1150 mm deep, two cameras behind tilted windows.
 struct ScenePair
 {
-    const std::string folder = REFRACT_BUNDLED_DIR "/scene";
+    const std::string folder = paths::bundled() + "/scene";
     tools::Calibration rig = tools::readCalibration(folder + "/truth.yml");
     cv::Mat left = tools::readImage(folder + "/glass1/scene.jpg"), right = tools::readImage(folder + "/glass2/scene.jpg");
 };
