@@ -1,6 +1,8 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
+# shellcheck shell=sh
+
 # A bare Debian to try things in: sourced by test/bare.sh, test/package.sh and test/debian13.sh.
 #
 #   bare_root WORK [RELEASE]   makes WORK/root of a release, bookworm by default, from where this machine's apt gets Debian

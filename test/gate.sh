@@ -1,6 +1,8 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
+# shellcheck shell=sh
+
 # What `test/run.sh --all` does: sourced by it.
 
 # Beside the suites, one after the other: what waits for networks and configures for most of its time.

@@ -448,7 +448,8 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
                     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(
                         Matx33d(focal, 0, 640, 0, focal, 512, 0, 0, 1), std::vector<double>(coefficients, 0.), window);
                     Mat rvecs, tvecs;
-                    rms.push_back(calibrateGlass(std::vector<Object>{ object }, noArray(), std::vector<Pixels>{ pixels }, camera, rvecs, tvecs,
+                    rms.push_back(calibrateGlass(std::vector<Object>{ object }, noArray(), std::vector<Pixels>{ pixels }, camera,
+                                                 rvecs, tvecs,
                                                  GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST));
                 }
             CAPTURE(cameraNumber, coefficients, rms);

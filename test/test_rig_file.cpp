@@ -344,9 +344,10 @@ TEST_CASE("A rig of mrcal is a numbered file for each camera", "[rig_file]")
         const Vec3d T = Matx33d(rig.Rs[c])*T1 + rig.Ts[c];
         Vec3d rvec;
         Rodrigues(R, rvec);
-        std::ofstream(folder / format("far%d.cameramodel", c + 1)) << format("{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [900, 901, 640, "
-            "512], 'extrinsics': [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g], 'imagersize': [1280, 1024]}", rvec[0], rvec[1], rvec[2],
-            T[0], T[1], T[2]);
+        std::ofstream(folder / format("far%d.cameramodel", c + 1)) << format(
+            "{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [900, 901, 640, 512], "
+            "'extrinsics': [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g], 'imagersize': [1280, 1024]}",
+            rvec[0], rvec[1], rvec[2], T[0], T[1], T[2]);
     }
     const Rig moved = readAll(folder / "far%d.cameramodel");
     REQUIRE(moved.cameras.size() == 3);

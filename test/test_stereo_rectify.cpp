@@ -85,7 +85,11 @@ struct Rectified
     Mat R1, R2, P1, P2, Q;
     Rect roi1, roi2;
     Vec2d rows;
-    int axis() const { return std::abs(P2.at<double>(0, 3) - P1.at<double>(0, 3)) > std::abs(P2.at<double>(1, 3) - P1.at<double>(1, 3)) ? 0 : 1; }
+    int axis() const
+    {
+        const auto shift = [&](int i) { return std::abs(P2.at<double>(i, 3) - P1.at<double>(i, 3)); };
+        return shift(0) > shift(1) ? 0 : 1;
+    }
 };
 
 Rectified rectify(const StereoRig& rig, double alpha = -1, Size newSize = Size(), int flags = RECTIFY_ZERO_DISPARITY)
@@ -115,7 +119,10 @@ Vec2d shown(const Ptr<RefractiveCamera>& camera, const Vec2d& raw, const Mat& R_
 //! A point that both cameras see, in the frame of camera 1, and its pixels; false: another one please.
 bool draw(const StereoRig& rig, Random& random, Vec3d& X, Vec2d& raw1, Vec2d& raw2)
 {
-    const auto isInside = [&](const Vec2d& p) { return p[0] >= 0 && p[1] >= 0 && p[0] <= rig.size.width - 1 && p[1] <= rig.size.height - 1; };
+    const auto isInside = [&](const Vec2d& p)
+    {
+        return p[0] >= 0 && p[1] >= 0 && p[0] <= rig.size.width - 1 && p[1] <= rig.size.height - 1;
+    };
     raw1 = Vec2d(random.uniform(0, rig.size.width - 1), random.uniform(0, rig.size.height - 1));
     std::vector<Vec3d> points;
     refractivePointsOnPlane(std::vector<Vec2d>{ raw1 }, points, rig.camera1, Vec4d(0, 0, 1, random.uniform(rig.range[0], rig.range[1])));
@@ -194,8 +201,9 @@ TEST_CASE("Behind no window cv::stereoRectify and cv::reprojectImageTo3D answer"
     const std::vector<double> D1 = { -0.25, 0.08, 5e-4, -3e-4 }, D2 = { -0.2, 0.05, 0, 0, 0.01 };
     struct Case { Matx33d R; Vec3d T; int flags; double alpha; Size newSize; };
     const Matx33d R = turned(Vec3d(0.02, -0.06, 0.01));
-    for (const Case& c : { Case{ R, Vec3d(-120, 3, 5), RECTIFY_ZERO_DISPARITY, -1, Size() }, Case{ R, Vec3d(-120, 3, 5), 0, 0, Size(800, 600) },
-                           Case{ R, Vec3d(2, -90, 5), 0, 1, Size() }, Case{ R, Vec3d(100, 3, 5), RECTIFY_ZERO_DISPARITY, 0.5, Size() } })
+    for (const Case& c : { Case{ R, Vec3d(-120, 3, 5), RECTIFY_ZERO_DISPARITY, -1, Size() },
+                           Case{ R, Vec3d(-120, 3, 5), 0, 0, Size(800, 600) }, Case{ R, Vec3d(2, -90, 5), 0, 1, Size() },
+                           Case{ R, Vec3d(100, 3, 5), RECTIFY_ZERO_DISPARITY, 0.5, Size() } })
     {
         const StereoRig rig = { "bare", RefractiveCamera::create(K1, D1), RefractiveCamera::create(K2, D2), c.R, c.T, Size(640, 480),
                                 Vec2d(400, 2000) };
@@ -575,7 +583,8 @@ TEST_CASE("A disparity image of any type, empty, or with missing values", "[ster
     const auto reproject = [&](const Mat& d, bool missing)
     {
         Mat out;
-        refractiveReprojectImageTo3D(d, out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, depth, depth, missing, -1, status);
+        refractiveReprojectImageTo3D(d, out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, depth, depth,
+                                     missing, -1, status);
         return out;
     };
     reference = reproject(whole, false);
@@ -598,7 +607,8 @@ TEST_CASE("A disparity image of any type, empty, or with missing values", "[ster
     holes.at<float>(20, 30) = (float)NaN;
     whole.at<float>(9, 9) = (float)INF;
     Mat out;
-    refractiveReprojectImageTo3D(whole, out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, holes, depth, false, -1, status);
+    refractiveReprojectImageTo3D(whole, out, rig.camera1, rig.camera2, rig.R, rig.T, r.R1, r.R2, r.P1, r.P2, holes, depth,
+                                 false, -1, status);
     CHECK(countNonZero(status) == 2);
     CHECK(status.at<uchar>(9, 9) == REFRACT_NOT_FINITE);
     CHECK(status.at<uchar>(20, 30) != 0);

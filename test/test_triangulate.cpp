@@ -205,7 +205,8 @@ TEST_CASE("Both overloads of triangulateRefractive agree; the depth is the deepe
     const std::vector<Point2d> pixels2 = { { 560, 480 }, { 610, 400 } };
     Mat a, b, c;
     triangulateRefractive(PLAIN_K, D, paperPane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels2, a);
-    triangulateRefractive(RefractiveCamera::create(PLAIN_K, D, paperPane()), RefractiveCamera::create(PLAIN_K, D), rvec, T, pixels1, pixels2, b);
+    triangulateRefractive(RefractiveCamera::create(PLAIN_K, D, paperPane()), RefractiveCamera::create(PLAIN_K, D), rvec, T,
+                          pixels1, pixels2, b);
     CHECK(a.type() == CV_64FC3);
     CHECK(a.size() == Size(1, 2));
     CHECK(largestDifference(a, b) == 0);
@@ -217,7 +218,8 @@ TEST_CASE("The predicted covariance is that of many noisy measurements", "[trian
 {
     CAPTURE(seed());
     Random random;
-    const Scene truth = makeScene(allLenses()[2], allLenses()[3], makeWindow(PANE_IN_AIR, random), makeWindow(AIR_GLASS_WATER, random), 1, random);
+    const Scene truth = makeScene(allLenses()[2], allLenses()[3], makeWindow(PANE_IN_AIR, random),
+                                  makeWindow(AIR_GLASS_WATER, random), 1, random);
     const double sigma = 0.1;
     const int count = 20000;
     Scene noisy = truth;

@@ -502,7 +502,8 @@ TEST_CASE("Rays that tell no point say so", "[triangulate_rig]")
         CHECK((int)status[0] == (int)REFRACT_PARALLEL_RAYS);
         // Two at one place and a third elsewhere: the third tells the depth.
         triangulateRefractive(cameras, Rs, std::vector<Vec3d>{ Vec3d(), Vec3d(), Vec3d(-100, 0, 0) },
-                              std::vector<std::vector<Vec2d> >{ { { 640, 480 } }, { { 640, 480 } }, { { 540, 480 } } }, points, status, flags);
+                              std::vector<std::vector<Vec2d> >{ { { 640, 480 } }, { { 640, 480 } }, { { 540, 480 } } },
+                              points, status, flags);
         CHECK((int)status[0] == (int)REFRACT_OK);
         CHECK(norm(points.at<Vec3d>(0) - Vec3d(0, 0, 1000)) < 1e-9);
     }

@@ -1,6 +1,8 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
+# shellcheck shell=sh
+
 # Sourced, at the top of the tree, by scripts that compile: CMake puts ccache, where it is installed, before every compiler. What it
 # keeps serves any clone: paths within the tree count as relative, and a precompiled header is compared by its content.
 if command -v ccache >/dev/null; then

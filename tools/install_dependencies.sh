@@ -6,10 +6,10 @@
 # Usage: tools/install_dependencies.sh
 #            [build|test|lint|in-tree|wheel|aarch64|powerpc64le|riscv64|windows|fuzz|bare|site|libraries]
 #   build has a compiler cache and a fast linker, too; test adds what only the tests use, lint what tools/lint.sh does, in-tree
-#   what OpenCV's own build needs, wheel what the self-contained Python package does, aarch64 (and so on) what compiles for that processor and
-#   runs it, windows what compiles for that system, fuzz the compiler that the fuzzers want, site what makes and tests the
-#   documentation's site; bare: what makes a bare Debian to try things in; libraries installs nothing, but names what a root
-#   of another architecture must hold
+#   what OpenCV's own build needs, wheel what the self-contained Python package does, aarch64 (and so on) what compiles for
+#   that processor and runs it, windows what compiles for that system, fuzz the compiler that the fuzzers want, site what makes
+#   and tests the documentation's site; bare: what makes a bare Debian to try things in; libraries installs nothing, but names
+#   what a root of another architecture must hold
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev

@@ -154,7 +154,8 @@ def literature():
         where = [fields[name] for name in ("author", "title", "journal", "booktitle", "institution", "publisher", "volume", "pages",
                                            "year") if name in fields]
         address = f"https://doi.org/{fields['doi']}" if "doi" in fields else fields.get("url", "")
-        text += f'<a id="literature_{key}"></a>' + ". ".join(value.rstrip(".") for value in where) + (f" <{address}>" if address else "") + "\n\n"
+        text += f'<a id="literature_{key}"></a>' + ". ".join(value.rstrip(".") for value in where)
+        text += (f" <{address}>" if address else "") + "\n\n"
     return text
 
 

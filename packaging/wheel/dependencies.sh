@@ -9,7 +9,7 @@
 #   zig_cc, zig_cxx, zig_ar, zig_ranlib      the compiler for the oldest glibc
 # Each function makes one library; its source is Debian's, OpenCV's that of PyPI.
 
-# shellcheck disable=SC2154  # the variables above are those of build.sh
+# shellcheck shell=sh disable=SC2154  # the variables above are those of build.sh
 
 once() {        # once NAME SOURCE: runs the function NAME unless that was done before, with the same source
   [ ! -e "$work/$1.done" ] || [ "$(cat "$work/$1.done")" != "$2" ] || return 0
@@ -47,7 +47,8 @@ build_cmake() {         # build_cmake SOURCE OPTIONS...
   source=$1; shift
   launcher=""
   command -v ccache >/dev/null && launcher="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache"
-  PKG_CONFIG_LIBDIR=$prefix/lib/pkgconfig PKG_CONFIG_PATH="" cmake -S "$source" -B build -G Ninja -DCMAKE_TOOLCHAIN_FILE="$work/toolchain.cmake" -DCMAKE_BUILD_TYPE=Release $launcher \
+  PKG_CONFIG_LIBDIR=$prefix/lib/pkgconfig PKG_CONFIG_PATH="" cmake -S "$source" -B build -G Ninja \
+    -DCMAKE_TOOLCHAIN_FILE="$work/toolchain.cmake" -DCMAKE_BUILD_TYPE=Release $launcher \
     -DBUILD_SHARED_LIBS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_C_VISIBILITY_PRESET=hidden \
     -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON -DCMAKE_INSTALL_PREFIX="$prefix" \
     -DCMAKE_INSTALL_LIBDIR=lib "$@"

@@ -1,7 +1,8 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-# Cross-compiles for the Debian of another processor, against the root that test/emulated.sh makes. RISC-V's is clang, as the g++ of Debian 12 does not know its vectors.
+# Cross-compiles for the Debian of another processor, against the root that test/emulated.sh makes. RISC-V's is clang, as the
+# g++ of Debian 12 does not know its vectors.
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES REFRACT_ARCH REFRACT_ROOT)
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR ${REFRACT_ARCH})

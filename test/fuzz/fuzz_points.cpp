@@ -61,7 +61,9 @@ Input depthOf(Bytes& bytes, int count)
     {
     case 0: return Input::matrix(bytes, 1, 1, [&](int, int) { return bytes.about(100, 2000); });
     case 1: return Input::matrix(bytes, bytes.rarely() ? bytes.below(9) : count, 1, [&](int, int) { return bytes.about(100, 2000); });
-    case 2: return Input::matrix(bytes, 4, 1, [&](int i, int) { return i == 2 ? 1. : i == 3 ? bytes.about(100, 2000) : bytes.about(-1, 1); });
+    case 2:
+        return Input::matrix(bytes, 4, 1, [&](int i, int)
+                             { return i == 2 ? 1. : i == 3 ? bytes.about(100, 2000) : bytes.about(-1, 1); });
     default: return Input::matrix(bytes, 1, 1, [&](int, int) { return std::numeric_limits<double>::infinity(); });
     }
 }

@@ -57,8 +57,10 @@ TEST_CASE("The index of a channel is known better than that of white light", "[g
 
 TEST_CASE("A wrong index names its option", "[given_index]")
 {
-    CHECK_THROWS_WITH(readIndex("watr", lightOf(BRIGHTNESS, 550.), "--outer-index"), Contains("--outer-index=watr: ") && Contains("'water'"));
-    CHECK_THROWS_WITH(readIndex("1.3,1.4", lightOf(BRIGHTNESS, 550.), "--outer-index"), Contains("--outer-index=1.3,1.4: give one number"));
+    CHECK_THROWS_WITH(readIndex("watr", lightOf(BRIGHTNESS, 550.), "--outer-index"),
+                      Contains("--outer-index=watr: ") && Contains("'water'"));
+    CHECK_THROWS_WITH(readIndex("1.3,1.4", lightOf(BRIGHTNESS, 550.), "--outer-index"),
+                      Contains("--outer-index=1.3,1.4: give one number"));
     CHECK_THROWS_WITH(readIndex("", lightOf(BRIGHTNESS, 550.), "--outer-index"), Contains("--outer-index"));
     CHECK_THROWS_WITH(readIndex("nan", lightOf(BRIGHTNESS, 550.), "--outer-index"), Contains("not a number"));
     CHECK_THROWS_WITH(readIndices("1.5,,1.5", lightOf(BRIGHTNESS, 550.), "--index"), Contains("--index"));

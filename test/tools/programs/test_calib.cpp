@@ -447,7 +447,8 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     for (const std::string wrong : {"19", "22", "26"})
         for (const std::string more : {" --lens=opencv4 --max-error-at=600:5", " --max-rms=50", " --no-robust"})
         {
-            const ToolResult r = runTool(inputs(f, " --thickness=" + wrong + " --index=1.5437" + more + (more == " --max-rms=50" ? lens(f) : "")));
+            const ToolResult r = runTool(inputs(f, " --thickness=" + wrong + " --index=1.5437" + more
+                                                   + (more == " --max-rms=50" ? lens(f) : "")));
             INFO(wrong << more << "\n" << r.out << r.err);
             CHECK(r.code == 2);
             CHECK(mentions(r.err, "contradict --thickness=" + wrong));
@@ -543,7 +544,8 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
             "nearest is 'N-BK7'"},
         {inputs(f, lens(f) + " --thickness=20 --index=diamond"), "'diamond', which is not known; those that are: N-BK7, K9, B270, "
             "soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water, seawater, air; of any other give the index"},
-        {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "--wavelength=200: the index of N-BK7 is known from 300 to 2500 nm; give nm"},
+        {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "--wavelength=200: the index of N-BK7 is known "
+            "from 300 to 2500 nm; give nm"},
         {inputs(f, lens(f) + " --thickness=20 --index=1,5"), "--thickness has 1, --index 2"},
         {inputs(f, lens(f) + " --thickness=20 --index=water:T=12"), "without parameters"},
         {inputs(f, lens(f) + PANE + " --outer-index=seawater:T=99"), "T of seawater must be from 0 to 30"},

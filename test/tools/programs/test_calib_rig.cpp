@@ -107,7 +107,8 @@ struct Tank
 
     std::string inputs(const TemporaryFolder& folder) const
     {
-        std::string text = "refract_calib --quiet --image-size=1280x1024 --thickness=12 --index=1.49 --outer-index=1.333 --window-of-camera=";
+        std::string text = "refract_calib --quiet --image-size=1280x1024 --thickness=12 --index=1.49 --outer-index=1.333 "
+                           "--window-of-camera=";
         for (int c = 0; c < count(); c++)
             text += (c ? "," : "") + std::to_string(walls[c]);
         for (int c = 0; c < count(); c++)
@@ -419,8 +420,9 @@ TEST_CASE("Four simulated cameras from images to measured points", "[calib_rig]"
     const TemporaryFolder folder;
     writeWallOfCameras(folder / "RIG.yml", 4, 5, 11);
     REQUIRE(runTool("refract_simulate " + folder / "RIG.yml --quiet --out-dir=" + folder.path().string()).code == 0);
-    const ToolResult calib = runTool("refract_calib --quiet --no-cross-validation --lens=opencv4 --size=6x5 --square=26 --thickness=20 --index=1.5"
-                                     + rigImages(folder.path().string(), 4) + " --out=" + folder / "calib.yml");
+    const ToolResult calib = runTool("refract_calib --quiet --no-cross-validation --lens=opencv4 --size=6x5 --square=26 "
+                                     "--thickness=20 --index=1.5" + rigImages(folder.path().string(), 4)
+                                     + " --out=" + folder / "calib.yml");
     CAPTURE(calib.err);
     REQUIRE(calib.code == 0);
     const auto errors = placeErrors(folder / "calib.yml", folder / "truth.yml", 4);

@@ -225,8 +225,8 @@ sets:
         }
 
     // What is measured is looked for in the same channel: its pose is the true one.
-    const ToolResult measured = runTool("refract_measure " + (f / "green.yml") + " " + (f / "s/glass/pair1.png") + " --size=5x7 --square=30 "
-                                        "--out=" + (f / "points.csv"));
+    const ToolResult measured = runTool("refract_measure " + (f / "green.yml") + " " + (f / "s/glass/pair1.png")
+                                        + " --size=5x7 --square=30 --out=" + (f / "points.csv"));
     INFO(measured.out << measured.err);
     REQUIRE(measured.code == 0);
     CHECK(mentions(measured.out, "green channel"));

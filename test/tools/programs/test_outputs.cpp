@@ -202,8 +202,9 @@ TEST_CASE("A table that cannot be printed is a failure", "[tools][outputs]")
 TEST_CASE("JSON is what others read too", "[tools][outputs]")
 {
     const Inputs in;
-    for (const std::string& command : {"refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO + "/direct1/*' --glass='"
-                                          + STEREO + "/glass1/*' --note=by='O\"Neill' --no-cross-validation --quiet --out=",
+    for (const std::string& command : {"refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO
+                                          + "/direct1/*' --glass='" + STEREO + "/glass1/*' --note=by='O\"Neill' "
+                                          "--no-cross-validation --quiet --out=",
                                       "refract_export " + in.calib + " --to=opencv --range=400,800 --out="})
     {
         const std::string out = in.folder / "c.json";

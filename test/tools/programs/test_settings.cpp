@@ -17,7 +17,8 @@ const std::string STEREO = paths::bundled() + "/stereo";
 TEST_CASE("A settings file stands for options, and the command line goes first", "[tools][settings]")
 {
     const TemporaryFolder folder;
-    writeFile(folder / "run.toml", "\xEF\xBB\xBF# the bundled rig, camera 1\nsize = \"6x5\"\nsquare = 39\n\nthickness = [20]    # mm\nindex = 1.5\n"
+    writeFile(folder / "run.toml", "\xEF\xBB\xBF# the bundled rig, camera 1\nsize = \"6x5\"\nsquare = 39\n\n"
+        "thickness = [20]    # mm\nindex = 1.5\n"
         "direct = \"" + STEREO + "/direct1/*\"\nglass = '" + STEREO + "/glass1/*'\nfree = [\"thickness\", \"index\"]\n"
         "no-cross-validation = true\nquiet = true\nunpaired = false\nnote = [\"where=Lab 3\", \"who=A\"]\nout = \""
         + (folder / "file.yml") + "\"\n");

@@ -59,8 +59,8 @@ std::vector<std::string> explainMisfit(const Given& given)
             sentences.push_back(sentence);
     const double most = std::min(EXPLAINS*now, largestSoundError(given.data));
     std::vector<Explanation> explaining = bestBelow(most, {wrongScale(given), wrongUnitOfPoints(given), mirrored(given),
-        wrongIndex(given), directAndGlassExchanged(given), directAndGlassExchangedOfOne(given), camerasExchanged(given, true), camerasExchanged(given, false), otherMedium(given),
-        ownWindows(given), unpaired(given)});
+        wrongIndex(given), directAndGlassExchanged(given), directAndGlassExchangedOfOne(given), camerasExchanged(given, true),
+        camerasExchanged(given, false), otherMedium(given), ownWindows(given), unpaired(given)});
     // What each camera alone explains, any mistake in what they have in common explains better.
     if (explaining.empty())
         explaining = bestBelow(most, {otherMoments(given)});

@@ -61,7 +61,8 @@ struct Calibration
     double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
     Channel channel = BRIGHTNESS;   //!< of colour images, in which the points were found: it is valid for that one
     std::string verdict;    //!< of those who made it; empty where unknown
-    std::vector<std::string> contradictions;    //!< of the images to what was given, a sentence each: points may be off by more than their +-
+    /** Of the images to what was given, a sentence each: points may be off by more than their +-. */
+    std::vector<std::string> contradictions;
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()

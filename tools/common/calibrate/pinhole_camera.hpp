@@ -19,7 +19,8 @@ struct TargetView
 };
 
 /** cv::calibrateCamera on the seen points of all views that are not empty; where a target is not flat, from several focal
-lengths. With FISHEYE_LENS cv::fisheye::calibrate, on flat targets, from several focal lengths too. Throws cv::Exception where it finds nothing. */
+lengths. With FISHEYE_LENS cv::fisheye::calibrate, on flat targets, from several focal lengths too. Throws cv::Exception where
+it finds nothing. */
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
                                                      int coefficients, double& rms);
 

@@ -157,7 +157,8 @@ Figure drawResidualMap(const RigCalibration& c, int camera)
                         2*count[i] >= CORNERS ? norm(sum[i])/count[i] : NONE, cell/2});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel 'mean residual, px'\nset cbrange [0:" << rmsOf(c, camera, true).px << "]\nunset key\nset style fill solid noborder\n"
+    plot << "set cblabel 'mean residual, px'\nset cbrange [0:" << rmsOf(c, camera, true).px << "]\n"
+         << "unset key\nset style fill solid noborder\n"
          << "plot $cells using 1:2:4:4:3 with boxxyerror linecolor palette\n";
     return {plot.svg(), ""};
 }

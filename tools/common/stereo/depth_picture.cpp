@@ -57,8 +57,8 @@ class ScaleBar
 {
 public:
     ScaleBar(const Range& range, const std::string& unit, int rows)
-        : range_(range), title_(unit.empty() ? "depth z" : "depth z, " + unit), rows_(rows), scale_(scaleFor(rows)), letters_(cvRound(22*scale_)),
-          thick_(std::max(1, cvRound(1.4*scale_)))
+        : range_(range), title_(unit.empty() ? "depth z" : "depth z, " + unit), rows_(rows), scale_(scaleFor(rows)),
+          letters_(cvRound(22*scale_)), thick_(std::max(1, cvRound(1.4*scale_)))
     {
         const int margin = 2*letters_;
         bar_ = Rect(letters_, margin + letters_, cvRound(1.2*letters_), 0);

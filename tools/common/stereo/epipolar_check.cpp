@@ -52,7 +52,8 @@ void dropImpossible(const RectifiedRig& rig, const RectifiedImages& rectified, c
                 const Vec2f raw1 = rectified.map[0].at<Vec2f>(y, x);
                 const Vec2f raw2 = partnerOf(rectified.map[1], rig.vertical(), x, y, disparity.at<float>(y, x));
                 // The most likely point is in the middle: each pixel is off by half of what they miss each other by.
-                const double miss = std::sqrt(2*(norm(seen1.at<Vec2f>(x) - raw1, cv::NORM_L2SQR) + norm(seen2.at<Vec2f>(x) - raw2, cv::NORM_L2SQR)));
+                const double miss = std::sqrt(2*(norm(seen1.at<Vec2f>(x) - raw1, cv::NORM_L2SQR)
+                                                 + norm(seen2.at<Vec2f>(x) - raw2, cv::NORM_L2SQR)));
                 if (!(miss <= MOST))
                     points.at<Vec3f>(y, x) = Vec3f(NAN, NAN, NAN);
             }

@@ -41,8 +41,9 @@ public:
         }
         Mat points, status, covariance;
         const Calibration& calibration = rig.calibration();
-        cv::refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.Rs[1], calibration.Ts[1],
-                                           pixels[0], pixels[1], points, status, 0, 0., calibration.covariance, covariance);
+        cv::refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.Rs[1],
+                                           calibration.Ts[1], pixels[0], pixels[1], points, status, 0, 0.,
+                                           calibration.covariance, covariance);
         for (int i = 0; i < (int)variances_.size(); i++)
         {
             const double* C = covariance.ptr<double>(i);
