@@ -6,7 +6,7 @@
 # with their NumPy 2. Everything is kept in build/python: a second run takes a minute or two.
 #
 # Usage: test/python.sh [--fast]      --fast leaves out pip's OpenCV 5, the samples and the paper's experiments
-# Ends with 77 if pip reaches no package registry. REFRACT_OPENCV_SOURCE: see doc/howto_python.md.
+# Ends with 77 if pip reaches no package registry, or trusts none. REFRACT_OPENCV_SOURCE: see doc/howto_python.md.
 set -eu
 cd "$(dirname "$0")/.."
 fast=no
@@ -34,7 +34,11 @@ environment() {     # environment NAME VENV_OPTION... : makes build/python/NAME 
 }
 environment build
 if ! "$work/build/bin/pip" download -q --no-deps -d "$work/reach" pytest >"$work/pip.log" 2>&1; then
-  tail -3 "$work/pip.log"; echo "skipped: pip reaches no package registry"; exit 77
+  tail -3 "$work/pip.log"
+  why="pip reaches no package registry"
+  grep -q CERTIFICATE_VERIFY_FAILED "$work/pip.log" &&
+    why="pip does not trust the registry's certificate; set PIP_CERT to a file with the certificate of its authority"
+  echo "skipped: $why"; exit 77
 fi
 
 # A build directory of its own makes the next build an incremental one.
