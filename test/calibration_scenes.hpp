@@ -27,9 +27,6 @@ inline cv::Ptr<RefractiveCamera> paperCamera(const GlassWindow& window)
     return makeCamera(allLenses()[1], window);
 }
 
-//! Its pane: 20 mm, index 1.5437.
-inline GlassWindow paperWindow(double distance = 50) { return GlassWindow({ -0.2483, 0.0961, 1 }, 20, 1.5437, distance); }
-
 inline std::vector<cv::Point3d> board(int columns = 6, int rows = 5, double square = 39)
 {
     std::vector<cv::Point3d> points;

@@ -30,7 +30,7 @@ inline RigTruth makeRig(int count, const std::vector<int>& windows, double outer
         cv::Rodrigues(cv::Vec3d(0.02*part, turn, 0.01*part), R);
         rig.Rs.push_back(R);
         rig.Ts.push_back(cv::Vec3d(0, 0, 610) - R*cv::Vec3d(0, 0, 610) + cv::Vec3d(3, -2, 5)*part);
-        GlassWindow window({ -0.2 + 0.08*part, 0.1 - 0.05*part, 1 }, 20, 1.5437, 80 + 10*part, outerIndex);
+        GlassWindow window = paper::pane(80 + 10*part, { -0.2 + 0.08*part, 0.1 - 0.05*part, 1 }, outerIndex);
         const int owner = (int)(std::find(windows.begin(), windows.end(), windows[c]) - windows.begin());
         if (owner < c)
         {
@@ -45,22 +45,14 @@ inline RigTruth makeRig(int count, const std::vector<int>& windows, double outer
     return rig;
 }
 
-//! The paper's Table 3: two cameras behind differently tilted windows. Its rotation maps right to left.
+//! The paper's: two cameras behind differently tilted windows.
 inline RigTruth paperStereo()
 {
     RigTruth rig;
-    const cv::Matx33d printed(0.9572, 0.0008, -0.2893, -0.0087, 0.9996, -0.0262, 0.2892, 0.0275, 0.9569);
-    cv::Vec3d rvec;
-    cv::Rodrigues(printed.t(), rvec);
-    cv::Matx33d R;
-    cv::Rodrigues(rvec, R);
     rig.windows = { 0, 1 };
-    rig.Rs = { cv::Matx33d::eye(), R };
-    rig.Ts = { cv::Vec3d(), cv::Vec3d(-211.4756, 1.3306, 53.3775) };
-    rig.cameras = { paperCamera(paperWindow()),
-                    RefractiveCamera::create(cv::Matx33d(2443.13, 0, 647.83, 0, 2443.13, 487.49, 0, 0, 1),
-                                             std::vector<double>{ -0.4100, 0.4389, 0, 0 },
-                                             GlassWindow({ 0.1823, -0.2809, 1 }, 20, 1.5437, 40)) };
+    rig.Rs = { cv::Matx33d::eye(), paper::rotation() };
+    rig.Ts = { cv::Vec3d(), paper::T };
+    rig.cameras = { paperCamera(paper::pane()), RefractiveCamera::create(paper::K2, paper::D2, paper::pane(40, paper::NORMAL2)) };
     return rig;
 }
 

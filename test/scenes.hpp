@@ -5,7 +5,7 @@
 #ifndef REFRACT_TEST_SCENES_HPP
 #define REFRACT_TEST_SCENES_HPP
 
-#include <opencv2/refract.hpp>
+#include "paper.hpp"
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -154,7 +154,7 @@ inline const std::vector<LensKind>& allLenses()
     const cv::Matx33d K(1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1), wide(2070, 0, 3004, 0, 2075, 1997, 0, 0, 1);
     static const std::vector<LensKind> lenses = {
         { "0 coefficients", false, K, {}, 60 },
-        { "the paper's", false, { 2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1 }, { -0.4082, 0.4359, 0, 0 }, 35 },
+        { "the paper's", false, paper::K1, paper::D1, 35 },
         { "4 coefficients", false, K, { -0.28, 0.09, 7e-4, -4e-4 }, 40 },
         { "5 coefficients", false, K, { -0.3, 0.12, 1e-3, -5e-4, -0.01 }, 42 },
         { "8 coefficients", false, wide, { 0.5, 0.03, 1e-4, -2e-4, 1e-4, 0.8, 0.1, 0.002 }, 60 },
@@ -187,9 +187,8 @@ inline cv::Vec3d randomDirection(const LensKind& lens, Random& random) { return 
 
 // ---- checks
 
-//! Of a camera without distortion, and the pane of Plate2024.
+//! Of a camera without distortion.
 const cv::Matx33d PLAIN_K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
-inline cv::refract::GlassWindow paperPane() { return cv::refract::GlassWindow(cv::Vec3d(-0.2483, 0.0961, 1), 20, 1.5437, 50); }
 
 //! The same lists of points of another type.
 template<typename To, typename From> std::vector<std::vector<To> > as(const std::vector<std::vector<From> >& lists)

@@ -62,7 +62,7 @@ TEST_CASE("What is free is found", "[calibrate_glass]")
 
     SECTION("thickness and index of a pane, pairs")
     {
-        const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+        const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
         const CalibrationScene scene = makeScene(camera, 6, random, 0);
         const Ptr<RefractiveCamera> found = startCamera(camera, GlassWindow({ 0, 0, 1 }, 15, 1.45, 50));
         CHECK(calibrate(scene, true, found, GLASS_FREE_THICKNESS | GLASS_FREE_INDEX) < 1e-6);
@@ -102,20 +102,20 @@ TEST_CASE("What is free is found", "[calibrate_glass]")
     }
     SECTION("the lens, pairs; all coefficients, though they start at 0")
     {
-        const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+        const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
         const CalibrationScene scene = makeScene(camera, 12, random, 0);
         const Ptr<RefractiveCamera> found = RefractiveCamera::create(
-            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>(4, 0.), straight(paperWindow()));
+            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>(4, 0.), straight(paper::pane()));
         CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS) < 1e-5);
         CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
         CHECK(angleBetween(found->window().normal, camera->window().normal) < 1e-3);
     }
     SECTION("the lens, pairs; what the flags fix stays")
     {
-        const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+        const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
         const CalibrationScene scene = makeScene(camera, 12, random, 0);
         const Ptr<RefractiveCamera> found = RefractiveCamera::create(
-            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>{ -0.3, 0.1, 0, 0 }, straight(paperWindow()));
+            Matx33d(2400, 0, 640, 0, 2400, 512, 0, 0, 1), std::vector<double>{ -0.3, 0.1, 0, 0 }, straight(paper::pane()));
         CHECK(calibrate(scene, true, found, GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST) < 1e-5);
         CHECK(largestDifference(found->lensParameters(), camera->lensParameters()) < 1e-2);
         CHECK(found->distCoeffs().at<double>(2) == 0);
@@ -156,16 +156,16 @@ TEST_CASE("Each flag fixes what it names, and nothing else", "[calibrate_glass]"
     };
     const Mat K = paperCamera(GlassWindow())->cameraMatrix();
     for (const Fix& fix : opencv)
-        check(RefractiveCamera::create(K, std::vector<double>(14, 0.), paperWindow()), fix);
+        check(RefractiveCamera::create(K, std::vector<double>(14, 0.), paper::pane()), fix);
     for (const Fix& fix : fisheye)
-        check(RefractiveCamera::createFisheye(K, std::vector<double>(4, 0.), paperWindow()), fix);
-    check(RefractiveCamera::create(K, noArray(), paperWindow()), { GLASS_FIX_K1, {} });     // a lens that has no k1
+        check(RefractiveCamera::createFisheye(K, std::vector<double>(4, 0.), paper::pane()), fix);
+    check(RefractiveCamera::create(K, noArray(), paper::pane()), { GLASS_FIX_K1, {} });     // a lens that has no k1
 }
 
 TEST_CASE("Any target, each view its own, points missing, views half missing", "[calibrate_glass]")
 {
     Random random(320);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     CalibrationScene scene = makeScene(camera, { board(), cloud(random), cloud(random, 12), board(9, 4, 20), board() },
                                        random, 0.05);
     scene.direct[1].clear();            // glass only
@@ -214,7 +214,7 @@ TEST_CASE("Any target, each view its own, points missing, views half missing", "
 TEST_CASE("Jacobian and covariance are those of refractiveProjectPoints and of the normal equations", "[calibrate_glass]")
 {
     Random random(330);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const CalibrationScene scene = makeScene(camera, 3, random, 0.1);
     const Ptr<RefractiveCamera> found = startCamera(camera, straight(camera->window()));
     std::vector<Vec3d> rvecs, tvecs;
@@ -250,14 +250,14 @@ TEST_CASE("Jacobian and covariance are those of refractiveProjectPoints and of t
 
 TEST_CASE("The predicted uncertainty is the sampled one", "[calibrate_glass]")
 {
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const int runs = 200;
     double mahalanobis = 0, rms = 0;
     for (int run = 0; run < runs; run++)
     {
         Random random(3400 + run);
         const CalibrationScene scene = makeScene(camera, 2, random, 0.1);
-        const Ptr<RefractiveCamera> found = paperCamera(paperWindow());
+        const Ptr<RefractiveCamera> found = paperCamera(paper::pane());
         Mat covariance, inverse;
         const double error = calibrateGlass(scene.object, scene.direct, scene.refracted, found, noArray(), noArray(),
                                             noArray(), covariance, noArray(), noArray(), GLASS_FREE_THICKNESS);
@@ -277,7 +277,7 @@ TEST_CASE("The predicted uncertainty is the sampled one", "[calibrate_glass]")
 TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[calibrate_glass]")
 {
     Random random(350);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const CalibrationScene scene = makeScene(camera, 5, random, 0.1);
     const Vec3d before = camera->window().normal;
 
@@ -347,7 +347,7 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
     }
     SECTION("too few iterations")
     {
-        const Ptr<RefractiveCamera> start = startCamera(camera, straight(paperWindow()));
+        const Ptr<RefractiveCamera> start = startCamera(camera, straight(paper::pane()));
         CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(), 0,
                                                TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1, 1e-12)); }),
                    Catch::Contains("did not converge in 1 iterations"));
@@ -356,7 +356,7 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
                                          TermCriteria(TermCriteria::EPS, 0, -1), TermCriteria(TermCriteria::EPS, 0, INF) })
             CHECK_THAT(thrown([&] { calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(),
                                                    0, bad); }), Catch::Contains("criteria."));
-        calibrateGlass(scene.object, scene.direct, scene.refracted, startCamera(camera, paperWindow()), noArray(),
+        calibrateGlass(scene.object, scene.direct, scene.refracted, startCamera(camera, paper::pane()), noArray(),
                        noArray(), 0, TermCriteria(TermCriteria::EPS, 0, 1e-9));
         calibrateGlass(scene.object, scene.direct, scene.refracted, start, noArray(), noArray(), 0,
                        TermCriteria(TermCriteria::COUNT, 1, 0));
@@ -367,7 +367,7 @@ TEST_CASE("calibrateGlass refuses what is undetermined and says what it is", "[c
 TEST_CASE("A loose epsilon ends at the same minimum", "[calibrate_glass]")
 {
     Random random(375);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const CalibrationScene scene = makeScene(camera, 4, random, 0.1);
     const auto found = [&](bool pairs, double epsilon, int flags)
     {

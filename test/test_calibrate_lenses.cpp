@@ -50,7 +50,7 @@ TEST_CASE("Splines stay as they are where lenses are free", "[calibrate_lenses]"
     CAPTURE(seed());
     Random random;
     const LensKind& kind = lensCalled("cubic splines");
-    const CalibrationScene scene = makeScene(makeCamera(kind, paperWindow()), 8, random, 0.1);
+    const CalibrationScene scene = makeScene(makeCamera(kind, paper::pane()), 8, random, 0.1);
     const Ptr<RefractiveCamera> camera = makeCamera(kind, GlassWindow(Vec3d(0, 0, 1), 20, 1.5437, 50));
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations;
@@ -59,7 +59,7 @@ TEST_CASE("Splines stay as they are where lenses are free", "[calibrate_lenses]"
     CHECK(largestDifference(camera->lensParameters(), kind.parameters()) == 0);
     CHECK(largestDifference(camera->distCoeffs(), kind.coefficients) == 0);
     CHECK(countNonZero(deviations.rowRange(0, 4)) == 0);
-    const Vec3d n = camera->window().normal, truth = normalize(paperWindow().normal);
+    const Vec3d n = camera->window().normal, truth = normalize(paper::pane().normal);
     for (int k = 0; k < 3; k++)
         CHECK(std::abs(n[k] - truth[k]) <= 5*deviations.at<double>(4 + k) + 1e-9);
 }
@@ -69,10 +69,10 @@ TEST_CASE("The other lenses of mrcal are refined", "[calibrate_lenses]")
     CAPTURE(seed());
     Random random;
     LensKind kind = lensCalled("CAHVORE, sine");
-    const CalibrationScene scene = makeScene(makeCamera(kind, paperWindow()), 10, random, 0.1);
+    const CalibrationScene scene = makeScene(makeCamera(kind, paper::pane()), 10, random, 0.1);
     kind.K(0, 0) *= 1.005;
     kind.coefficients[2] += 0.005;
-    const Ptr<RefractiveCamera> camera = makeCamera(kind, paperWindow());
+    const Ptr<RefractiveCamera> camera = makeCamera(kind, paper::pane());
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations;
     calibrateGlass(scene.object, scene.direct, scene.refracted, camera, rvecs, tvecs, deviations, noArray(), noArray(), noArray(),

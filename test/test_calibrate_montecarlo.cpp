@@ -57,7 +57,7 @@ void tryOnce(const Case& c, int run, int runs, Statistics& statistics)
 {
     const double sigma = 0.1;
     Random random(5000 + run);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow()), found = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane()), found = paperCamera(paper::pane());
     CalibrationScene perfect = makeScene(camera, c.views, random, 0), scene = withNoise(perfect, random, sigma);
     if (c.outliers > 0)
     {
@@ -146,7 +146,7 @@ TEST_CASE("The normal is as good as the Cramer-Rao bound: a few trials", "[calib
 
 TEST_CASE("The paper's least squares and calibrateGlassNormal on the same rig", "[.monte-carlo]")
 {
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const Vec3d truth = camera->window().normal;
     for (int views : { 1, 10 })
     {
@@ -215,7 +215,7 @@ TEST_CASE("A measured point is as good as its stated covariance: a few trials", 
 //! One row of the table of what the data can tell: predicted standard deviations.
 static void printPrediction(int views, bool paired, int flags, const char* free)
 {
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     Random random(6000 + views);
     const CalibrationScene scene = makeScene(camera, views, random, 0.1);
     Mat deviations, covariance;
@@ -234,7 +234,7 @@ static void printPrediction(int views, bool paired, int flags, const char* free)
     eigen(covariance(Rect(8, 8, 3, 3)), principal);
     std::cout << "[numbers] " << what << ": normal +- " << std::sqrt(principal.at<double>(0))*180/CV_PI << ", "
               << std::sqrt(principal.at<double>(1))*180/CV_PI << " deg, error "
-              << angleBetween(camera->window().normal, paperWindow().normal) << "; thickness "
+              << angleBetween(camera->window().normal, paper::pane().normal) << "; thickness "
               << camera->window().thickness[0] << " +- " << deviations.at<double>(12) << ", index "
               << camera->window().index[0] << " +- " << deviations.at<double>(13) << std::endl;
 }

@@ -37,7 +37,7 @@ TEST_CASE("The normal from perfect pairs is exact, whatever the window", "[calib
 TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_normal]")
 {
     Random random(110);
-    GlassWindow window = paperWindow();
+    GlassWindow window = paper::pane();
     window.normal = normalize(Vec3d(1, 0.2, 0.02));     // 89 degrees: no such window could be looked through at length
     const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(allLenses()[7].K, allLenses()[7].coefficients,
                                                                          window);
@@ -56,7 +56,7 @@ TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_nor
 
 TEST_CASE("A pair with a point next to the distortion centre has an answer", "[calibrate_normal]")
 {
-    GlassWindow window = paperWindow();
+    GlassWindow window = paper::pane();
     window.normal = normalize(Vec3d(0.05, -0.03, 1));
     const Ptr<RefractiveCamera> camera = paperCamera(window);
     for (int run = 0; run < 6000; run++)      // one in some thousands converges slowly
@@ -70,7 +70,7 @@ TEST_CASE("A pair with a point next to the distortion centre has an answer", "[c
 
 TEST_CASE("The RMS of the lines is the pixel noise, the covariance is the sampled one", "[calibrate_normal]")
 {
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const Vec3d truth = camera->window().normal;
     const double sigma = 0.1;
     const int runs = 300;
@@ -95,7 +95,7 @@ TEST_CASE("The RMS of the lines is the pixel noise, the covariance is the sample
 TEST_CASE("Pairs with NaN are left out, overloads and types agree", "[calibrate_normal]")
 {
     Random random(120);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     CalibrationScene scene = makeScene(camera, 2, random, 0.1);
     const Mat whole = normalOf(scene, camera);
 
@@ -124,7 +124,7 @@ TEST_CASE("Pairs with NaN are left out, overloads and types agree", "[calibrate_
 TEST_CASE("Pairs that do not determine the normal are refused", "[calibrate_normal]")
 {
     Random random(130);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const CalibrationScene scene = makeScene(camera, 2, random, 0.1);
     const auto why = [&](const PixelViews& direct, const PixelViews& refracted)
     { return thrown([&] { Mat normal; calibrateGlassNormal(direct, refracted, camera, normal); }); };

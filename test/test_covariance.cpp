@@ -78,7 +78,7 @@ TEST_CASE("The covariance is the inverse of the normal equations with every pose
         { 1.333, GLASS_FREE_DISTANCE | GLASS_FREE_INDEX, { "distance", "index[0]" } } };
     for (const auto& c : cases)
     {
-        const RigTruth truth = one(GlassWindow({ -0.2483, 0.0961, 1 }, 20, 1.5437, 50, c.outerIndex));
+        const RigTruth truth = one(paper::pane(50, paper::NORMAL1, c.outerIndex));
         const RigScene scene = makeRigScene(truth, 8, random, 0);
         const double variance = 0.04;
         const std::unique_ptr<RigProblem> problem = problemAt(truth, scene, false, c.flags);
@@ -119,7 +119,7 @@ TEST_CASE("What has no effect at all is refused by its name", "[covariance]")
 {
     Random random(780);
     CAPTURE(seed());
-    const RigTruth truth = one(paperWindow());          // with air on both sides the distance is not seen
+    const RigTruth truth = one(paper::pane());          // with air on both sides the distance is not seen
     const RigScene scene = makeRigScene(truth, 6, random, 0);
     CHECK_THROWS_WITH(rigCovariance(*problemAt(truth, scene, true, GLASS_FREE_DISTANCE), 0.04),
                       Catch::Contains("do not determine distance") && !Catch::Contains("normal"));
@@ -145,7 +145,7 @@ TEST_CASE("What is not required is told, however uncertain it is", "[covariance]
 {
     Random random(795);
     CAPTURE(seed());
-    const RigTruth truth = one(paperWindow());
+    const RigTruth truth = one(paper::pane());
     const RigScene scene = makeRigScene(truth, 6, random, 0);
     const auto problem = problemAt(truth, scene, true, 0);
     const double tame = 0.04, wild = 1e8;       // squared pixels: the second know next to nothing

@@ -37,8 +37,7 @@ struct Mono
     double rms = -1;
 };
 
-const GlassWindow STRAIGHT({ 0, 0, 1 }, 20, 1.5437, 50), SLANTED({ -0.2483, 0.0961, 1 }, 20, 1.5437, 50),
-                  HOUSING({ -0.1, 0.05, 1 }, 8, 1.49, 30, 1.333);
+const GlassWindow STRAIGHT = paper::pane(50, { 0, 0, 1 }), SLANTED = paper::pane(), HOUSING({ -0.1, 0.05, 1 }, 8, 1.49, 30, 1.333);
 
 //! Each view's pixels at another view's place.
 PixelViews rotated(PixelViews views)
@@ -97,7 +96,7 @@ TEST_CASE("Images of different moments given as pairs are named", "[pair_check]"
 
 TEST_CASE("Wrong pairs are named behind layers of known materials, too", "[pair_check]")
 {
-    GlassWindow laminate({ -0.2483, 0.0961, 1 }, 10, 1.52, 50);
+    GlassWindow laminate(paper::NORMAL1, 10, 1.52, 50);
     laminate.thickness = { 10, 1.52, 10 };
     laminate.index = { 1.52, 1.48, 1.52 };
     laminate.materials = { "", "N-BK7", "PMMA", "N-BK7", "" };
@@ -118,7 +117,7 @@ TEST_CASE("A fit that is bad for other reasons is returned", "[pair_check]")
                 CHECK(mono.why(mono.scene.direct, mono.scene.refracted, 0, factor) == "");
                 CHECK(mono.rms > 0.1);
             }
-        GlassWindow laminate({ -0.2483, 0.0961, 1 }, 10, 1.52, 50);
+        GlassWindow laminate(paper::NORMAL1, 10, 1.52, 50);
         laminate.thickness = { 10, 1.52, 10 };
         laminate.index = { 1.52, 1.48, 1.52 };
         Mono mono(laminate);

@@ -52,9 +52,9 @@ TEST_CASE("Only the plane counts, not how it is written; both overloads agree", 
 {
     const std::vector<Vec2d> pixels = { { 100, 100 }, { 640, 480 }, { 1200, 900 } };
     std::vector<Vec3d> a, b, c;
-    refractivePointsOnPlane(pixels, a, PLAIN_K, noArray(), paperPane(), Vec4d(0.1, 0.2, 1, 700));
-    refractivePointsOnPlane(pixels, b, PLAIN_K, noArray(), paperPane(), Vec4d(-0.1, -0.2, -1, -700)*1e-3);
-    refractivePointsOnPlane(pixels, c, RefractiveCamera::create(PLAIN_K, noArray(), paperPane()), Vec4d(0.1, 0.2, 1, 700));
+    refractivePointsOnPlane(pixels, a, PLAIN_K, noArray(), paper::pane(), Vec4d(0.1, 0.2, 1, 700));
+    refractivePointsOnPlane(pixels, b, PLAIN_K, noArray(), paper::pane(), Vec4d(-0.1, -0.2, -1, -700)*1e-3);
+    refractivePointsOnPlane(pixels, c, RefractiveCamera::create(PLAIN_K, noArray(), paper::pane()), Vec4d(0.1, 0.2, 1, 700));
     CHECK(largestDifference(a, b) < 1e-10);
     CHECK(largestDifference(a, c) == 0);
 }
@@ -85,7 +85,7 @@ TEST_CASE("Pixels that do not meet the plane say why", "[plane]")
     CHECK(meet(GlassWindow(), Vec4d(0, 0, 1, 30)) == REFRACT_OK);
     CHECK(meet(GlassWindow(), Vec4d(0, 0, 1, 0)) == REFRACT_NO_INTERSECTION);
     // A plane beside the axis that the tilted window's ray still meets, far away.
-    CHECK(meet(paperPane(), Vec4d(1, 0, 1e-9, 500)) == REFRACT_OK);
+    CHECK(meet(paper::pane(), Vec4d(1, 0, 1e-9, 500)) == REFRACT_OK);
 }
 
 TEST_CASE("A plane that is none is refused with its numbers", "[plane]")
@@ -93,7 +93,7 @@ TEST_CASE("A plane that is none is refused with its numbers", "[plane]")
     std::vector<Vec3d> out;
     const auto meet = [&](const Vec4d& plane)
     {
-        return thrown([&] { refractivePointsOnPlane(std::vector<Vec2d>(1), out, PLAIN_K, noArray(), paperPane(), plane); });
+        return thrown([&] { refractivePointsOnPlane(std::vector<Vec2d>(1), out, PLAIN_K, noArray(), paper::pane(), plane); });
     };
     CHECK_THAT(meet(Vec4d(0, 0, 0, 5)), Contains("plane") && Contains("(0, 0, 0, 5)"));
     CHECK_THAT(meet(Vec4d(0, NaN, 1, 5)), Contains("plane") && Contains("nan"));

@@ -35,7 +35,7 @@ TEST_CASE("Targets of any unit have their pose", "[pnp]")
     for (bool flat : { true, false })
         for (double unit : { 1e-6, 1e-3, 1., 1e3, 1e6, 1e9 })
         {
-            GlassWindow window = paperWindow();
+            GlassWindow window = paper::pane();
             window.distance *= unit;
             for (double& thickness : window.thickness)
                 thickness *= unit;
@@ -72,7 +72,7 @@ TEST_CASE("A wide lens sees the target beyond 90 degrees", "[pnp]")
 TEST_CASE("Noise, missing points and a guess", "[pnp]")
 {
     Random random(220);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const std::vector<Point3d> object = board();
     const Vec3d rvec(0.3, -0.4, 0.2), tvec(20, -10, 600);
     std::vector<Point2d> pixels = seen(object, rvec, tvec, camera, random, 0.1);
@@ -139,7 +139,7 @@ TEST_CASE("The error is the one that cv::solvePnPGeneric returns", "[pnp]")
 TEST_CASE("Both poses of a flat target", "[pnp]")
 {
     Random random(226);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const std::vector<Point3d> flat = board();
     const Vec3d rvec(0.3, -0.4, 0.2), tvec(20, -10, 1500);
     const std::vector<Point2d> pixels = seen(flat, rvec, tvec, camera, random, 0.1);
@@ -172,7 +172,7 @@ TEST_CASE("Both poses of a flat target", "[pnp]")
 TEST_CASE("No pose is false, bad arguments are named", "[pnp]")
 {
     Random random(230);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const std::vector<Point3d> object = board();
     const std::vector<Point2d> pixels = seen(object, Vec3d(), Vec3d(0, 0, 600), camera, random, 0);
     Mat r = Mat(Vec3d(1, 2, 3), true), t;

@@ -30,10 +30,10 @@ struct Camera3
 //! Cameras whose rays are ever less central.
 std::vector<Camera3> ransacCameras()
 {
-    GlassWindow near({ -0.1, 0.05, 1 }, 20, 1.49, 15, 1.333), far({ 0.3, 0.1, 1 }, 40, 1.49, 250, 1.333), thick = paperWindow();
+    GlassWindow near({ -0.1, 0.05, 1 }, 20, 1.49, 15, 1.333), far({ 0.3, 0.1, 1 }, 40, 1.49, 250, 1.333), thick = paper::pane();
     thick.normal = normalize(Vec3d(0.5, -0.2, 1));
     thick.thickness[0] = 100;
-    return { { "no window", paperCamera(GlassWindow()) }, { "pane in air", paperCamera(paperWindow()) },
+    return { { "no window", paperCamera(GlassWindow()) }, { "pane in air", paperCamera(paper::pane()) },
              { "100 mm of glass, tilted by 28 degrees", paperCamera(thick) }, { "housing in water", paperCamera(near) },
              { "wall far off, water behind it", paperCamera(far) } };
 }
@@ -190,7 +190,7 @@ TEST_CASE("Seventy of a hundred matches wrong", "[pnp][ransac]")
 TEST_CASE("Nothing but wrong matches is false, not a pose", "[pnp][ransac]")
 {
     Random random(4300);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     int answers = 0;
     for (int trial = 0; trial < 20; trial++)
     {
@@ -213,7 +213,7 @@ TEST_CASE("Nothing but wrong matches is false, not a pose", "[pnp][ransac]")
 TEST_CASE("RANSAC: few points, unseen ones, a guess, types", "[pnp][ransac]")
 {
     Random random(4400);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     WrongMatches s = wrongMatches(camera, random, 30, 10, false, STREWN, 0.1);
     Mat r, t, r2, t2;
     std::vector<int> inliers, inliers2;
@@ -278,7 +278,7 @@ TEST_CASE("RANSAC: few points, unseen ones, a guess, types", "[pnp][ransac]")
 TEST_CASE("RANSAC: what has no pose, and bad arguments", "[pnp][ransac]")
 {
     Random random(4500);
-    const Ptr<RefractiveCamera> camera = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
     const WrongMatches s = wrongMatches(camera, random, 12, 0, false, STREWN, 0);
     Mat r, t;
     const auto solve = [&](const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, int iterations = 100,

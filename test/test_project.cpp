@@ -67,7 +67,7 @@ TEST_CASE("The fisheye's skew is cv::fisheye's alpha", "[project]")
 TEST_CASE("A pane in air moves the image away from the foot of its normal", "[project]")
 {
     // The point seems closer by tau: the pixel is that of the point shifted towards the camera along the normal.
-    const GlassWindow window = paperPane();
+    const GlassWindow window = paper::pane();
     const Vec3d X(30, -40, 600);
     std::vector<Vec2d> with, without, shifted;
     refractiveProjectPoints(std::vector<Vec3d>{ X }, Vec3d(), Vec3d(), K, noArray(), window, with);
@@ -85,11 +85,11 @@ TEST_CASE("Both overloads project the same", "[project]")
     const std::vector<double> d = { -0.28, 0.09, 7e-4, -4e-4 };
     const std::vector<Vec3d> points = { { 1, 2, 300 }, { -30, 10, 400 }, { 0, 0, 5000 } };
     const Vec3d rvec(0.1, 0.2, -0.1), tvec(5, 6, 70);
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, d, paperPane());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, d, paper::pane());
     std::vector<Vec2d> a, b, c;
     std::vector<uchar> sa, sb, sc;
     Mat jacobian;
-    refractiveProjectPoints(points, rvec, tvec, K, d, paperPane(), a, sa);
+    refractiveProjectPoints(points, rvec, tvec, K, d, paper::pane(), a, sa);
     refractiveProjectPoints(points, rvec, tvec, camera, b, sb);
     refractiveProjectPoints(points, rvec, tvec, camera, c, sc, jacobian);
     CHECK(largestDifference(a, b) == 0);
@@ -98,7 +98,7 @@ TEST_CASE("Both overloads project the same", "[project]")
     CHECK(sb == sa);
     CHECK(sc == sa);
     std::vector<Vec3d> o1, d1, o2, d2;
-    refractiveUnprojectPoints(a, o1, d1, K, d, paperPane(), sa);
+    refractiveUnprojectPoints(a, o1, d1, K, d, paper::pane(), sa);
     refractiveUnprojectPoints(a, o2, d2, camera, sb);
     CHECK(largestDifference(o1, o2) == 0);
     CHECK(largestDifference(d1, d2) == 0);
@@ -220,8 +220,8 @@ TEST_CASE("float32 in, float32 out, computed in double", "[project]")
     for (const Point3f& p : points)
         same.push_back(Vec3d(p.x, p.y, p.z));
     Mat out32, out64;
-    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), paperPane(), out32);
-    refractiveProjectPoints(same, Vec3d(), Vec3d(), K, noArray(), paperPane(), out64);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), paper::pane(), out32);
+    refractiveProjectPoints(same, Vec3d(), Vec3d(), K, noArray(), paper::pane(), out64);
     REQUIRE(out32.type() == CV_32FC2);
     REQUIRE(out64.type() == CV_64FC2);
     Mat rounded;
@@ -235,7 +235,7 @@ TEST_CASE("Bad pose arguments are named with their value", "[project]")
     const auto project = [&](InputArray rvec, InputArray tvec)
     {
         std::vector<Vec2d> out;
-        return thrown([&] { refractiveProjectPoints(points, rvec, tvec, K, noArray(), paperPane(), out); });
+        return thrown([&] { refractiveProjectPoints(points, rvec, tvec, K, noArray(), paper::pane(), out); });
     };
     CHECK(project(Vec3d(), Vec3d()) == "");
     CHECK_THAT(project(Vec3d(0, NaN, 0), Vec3d()), Contains("rvec[1]") && Contains("nan"));
@@ -349,8 +349,8 @@ TEST_CASE("A transformed object is the object in camera coordinates", "[project]
         Rodrigues(rvec, R);
         const Vec3d X = R.t()*(inCamera - tvec);
         std::vector<Vec2d> a, b;
-        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, K, noArray(), paperPane(), a);
-        refractiveProjectPoints(std::vector<Vec3d>{ transformed(rvec, tvec, X) }, Vec3d(), Vec3d(), K, noArray(), paperPane(), b);
+        refractiveProjectPoints(std::vector<Vec3d>{ X }, rvec, tvec, K, noArray(), paper::pane(), a);
+        refractiveProjectPoints(std::vector<Vec3d>{ transformed(rvec, tvec, X) }, Vec3d(), Vec3d(), K, noArray(), paper::pane(), b);
         CAPTURE(rvec);
         REQUIRE(norm(a[0] - b[0]) < 1e-9);
     }

@@ -26,8 +26,8 @@ GlassWindow windowIn(Medium medium, bool second)
 {
     if (medium == NOTHING)
         return GlassWindow();
-    const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : Vec3d(-0.2483, 0.0961, 1);
-    return medium == AIR ? GlassWindow(normal, 20, 1.5437, 50) : GlassWindow(normal, 15, 1.49, 60, 1.333);
+    const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : paper::NORMAL1;
+    return medium == AIR ? paper::pane(50, normal) : GlassWindow(normal, 15, 1.49, 60, 1.333);
 }
 
 enum Scene { DEEP, FLAT };

@@ -133,7 +133,7 @@ TEST_CASE("Every jacobian of the residual equals central differences", "[residua
 
 TEST_CASE("Residuals with and without jacobians are the same; weights scale them, 0 leaves a point out", "[residual]")
 {
-    const Ptr<RefractiveCamera> handle = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> handle = paperCamera(paper::pane());
     ImagePoints points;
     points.object = board();
     points.pixel.assign(30, Point2d(600, 500));
@@ -158,7 +158,7 @@ TEST_CASE("Residuals with and without jacobians are the same; weights scale them
 
 TEST_CASE("The residual fails where a point has no image, and at impossible parameters", "[residual]")
 {
-    const Ptr<RefractiveCamera> handle = paperCamera(paperWindow());
+    const Ptr<RefractiveCamera> handle = paperCamera(paper::pane());
     ImagePoints points;
     points.object = board();
     points.pixel.assign(30, Point2d(600, 500));

@@ -558,7 +558,7 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     Mat R1, R2, P1, P2;
     CHECK_NOTHROW(refractiveStereoRectify(good.camera1, good.camera2, good.R, good.T, good.size, good.range, R1, R2, P1, P2, noArray()));
     bad = good;
-    bad.camera1 = bad.camera2 = RefractiveCamera::create(PLAIN_K, noArray(), paperPane());
+    bad.camera1 = bad.camera2 = RefractiveCamera::create(PLAIN_K, noArray(), paper::pane());
     bad.R = Matx33d::eye();
     bad.T = Vec3d(0, 0, -100);
     CHECK_THAT(refusal(bad), Contains("looks along the line between both"));

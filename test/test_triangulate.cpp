@@ -204,13 +204,13 @@ TEST_CASE("Both overloads of triangulateRefractive agree; the depth is the deepe
     const std::vector<Point2f> pixels1 = { { 640, 480 }, { 700, 400 } };
     const std::vector<Point2d> pixels2 = { { 560, 480 }, { 610, 400 } };
     Mat a, b, c;
-    triangulateRefractive(PLAIN_K, D, paperPane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels2, a);
-    triangulateRefractive(RefractiveCamera::create(PLAIN_K, D, paperPane()), RefractiveCamera::create(PLAIN_K, D), rvec, T,
+    triangulateRefractive(PLAIN_K, D, paper::pane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels2, a);
+    triangulateRefractive(RefractiveCamera::create(PLAIN_K, D, paper::pane()), RefractiveCamera::create(PLAIN_K, D), rvec, T,
                           pixels1, pixels2, b);
     CHECK(a.type() == CV_64FC3);
     CHECK(a.size() == Size(1, 2));
     CHECK(largestDifference(a, b) == 0);
-    triangulateRefractive(PLAIN_K, D, paperPane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels1, c);
+    triangulateRefractive(PLAIN_K, D, paper::pane(), PLAIN_K, D, GlassWindow(), rvec, T, pixels1, pixels1, c);
     CHECK(c.type() == CV_32FC3);
 }
 

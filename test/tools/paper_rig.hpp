@@ -15,9 +15,7 @@ inline tools::RigModel paperRig(int cameras)
 {
     using namespace cv;
     using namespace cv::refract;
-    const Matx33d K(2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1);
-    const Mat dist = (Mat_<double>(1, 4) << -0.4082, 0.4359, 0, 0);
-    const Vec3d normals[] = {{-0.2483, 0.0961, 1}, {0.1823, -0.2809, 1}, {0.05, 0.2, 1}, {-0.1, -0.15, 1}};
+    const Vec3d normals[] = {paper::NORMAL1, paper::NORMAL2, {0.05, 0.2, 1}, {-0.1, -0.15, 1}};
     const Vec3d rvecs[] = {{}, {0.02, 0.29, 0.01}, {0.25, -0.02, 0.02}, {-0.05, -0.3, 0.03}};
     const Vec3d tvecs[] = {{}, {-211, 1.3, 53}, {10, -170, 40}, {190, 30, 45}};
     tools::RigModel rig;
@@ -25,7 +23,7 @@ inline tools::RigModel paperRig(int cameras)
     {
         Matx33d R;
         Rodrigues(rvecs[c], R);
-        rig.add(RefractiveCamera::create(Mat(K), dist, GlassWindow(normals[c], 20., 1.5437, 50.)), R, tvecs[c]);
+        rig.add(RefractiveCamera::create(paper::K1, paper::D1, paper::pane(50, normals[c])), R, tvecs[c]);
         rig.cameras.back()->setImageSize(Size(1280, 1024));
     }
     return rig;

@@ -52,7 +52,7 @@ GlassWindow windowOf(const Setup& setup, const Vec3d& normal)
     switch (setup.medium)
     {
     case Medium::AIR:
-        return GlassWindow(normal, 20., 1.5437, 50.);
+        return paper::pane(50, normal);
     case Medium::HOUSING:
         return GlassWindow(normal, 10., 1.49, 40., 1.333);
     case Medium::SURFACE:
@@ -71,10 +71,10 @@ GlassWindow windowOf(const Setup& setup, const Vec3d& normal)
 RigModel trueRig(const Setup& setup)
 {
     RigModel rig = paperRig(setup.cameras);
-    rig.cameras[0]->setWindow(windowOf(setup, Vec3d(-0.2483, 0.0961, 1)));
+    rig.cameras[0]->setWindow(windowOf(setup, paper::NORMAL1));
     if (setup.cameras == 1)
         return rig;
-    GlassWindow second = windowOf(setup, Vec3d(0.1823, -0.2809, 1));
+    GlassWindow second = windowOf(setup, paper::NORMAL2);
     if (setup.shared())
     {
         second = rig.cameras[0]->window();

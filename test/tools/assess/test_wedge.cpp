@@ -29,7 +29,7 @@ TEST_CASE("Traced with parallel faces, the rays are the library's", "[wedge]")
 TEST_CASE("A thin wedge turns the ray by (index - 1) times its angle", "[wedge]")
 {
     const Ptr<RefractiveCamera> camera = copyWithWindow(paperRig(1).cameras[0], GlassWindow(Vec3d(0, 0, 1), 1e-6, 1.5, 0.));
-    const std::vector<Point2d> centre = {{643.98, 500.01}};
+    const std::vector<Point2d> centre = {{paper::K1(0, 2), paper::K1(1, 2)}};
     const double angle = 1e-5;
     const Point3d at = traceWedge(camera, centre, {Vec3d(angle, 0, 0), 0.}, {1000.})[0];
     CHECK(at.x == Approx(-0.5*angle*1000.).epsilon(1e-3));        // towards the base: the thick side is where x < 0

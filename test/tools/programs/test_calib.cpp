@@ -21,16 +21,16 @@ const Size IMAGE(1280, 1024), BOARD(6, 5);
 const double SQUARE = 39.;
 const char* const TARGET = " --pattern=chessboard --size=6x5 --square=39 --image-size=1280x1024";
 
-//! The paper's rig (Table 3): two cameras, each behind a pane of its own.
+//! The paper's windows before its left camera, twice almost.
 struct PaperRig
 {
-    Mat K[2] = {Mat(Matx33d(2438.07, 0, 643.98, 0, 2438.08, 500.01, 0, 0, 1)),
+    Mat K[2] = {Mat(paper::K1),
                 Mat(Matx33d(2437.50, 0, 640.00, 0, 2437.60, 510.00, 0, 0, 1))};
-    Mat dist = (Mat_<double>(1, 4) << -0.4082, 0.4359, 0, 0);
-    Vec3d normal[2] = {normalize(Vec3d(-0.2483, 0.0961, 1)), normalize(Vec3d(0.1823, -0.2809, 1))};
+    Mat dist = Mat(paper::D1, true);
+    Vec3d normal[2] = {normalize(paper::NORMAL1), normalize(paper::NORMAL2)};
     Vec3d rvec{0.02, 0.35, 0.01}, T{-220, 5, 40};
 
-    GlassWindow window(int camera) const { return GlassWindow(normal[camera], 20., 1.5437, 50.); }
+    GlassWindow window(int camera) const { return paper::pane(50, normal[camera]); }
 };
 
 struct SceneOptions
