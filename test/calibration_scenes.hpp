@@ -24,7 +24,7 @@ struct CalibrationScene
 //! The left camera of the paper's Table 3 behind the given window.
 inline cv::Ptr<RefractiveCamera> paperCamera(const GlassWindow& window)
 {
-    return makeCamera(allLenses()[1], window);
+    return makeCamera(lensNamed("the paper's"), window);
 }
 
 inline std::vector<cv::Point3d> board(int columns = 6, int rows = 5, double square = 39)

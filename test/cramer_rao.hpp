@@ -23,7 +23,7 @@ inline cv::Mat cramerRaoBound(const CalibrationScene& perfect, bool paired, cons
                               int flags)
 {
     const int P = 16, NORMAL = 8, THICKNESS = 12, views = (int)perfect.object.size();
-    cv::Ptr<RefractiveCamera> found = makeCamera(allLenses()[1], camera->window());
+    cv::Ptr<RefractiveCamera> found = makeCamera(lensNamed("the paper's"), camera->window());
     cv::Mat jacobian;
     cv::refract::calibrateGlass(perfect.object, paired ? perfect.direct : PixelViews(), perfect.refracted, found,
                                 cv::noArray(), cv::noArray(), cv::noArray(), cv::noArray(), cv::noArray(), jacobian, flags);

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -173,6 +174,15 @@ inline const std::vector<LensKind>& allLenses()
         splinedLens("quadratic splines", 2, 12, 10, 120, 45),
         splinedLens("cubic splines", 3, 11, 9, 120, 42) };
     return lenses;
+}
+
+//! The one of allLenses() that is called so.
+inline const LensKind& lensNamed(const std::string& name)
+{
+    for (const LensKind& kind : allLenses())
+        if (kind.name == name)
+            return kind;
+    throw std::invalid_argument("allLenses() has no " + name);
 }
 
 inline cv::Ptr<RefractiveCamera> makeCamera(const LensKind& lens, const GlassWindow& window)

@@ -8,25 +8,12 @@ using namespace cv;
 using namespace cv::refract;
 using namespace scenes;
 
-namespace {
-
-const LensKind& lensCalled(const std::string& name)
-{
-    for (const LensKind& kind : allLenses())
-        if (kind.name == name)
-            return kind;
-    FAIL("no such lens: " << name);
-    return allLenses()[0];
-}
-
-} // namespace
-
 TEST_CASE("The window is found behind lenses of mrcal", "[calibrate_lenses]")
 {
     const std::string lens = GENERATE("quadratic splines", "cubic splines", "CAHVOR", "stereographic", "latlon");
     const double sigma = GENERATE(0., 0.1);
     CAPTURE(lens, sigma, seed());
-    const LensKind& kind = lensCalled(lens);
+    const LensKind& kind = lensNamed(lens);
     Random random;
     const GlassWindow truth(Vec3d(0.2, -0.1, 1), 20, 1.5437, 50, 1.333);
     const CalibrationScene scene = makeScene(makeCamera(kind, truth), 8, random, sigma);
@@ -49,7 +36,7 @@ TEST_CASE("Splines stay as they are where lenses are free", "[calibrate_lenses]"
 {
     CAPTURE(seed());
     Random random;
-    const LensKind& kind = lensCalled("cubic splines");
+    const LensKind& kind = lensNamed("cubic splines");
     const CalibrationScene scene = makeScene(makeCamera(kind, paper::pane()), 8, random, 0.1);
     const Ptr<RefractiveCamera> camera = makeCamera(kind, GlassWindow(Vec3d(0, 0, 1), 20, 1.5437, 50));
     std::vector<Vec3d> rvecs, tvecs;
@@ -68,7 +55,7 @@ TEST_CASE("The other lenses of mrcal are refined", "[calibrate_lenses]")
 {
     CAPTURE(seed());
     Random random;
-    LensKind kind = lensCalled("CAHVORE, sine");
+    LensKind kind = lensNamed("CAHVORE, sine");
     const CalibrationScene scene = makeScene(makeCamera(kind, paper::pane()), 10, random, 0.1);
     kind.K(0, 0) *= 1.005;
     kind.coefficients[2] += 0.005;
@@ -78,7 +65,7 @@ TEST_CASE("The other lenses of mrcal are refined", "[calibrate_lenses]")
     calibrateGlass(scene.object, scene.direct, scene.refracted, camera, rvecs, tvecs, deviations, noArray(), noArray(), noArray(),
                    GLASS_FREE_INTRINSICS);
     const Mat found = camera->lensParameters();
-    const std::vector<double> truth = lensCalled("CAHVORE, sine").parameters();
+    const std::vector<double> truth = lensNamed("CAHVORE, sine").parameters();
     REQUIRE(found.total() == 9);        // e0, e1, e2 are none
     for (int i = 0; i < 9; i++)
     {

@@ -39,7 +39,7 @@ TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_nor
     Random random(110);
     GlassWindow window = paper::pane();
     window.normal = normalize(Vec3d(1, 0.2, 0.02));     // 89 degrees: no such window could be looked through at length
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(allLenses()[7].K, allLenses()[7].coefficients,
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(lensNamed("fisheye").K, lensNamed("fisheye").coefficients,
                                                                          window);
     std::vector<Point2d> direct, refracted;
     std::vector<Point3d> points;
@@ -47,7 +47,7 @@ TEST_CASE("The distortion centre may lie far outside the image", "[calibrate_nor
         points.push_back({ random.uniform(300, 600), random.uniform(-200, 200), random.uniform(200, 500) });
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, refracted);
     refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::createFisheye(
-                            allLenses()[7].K, allLenses()[7].coefficients), direct);
+                            lensNamed("fisheye").K, lensNamed("fisheye").coefficients), direct);
     Mat normal;
     calibrateGlassNormal(std::vector<std::vector<Point2d> >(1, direct), std::vector<std::vector<Point2d> >(1, refracted),
                          camera, normal);

@@ -85,12 +85,12 @@ TEST_CASE("The distance is the one from a dense polyline, near and far off", "[e
     {
         double largest = 0;
         for (WindowKind kind : allWindows())
-            for (int lens : { 1, 3, 7 })
+            for (const char* lens : { "the paper's", "5 coefficients", "fisheye" })
                 for (int which : { 1, 2 })
                 {
                     Random random(5100 + kind);
-                    CAPTURE(name(kind), allLenses()[lens].name, which, off, seed());
-                    MatchedPair m = matchedPair(allLenses()[lens], kind, random, 6);
+                    CAPTURE(name(kind), lens, which, off, seed());
+                    MatchedPair m = matchedPair(lensNamed(lens), kind, random, 6);
                     for (Point2d& p : which == 1 ? m.pixels2 : m.pixels1)
                         p += Point2d(random.normal(off), random.normal(off));
                     const Vec2d range(250, 5000);
@@ -119,10 +119,10 @@ TEST_CASE("Of pixels anywhere in the image the distance is seldom not the least"
 {
     int count = 0, other = 0;
     for (WindowKind kind : allWindows())
-        for (int lens : { 1, 3, 7 })
+        for (const char* lens : { "the paper's", "5 coefficients", "fisheye" })
         {
             Random random(5150 + kind);
-            MatchedPair m = matchedPair(allLenses()[lens], kind, random, 40);
+            MatchedPair m = matchedPair(lensNamed(lens), kind, random, 40);
             for (Point2d& p : m.pixels2)
                 p = Point2d(random.uniform(0, 1280), random.uniform(0, 1024));
             const Vec2d range(250, 5000);
@@ -147,12 +147,12 @@ TEST_CASE("The distance's derivative against differences", "[epipolar]")
 {
     double largest = 0;
     for (WindowKind kind : { NO_WINDOW, PANE_IN_AIR, AIR_GLASS_WATER, WATER_GLASS_AIR })
-        for (int lens : { 1, 7 })
+        for (const char* lens : { "the paper's", "fisheye" })
             for (int which : { 1, 2 })
                 for (const Vec2d& range : { Vec2d(0, INF), Vec2d(700, 710), Vec2d(300, 400) })   // mostly its ends
                 {
                     Random random(5200 + kind);
-                    MatchedPair m = matchedPair(allLenses()[lens], kind, random, 10);
+                    MatchedPair m = matchedPair(lensNamed(lens), kind, random, 10);
                     for (Point2d& p : which == 1 ? m.pixels2 : m.pixels1)
                         p += Point2d(random.normal(2), random.normal(2));
                     std::vector<double> distances, depths;
@@ -196,7 +196,7 @@ TEST_CASE("The distance's derivative against differences", "[epipolar]")
 TEST_CASE("Signs, depths and ends of the curve", "[epipolar]")
 {
     Random random(5300);
-    const MatchedPair m = matchedPair(allLenses()[1], PANE_IN_AIR, random, 30);
+    const MatchedPair m = matchedPair(lensNamed("the paper's"), PANE_IN_AIR, random, 30);
     std::vector<double> distances, depths;
     std::vector<uchar> status;
     Mat jacobian;
@@ -255,7 +255,7 @@ TEST_CASE("Signs, depths and ends of the curve", "[epipolar]")
 TEST_CASE("Epipolar distances: no answer, types, errors", "[epipolar]")
 {
     Random random(5400);
-    MatchedPair m = matchedPair(allLenses()[3], AIR_GLASS_WATER, random, 70);
+    MatchedPair m = matchedPair(lensNamed("5 coefficients"), AIR_GLASS_WATER, random, 70);
     std::vector<double> all, distances;
     std::vector<uchar> status;
     CAPTURE(seed());

@@ -37,8 +37,8 @@ Matched matchedScene(Medium medium, Random& random, int count, Scene scene = DEE
                      const Vec3d& rvec = Vec3d(0.05, 0.35, -0.04))
 {
     Matched m;
-    m.camera1 = makeCamera(allLenses()[2], windowIn(medium, false));
-    m.camera2 = makeCamera(allLenses()[2], windowIn(medium, true));
+    m.camera1 = makeCamera(lensNamed("4 coefficients"), windowIn(medium, false));
+    m.camera2 = makeCamera(lensNamed("4 coefficients"), windowIn(medium, true));
     m.rvec = rvec;
     m.T = Vec3d(-200, 15, 40);
     const Vec2d slope = scene == FLAT ? Vec2d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)) : Vec2d();

@@ -103,7 +103,7 @@ TEST_CASE("No windows: cv::triangulatePoints on perfect data", "[triangulate]")
 {
     CAPTURE(seed());
     Random random;
-    const LensKind& lens = allLenses()[0];
+    const LensKind& lens = lensNamed("0 coefficients");
     const Scene s = makeScene(lens, lens, GlassWindow(), GlassWindow(), 200, random);
     Matx34d P1 = Matx34d::eye(), P2;
     for (int r = 0; r < 3; r++)
@@ -128,7 +128,7 @@ TEST_CASE("With noise the optimal point has the least reprojection error", "[tri
 {
     CAPTURE(seed());
     Random random;
-    Scene s = makeScene(allLenses()[2], allLenses()[3], makeWindow(PANE_IN_AIR, random), makeWindow(AIR_GLASS_WATER, random), 150, random);
+    Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("5 coefficients"), makeWindow(PANE_IN_AIR, random), makeWindow(AIR_GLASS_WATER, random), 150, random);
     addNoise(s, 0.5, random);
     std::vector<Vec3d> optimal, midpoint;
     std::vector<uchar> status;
@@ -218,7 +218,7 @@ TEST_CASE("The predicted covariance is that of many noisy measurements", "[trian
 {
     CAPTURE(seed());
     Random random;
-    const Scene truth = makeScene(allLenses()[2], allLenses()[3], makeWindow(PANE_IN_AIR, random),
+    const Scene truth = makeScene(lensNamed("4 coefficients"), lensNamed("5 coefficients"), makeWindow(PANE_IN_AIR, random),
                                   makeWindow(AIR_GLASS_WATER, random), 1, random);
     const double sigma = 0.1;
     const int count = 20000;
@@ -255,13 +255,13 @@ TEST_CASE("The calibration's covariance is carried to the point", "[triangulate]
 {
     CAPTURE(seed());
     Random random;
-    const Scene s = makeScene(allLenses()[2], allLenses()[0], makeWindow(PANE_IN_AIR, random), makeWindow(LAMINATE, random), 1, random);
+    const Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("0 coefficients"), makeWindow(PANE_IN_AIR, random), makeWindow(LAMINATE, random), 1, random);
     // One uncertain parameter at a time: the predicted standard deviation is that of the point moved by one sigma.
     const auto moved = [&](int which, int parameter, double step)
     {
         const Ptr<RefractiveCamera>& camera = which == 1 ? s.camera1 : s.camera2;
-        const Ptr<RefractiveCamera> other = which == 1 ? makeCamera(allLenses()[2], camera->window())
-                                                       : makeCamera(allLenses()[0], camera->window());
+        const Ptr<RefractiveCamera> other = which == 1 ? makeCamera(lensNamed("4 coefficients"), camera->window())
+                                                       : makeCamera(lensNamed("0 coefficients"), camera->window());
         const int lensCount = (int)camera->lensParameters().total();
         if (parameter < lensCount)
         {
