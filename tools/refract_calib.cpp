@@ -89,11 +89,7 @@ const std::map<std::string, int> FREE = {
     {"thickness", GLASS_FREE_THICKNESS}, {"index", GLASS_FREE_INDEX}, {"distance", GLASS_FREE_DISTANCE},
     {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}};
 
-const std::map<std::string, int> LENSES = {
-    {"pinhole", 0}, {"opencv4", 4}, {"opencv5", 5}, {"opencv8", 8}, {"opencv12", 12}, {"opencv14", 14},
-    {"fisheye", FISHEYE_LENS}};
-
-std::vector<std::string> namesOf(const std::map<std::string, int>& map)
+template<typename T> std::vector<std::string> namesOf(const std::map<std::string, T>& map)
 {
     std::vector<std::string> names;
     for (const auto& entry : map)
@@ -130,7 +126,7 @@ Options parseOptions(Command& command)
             camera->group("");              // told in the manual
     }
     app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, or "
-                   "cv::fisheye's four")->check(CLI::IsMember(namesOf(LENSES)))
+                   "cv::fisheye's four")->check(CLI::IsMember(namesOf(pinholeLenses())))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
@@ -407,7 +403,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (o.target.given())
         target = std::make_unique<Target>(o.target);
     readWindow(o, c.options);
-    c.options.lensCoefficients = LENSES.at(o.lens);
+    c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
     c.options.thicknessStd = o.thicknessStd;
     c.options.indexStd = o.indexStd;
     c.limits = o.limits;

@@ -36,15 +36,10 @@ void roundTo(double step, Mat& numbers)
 
 int calibrateCameraFlags(int coefficients)
 {
-    switch (coefficients)
-    {
-    case 0: return CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_ZERO_TANGENT_DIST;
-    case 4: return CALIB_FIX_K3;
-    case 5: return 0;
-    case 8: return CALIB_RATIONAL_MODEL;
-    case 12: return CALIB_RATIONAL_MODEL | CALIB_THIN_PRISM_MODEL;
-    default: return CALIB_RATIONAL_MODEL | CALIB_THIN_PRISM_MODEL | CALIB_TILTED_MODEL;
-    }
+    for (const auto& lens : pinholeLenses())
+        if (lens.second.coefficients == coefficients)
+            return lens.second.flags;
+    CV_Error_(Error::StsBadArg, ("coefficients is %d; cv::calibrateCamera has no such lens model", coefficients));
 }
 
 struct PinholeViews
@@ -140,6 +135,20 @@ Ptr<RefractiveCamera> calibrateFisheye(const PinholeViews& views, Size imageSize
 }
 
 } // namespace
+
+const std::map<std::string, PinholeLens>& pinholeLenses()
+{
+    const int PRISM = CALIB_RATIONAL_MODEL | CALIB_THIN_PRISM_MODEL;
+    static const std::map<std::string, PinholeLens> lenses = {
+        {"pinhole", {0, CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_ZERO_TANGENT_DIST}},
+        {"opencv4", {4, CALIB_FIX_K3}},
+        {"opencv5", {5, 0}},
+        {"opencv8", {8, CALIB_RATIONAL_MODEL}},
+        {"opencv12", {12, PRISM}},
+        {"opencv14", {14, PRISM | CALIB_TILTED_MODEL}},
+        {"fisheye", {FISHEYE_LENS, 0}}};
+    return lenses;
+}
 
 Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, double& rms)
 {

@@ -5,11 +5,24 @@
 #define REFRACT_TOOLS_PINHOLE_CAMERA_HPP
 
 #include <opencv2/refract.hpp>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace tools {
 
 //! Where a number of cv::calibrateCamera's coefficients may stand: cv::fisheye's model instead, which has four.
 const int FISHEYE_LENS = -1;
+
+//! A lens model that OpenCV calibrates.
+struct PinholeLens
+{
+    int coefficients;           //!< or FISHEYE_LENS
+    int flags;                  //!< cv::calibrateCamera's
+};
+
+//! All of them, by the names that --lens takes.
+const std::map<std::string, PinholeLens>& pinholeLenses();
 
 //! What one camera saw of one target.
 struct TargetView

@@ -84,8 +84,6 @@ int pinholeCoefficients(const refract::RefractiveCamera& camera)
     const String model = camera.lensModel();
     if (model == "fisheye")
         return FISHEYE_LENS;
-    if (model != "opencv" && model.find("LENSMODEL_") != 0)
-        throw Failure("cv::calibrateCamera knows no lens '" + model + "'");
     const bool isOpenCV = model == "opencv" || model == "LENSMODEL_PINHOLE" || model.find("LENSMODEL_OPENCV") == 0;
     return isOpenCV ? camera.lensParameters().rows - 4 : RICHEST;
 }

@@ -19,7 +19,7 @@ CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, 
 //! All cameras, each placed beside the one with most moments in common; rms is that of cv::stereoCalibrate, root mean square.
 Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients);
 
-//! Number of coefficients of a lens as cv::calibrateCamera would find it, or FISHEYE_LENS; throws Failure if it is none of its models.
+//! Number of coefficients of a lens as cv::calibrateCamera would find it, or FISHEYE_LENS.
 int pinholeCoefficients(const cv::refract::RefractiveCamera& camera);
 
 } // namespace tools
