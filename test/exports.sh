@@ -25,9 +25,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 nm --dynamic --demangle --defined-only "$library" | cut -d ' ' -f 3- | sort -u >"$work/exports"
 
-# A name as a caller writes it: "cv::refract::GlassWindow::read(cv::FileNode const&)" is read.
+# A name as a caller writes it: "cv::refract::GlassWindow::read(cv::FileNode const&)" is read; [abi:...] is the compiler's.
 foreign=$(grep -v -E '^((vtable|typeinfo|typeinfo name) for )?cv::refract::' "$work/exports") || true
-names=$(sed -E 's/^(vtable|typeinfo|typeinfo name) for //; s/\(.*//; s/.*:://; s/^~//' "$work/exports" | sort -u)
+names=$(sed -E 's/^(vtable|typeinfo|typeinfo name) for //; s/\(.*//; s/\[abi:.*\]//; s/.*:://; s/^~//' "$work/exports" | sort -u)
 private=$(for name in $names; do
   grep -q -w -F "$name" modules/refract/include/opencv2/refract.hpp || echo "$name"
 done)

@@ -108,15 +108,13 @@ inline std::vector<WindowKind> allWindows()
 struct LensKind
 {
     const char* name;
-    bool fisheye;
+    std::string model;          //!< as lensModel() says
     cv::Matx33d K;
     std::vector<double> coefficients;
     double halfField;           //!< degrees from the axis within which the model is one-to-one
-    std::string mrcal = "";     //!< its name if it is one of mrcal's, else empty
 
-    bool isSplined() const { return mrcal.find("SPLINED") != std::string::npos; }
-    //! What lensModel() says.
-    std::string model() const { return !mrcal.empty() ? mrcal : fisheye ? "fisheye" : "opencv"; }
+    bool isMrcal() const { return model.find("LENSMODEL_") == 0; }
+    bool isSplined() const { return model.find("SPLINED") != std::string::npos; }
     //! As mrcal and RefractiveCamera::lensParameters order them, splined ones' control points included.
     std::vector<double> intrinsics() const
     {
@@ -128,7 +126,7 @@ struct LensKind
     std::vector<double> parameters() const
     {
         const std::vector<double> all = intrinsics();
-        const size_t count = isSplined() ? 4 : mrcal.find("CAHVORE") != std::string::npos ? 9 : all.size();
+        const size_t count = isSplined() ? 4 : model.find("CAHVORE") != std::string::npos ? 9 : all.size();
         return std::vector<double>(all.begin(), all.begin() + count);
     }
 };
@@ -136,8 +134,8 @@ struct LensKind
 //! A barrel with bumps, different in x and y.
 inline LensKind splinedLens(const char* name, int order, int nx, int ny, int fovX, double halfField)
 {
-    LensKind kind = { name, false, { 1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1 }, {}, halfField,
-                      cv::format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=%d", order, nx, ny, fovX) };
+    LensKind kind = { name, cv::format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=%d", order, nx, ny, fovX),
+                      { 1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1 }, {}, halfField };
     const double perUnit = (nx - order)/(4*std::tan(fovX*CV_PI/720));
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
@@ -154,23 +152,23 @@ inline const std::vector<LensKind>& allLenses()
 {
     const cv::Matx33d K(1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1), wide(2070, 0, 3004, 0, 2075, 1997, 0, 0, 1);
     static const std::vector<LensKind> lenses = {
-        { "0 coefficients", false, K, {}, 60 },
-        { "the paper's", false, paper::K1, paper::D1, 35 },
-        { "4 coefficients", false, K, { -0.28, 0.09, 7e-4, -4e-4 }, 40 },
-        { "5 coefficients", false, K, { -0.3, 0.12, 1e-3, -5e-4, -0.01 }, 42 },
-        { "8 coefficients", false, wide, { 0.5, 0.03, 1e-4, -2e-4, 1e-4, 0.8, 0.1, 0.002 }, 60 },
-        { "12 coefficients", false, K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4 }, 45 },
-        { "14 coefficients", false, K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4,
+        { "0 coefficients", "opencv", K, {}, 60 },
+        { "the paper's", "opencv", paper::K1, paper::D1, 35 },
+        { "4 coefficients", "opencv", K, { -0.28, 0.09, 7e-4, -4e-4 }, 40 },
+        { "5 coefficients", "opencv", K, { -0.3, 0.12, 1e-3, -5e-4, -0.01 }, 42 },
+        { "8 coefficients", "opencv", wide, { 0.5, 0.03, 1e-4, -2e-4, 1e-4, 0.8, 0.1, 0.002 }, 60 },
+        { "12 coefficients", "opencv", K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4 }, 45 },
+        { "14 coefficients", "opencv", K, { 0.4, 0.02, 2e-4, -1e-4, 1e-4, 0.7, 0.08, 0.001, 1e-3, -2e-4, -8e-4, 1e-4,
                                          0.03, -0.02 }, 40 },
-        { "fisheye", true, { 400, 0, 640, 0, 410, 512, 0, 0, 1 }, { -0.02, 0.004, -0.001, 0.0001 }, 89.95 },
-        { "fisheye with skew", true, { 400, 4, 640, 0, 410, 512, 0, 0, 1 }, { 0.01, -0.003, 0.0005, 0 }, 80 },
-        { "stereographic", false, K, {}, 89, "LENSMODEL_STEREOGRAPHIC" },
-        { "lonlat", false, K, {}, 85, "LENSMODEL_LONLAT" },
-        { "latlon", false, K, {}, 85, "LENSMODEL_LATLON" },
-        { "CAHVOR", false, K, { 0.01, -0.02, 0.003, -0.2, 0.05 }, 40, "LENSMODEL_CAHVOR" },
-        { "CAHVORE, sine", false, K, { -0.02, 0.01, 0.01, -0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=-0.7" },
-        { "CAHVORE, tangent", false, K, { 0.01, 0.02, -0.01, 0.1, 0.02, 0, 0, 0 }, 60, "LENSMODEL_CAHVORE_linearity=0.6" },
-        { "CAHVORE, linear", false, K, { 0, 0, 0.01, -0.02, 0.001, 0, 0, 0 }, 80, "LENSMODEL_CAHVORE_linearity=0" },
+        { "fisheye", "fisheye", { 400, 0, 640, 0, 410, 512, 0, 0, 1 }, { -0.02, 0.004, -0.001, 0.0001 }, 89.95 },
+        { "fisheye with skew", "fisheye", { 400, 4, 640, 0, 410, 512, 0, 0, 1 }, { 0.01, -0.003, 0.0005, 0 }, 80 },
+        { "stereographic", "LENSMODEL_STEREOGRAPHIC", K, {}, 89 },
+        { "lonlat", "LENSMODEL_LONLAT", K, {}, 85 },
+        { "latlon", "LENSMODEL_LATLON", K, {}, 85 },
+        { "CAHVOR", "LENSMODEL_CAHVOR", K, { 0.01, -0.02, 0.003, -0.2, 0.05 }, 40 },
+        { "CAHVORE, sine", "LENSMODEL_CAHVORE_linearity=-0.7", K, { -0.02, 0.01, 0.01, -0.1, 0.02, 0, 0, 0 }, 60 },
+        { "CAHVORE, tangent", "LENSMODEL_CAHVORE_linearity=0.6", K, { 0.01, 0.02, -0.01, 0.1, 0.02, 0, 0, 0 }, 60 },
+        { "CAHVORE, linear", "LENSMODEL_CAHVORE_linearity=0", K, { 0, 0, 0.01, -0.02, 0.001, 0, 0, 0 }, 80 },
         splinedLens("quadratic splines", 2, 12, 10, 120, 45),
         splinedLens("cubic splines", 3, 11, 9, 120, 42) };
     return lenses;
@@ -187,9 +185,7 @@ inline const LensKind& lensNamed(const std::string& name)
 
 inline cv::Ptr<RefractiveCamera> makeCamera(const LensKind& lens, const GlassWindow& window)
 {
-    return !lens.mrcal.empty() ? RefractiveCamera::createMrcal(lens.mrcal, lens.intrinsics(), window)
-         : lens.fisheye ? RefractiveCamera::createFisheye(lens.K, lens.coefficients, window)
-                        : RefractiveCamera::create(lens.K, lens.coefficients, window);
+    return RefractiveCamera::createByName(lens.model, lens.K, lens.coefficients, window);
 }
 
 //! Unit direction within the lens's field.

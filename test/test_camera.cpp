@@ -50,11 +50,72 @@ TEST_CASE("A camera keeps what it was made of", "[camera]")
     CHECK(camera->distCoeffs().total() == kind.coefficients.size());
     if (!kind.coefficients.empty())
         CHECK(largestDifference(camera->distCoeffs(), kind.coefficients) == 0);
-    CHECK(camera->lensModel() == kind.model());
+    CHECK(camera->lensModel() == kind.model);
     CHECK(largestDifference(camera->lensParameters(), kind.parameters()) == 0);
     CHECK(camera->window().normal == window.normal);
     CHECK(camera->window().thickness == window.thickness);
     CHECK(camera->imageSize() == Size());
+}
+
+TEST_CASE("A camera by name is the one of the model's own call", "[camera]")
+{
+    const LensKind kind = GENERATE(from_range(allLenses()));
+    CAPTURE(kind.name);
+    const Ptr<RefractiveCamera> camera = makeCamera(kind, someWindow());
+    Ptr<RefractiveCamera> same;
+    if (kind.isMrcal())
+        same = RefractiveCamera::createMrcal(kind.model, kind.intrinsics(), someWindow());
+    else if (kind.model == "fisheye")
+        same = RefractiveCamera::createFisheye(kind.K, kind.coefficients, someWindow());
+    else if (kind.model == "opencv")
+        same = RefractiveCamera::create(kind.K, kind.coefficients, someWindow());
+    else
+        return;         // it has no call of its own
+    CHECK(same->lensModel() == camera->lensModel());
+    CHECK(largestDifference(same->lensParameters(), camera->lensParameters()) == 0);
+    CHECK(largestDifference(someProjections(same), someProjections(camera)) == 0);
+}
+
+TEST_CASE("A wrong name, or what does not belong to it, is refused in calls and in files", "[camera]")
+{
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1), skewed(1000, 3, 640, 0, 1000, 480, 0, 0, 1);
+    const auto create = [&](const String& model, InputArray k, int count)
+    {
+        return thrown([&] { RefractiveCamera::createByName(model, k, Mat::zeros(count, 1, CV_64F)); });
+    };
+    CHECK_THAT(create("pinhole", K, 0), Contains("lensModel is pinhole; known are opencv, fisheye, LENSMODEL_PINHOLE, "));
+    CHECK_THAT(create("", K, 0), Contains("lensModel is ; known are"));
+    CHECK_THAT(create("opencv", K, 6), Contains("distCoeffs has 6 values; opencv has 0, 4, 5, 8, 12 or 14"));
+    CHECK_THAT(create("fisheye", K, 5), Contains("distCoeffs has 5 values; fisheye has 0 or 4"));
+    CHECK_THAT(create("LENSMODEL_CAHVOR", K, 4), Contains("distCoeffs has 4 values; LENSMODEL_CAHVOR has 5"));
+    for (const LensKind& kind : allLenses())
+        if (kind.model != "fisheye")
+            CHECK_THAT(create(kind.model, skewed, (int)kind.coefficients.size()), Contains("cameraMatrix(0, 1) is 3"));
+    CHECK_THAT(thrown([&] { RefractiveCamera::createMrcal("fisheye", std::vector<double>(8, 1.)); }),
+               Contains("lensModel is fisheye; known are LENSMODEL_PINHOLE"));
+    CHECK_THAT(thrown([&] { RefractiveCamera::createMrcal("LENSMODEL_PINHOLE", std::vector<double>(3, 1.)); }),
+               Contains("intrinsics has 3 values"));
+    const TemporaryFile file(".yml");
+    {
+        FileStorage fs(file.path, FileStorage::WRITE);
+        fs << "camera_matrix" << Mat(K) << "distortion_coefficients" << Mat::zeros(4, 1, CV_64F) << "lens_model" << "LENSMODEL_CAHVOR";
+    }
+    CHECK_THAT(thrown([&] { RefractiveCamera::read(file.path); }), Contains("distortion_coefficients has 4 values; LENSMODEL_CAHVOR has 5"));
+}
+
+TEST_CASE("The names of lens models are those that make lenses", "[camera]")
+{
+    const std::vector<String> names = RefractiveCamera::lensModels();
+    for (const LensKind& kind : allLenses())
+    {
+        CAPTURE(kind.name);
+        CHECK(std::any_of(names.begin(), names.end(), [&](const String& name)
+        {
+            const size_t given = name.find("...");
+            return given == String::npos ? name == kind.model : name.compare(0, given, kind.model, 0, given) == 0;
+        }));
+    }
+    CHECK(std::count(names.begin(), names.end(), "LENSMODEL_CAHVORE_linearity=...") == 1);
 }
 
 TEST_CASE("Camera matrix and coefficients are taken in every type and shape", "[camera]")

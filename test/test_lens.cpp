@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // One battery over all lens models, through the inner header.
-#include "lens/lens.hpp"
+#include "lens/models.hpp"
 #include "quick_require.hpp"
 #include "scenes.hpp"
 #include <iostream>
@@ -13,11 +13,7 @@ using namespace scenes;
 
 namespace {
 
-Ptr<Lens> makeLens(const LensKind& kind)
-{
-    return !kind.mrcal.empty() ? makeMrcalLens(kind.mrcal, kind.intrinsics())
-         : kind.fisheye ? makeFisheyeLens(kind.K, kind.coefficients) : makeOpenCVLens(kind.K, kind.coefficients);
-}
+Ptr<Lens> makeLens(const LensKind& kind) { return cv::refract::makeLens({ kind.model, kind.K, kind.coefficients }); }
 
 uchar project(const Lens& lens, const Vec3d& d, Vec2d& pixel, uchar status = REFRACT_OK)
 {
@@ -60,7 +56,7 @@ TEST_CASE("The principal point looks along the axis", "[lens]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
     CAPTURE(kind.name);
-    if (kind.isSplined() || (!kind.coefficients.empty() && kind.coefficients[0] != 0 && !kind.mrcal.empty()))
+    if (kind.isSplined() || (kind.isMrcal() && !kind.coefficients.empty() && kind.coefficients[0] != 0))
         return;         // splines may shift it, and CAHVOR's own axis is another
     const Ptr<Lens> lens = makeLens(kind);
     Vec2d pixel;
@@ -125,11 +121,11 @@ TEST_CASE("A direction with an image is the only one with that image", "[lens]")
 {
     std::vector<LensKind> kinds = allLenses();
     const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
-    kinds.push_back({ "barrel that folds back", false, K, { -0.4, 0, 0, 0 }, 0 });
-    kinds.push_back({ "barrel that folds back, decentred", false, K, { -0.3, 0.05, 0.01, -0.02, -0.01 }, 0 });
-    kinds.push_back({ "rational with a pole", false, K, { 0, 0, 0, 0, 0, -0.5, 0, 0 }, 0 });
-    kinds.push_back({ "strong prism", false, K, { -0.2, 0, 0, 0, 0, 0, 0, 0, 0.05, 0, -0.05, 0 }, 0 });
-    kinds.push_back({ "fisheye that folds back", true, K, { -0.3, 0, 0, 0 }, 0 });
+    kinds.push_back({ "barrel that folds back", "opencv", K, { -0.4, 0, 0, 0 }, 0 });
+    kinds.push_back({ "barrel that folds back, decentred", "opencv", K, { -0.3, 0.05, 0.01, -0.02, -0.01 }, 0 });
+    kinds.push_back({ "rational with a pole", "opencv", K, { 0, 0, 0, 0, 0, -0.5, 0, 0 }, 0 });
+    kinds.push_back({ "strong prism", "opencv", K, { -0.2, 0, 0, 0, 0, 0, 0, 0, 0.05, 0, -0.05, 0 }, 0 });
+    kinds.push_back({ "fisheye that folds back", "fisheye", K, { -0.3, 0, 0, 0 }, 0 });
     for (const LensKind& kind : kinds)
     {
         CAPTURE(kind.name, seed());
@@ -164,7 +160,7 @@ TEST_CASE("Where the monotone range ends is known exactly", "[lens]")
     const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
     // r (1 + k1 r^2) has its maximum at r = 1/sqrt(-3 k1).
     const double k1 = -0.4, edge = 1/std::sqrt(-3*k1), highest = edge*(1 + k1*edge*edge);
-    const Ptr<Lens> lens = makeOpenCVLens(K, { k1, 0, 0, 0 });
+    const Ptr<Lens> lens = cv::refract::makeLens({ "opencv", K, { k1, 0, 0, 0 } });
     Vec2d pixel;
     Vec3d d;
     CHECK(project(*lens, Vec3d(0, edge*(1 - 1e-9), 1), pixel) == REFRACT_OK);
@@ -175,7 +171,7 @@ TEST_CASE("Where the monotone range ends is known exactly", "[lens]")
     CHECK(unproject(*lens, Vec2d(1e9, 480), d) == REFRACT_OUTSIDE_LENS_MODEL);
 
     const double angle = 1/std::sqrt(0.9);          // theta (1 - 0.3 theta^2)
-    const Ptr<Lens> fisheye = makeFisheyeLens(K, { -0.3, 0, 0, 0 });
+    const Ptr<Lens> fisheye = cv::refract::makeLens({ "fisheye", K, { -0.3, 0, 0, 0 } });
     CHECK(project(*fisheye, Vec3d(std::sin(angle - 1e-9), 0, std::cos(angle - 1e-9)), pixel) == REFRACT_OK);
     CHECK(project(*fisheye, Vec3d(std::sin(angle + 1e-9), 0, std::cos(angle + 1e-9)), pixel)
           == REFRACT_OUTSIDE_LENS_MODEL);
@@ -188,14 +184,14 @@ TEST_CASE("Directions behind the camera have no image", "[lens]")
     Vec2d pixel;
     CHECK(project(*makeLens(kind), Vec3d(0, 0, -1), pixel) != REFRACT_OK);
     CHECK(project(*makeLens(kind), Vec3d(0, 0, 0), pixel) != REFRACT_OK);
-    if (!kind.fisheye && kind.mrcal.empty())
+    if (kind.model == "opencv")
         for (const Vec3d& d : { Vec3d(1, 2, 0), Vec3d(0.1, 0.1, -1), Vec3d(0, 0, 0) })
             CHECK(project(*makeLens(kind), d, pixel) == REFRACT_BEHIND_CAMERA);
 }
 
 TEST_CASE("The fisheye goes on beyond 90 degrees", "[lens]")
 {
-    const Ptr<Lens> lens = makeFisheyeLens(Matx33d(400, 0, 640, 0, 400, 512, 0, 0, 1), { 0, 0, 0, 0 });
+    const Ptr<Lens> lens = cv::refract::makeLens({ "fisheye", Matx33d(400, 0, 640, 0, 400, 512, 0, 0, 1), {} });
     for (double degrees : { 90., 91., 120., 170. })
     {
         const double angle = degrees*CV_PI/180;
@@ -265,7 +261,7 @@ TEST_CASE("A lens keeps its parameters", "[lens]")
     const std::vector<double> expected = kind.parameters();
     CHECK(lens->parameters() == expected);
     CHECK(largestDifference(lens->cameraMatrix(), kind.K) == 0);
-    CHECK(lens->model() == kind.model());
+    CHECK(lens->model() == kind.model);
     CHECK((int)lens->parameterNames().size() == lens->parameterCount());
     const Ptr<Lens> same = lens->withParameters(expected);
     CHECK(same->parameters() == expected);
@@ -273,6 +269,23 @@ TEST_CASE("A lens keeps its parameters", "[lens]")
     CHECK(same->model() == lens->model());
     if (!lens->distCoeffs().empty() || !kind.coefficients.empty())
         CHECK(largestDifference(same->distCoeffs(), kind.coefficients) == 0);
+}
+
+TEST_CASE("Every model of the table is among the lenses of the tests", "[lens]")
+{
+    const auto makerOf = [](const std::string& name)
+    {
+        for (const LensModel& model : lensModels())
+            if (model.isNameOf(name))
+                return model.make;
+        return (LensMaker*)nullptr;
+    };
+    for (const LensModel& model : lensModels())
+    {
+        CAPTURE(model.name);
+        CHECK(std::any_of(allLenses().begin(), allLenses().end(),
+                          [&](const LensKind& kind) { return makerOf(kind.model) == model.make; }));
+    }
 }
 
 TEST_CASE("mrcal's names make OpenCV's models, others are refused", "[lens]")
@@ -383,7 +396,7 @@ TEST_CASE("Lenses of the whole sphere", "[lens]")
     Random random;
     for (const LensKind& kind : allLenses())
     {
-        if (kind.mrcal.empty() || !kind.coefficients.empty())
+        if (!kind.isMrcal() || !kind.coefficients.empty())
             continue;
         CAPTURE(kind.name);
         const Ptr<Lens> lens = makeLens(kind);

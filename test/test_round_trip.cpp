@@ -154,7 +154,6 @@ TEST_CASE("Points on a grid of angles up to the horizon come back", "[round_trip
 {
     // Every degree of grazing in the rarest medium, down to a thousandth, at every depth.
     const LensKind& lens = lensNamed("fisheye");
-    REQUIRE(lens.fisheye);
     CAPTURE(seed());
     Random random;
     for (WindowKind kind : allWindows())

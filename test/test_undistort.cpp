@@ -92,7 +92,7 @@ TEST_CASE("Undistorted points are the pinhole images of the scene points", "[und
 TEST_CASE("Without window and depth only the lens is undone: converged cv::undistortPoints", "[undistort]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));
-    if (kind.model() != "opencv")
+    if (kind.model != "opencv")
         return;
     CAPTURE(kind.name, seed());
     Random random;

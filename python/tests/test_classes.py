@@ -80,6 +80,8 @@ def test_a_camera_keeps_what_it_was_given():
     assert refract.RefractiveCamera.createFisheye(K, np.zeros(4)).lensModel() == "fisheye"
     mrcal = refract.RefractiveCamera.createMrcal("LENSMODEL_OPENCV4", np.array([1000., 1000., 640., 480., 0, 0, 0, 0]))
     assert mrcal.lensModel() == "LENSMODEL_OPENCV4"
+    assert "LENSMODEL_CAHVORE_linearity=..." in refract.RefractiveCamera.lensModels()
+    assert refract.RefractiveCamera.createByName("LENSMODEL_LATLON", K, None).lensModel() == "LENSMODEL_LATLON"
 
 
 def test_a_camera_changes():

@@ -75,6 +75,17 @@ TEST(Refract_Camera, fisheye_and_mrcal)
     EXPECT_REFUSED(RefractiveCamera::create(K1(), std::vector<double>(3)), "distCoeffs has 3 values");
 }
 
+TEST(Refract_Camera, by_name)
+{
+    const std::vector<String> names = RefractiveCamera::lensModels();
+    EXPECT_EQ(1, std::count(names.begin(), names.end(), "fisheye"));
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createByName("opencv", K1(), D1(), window1());
+    EXPECT_EQ("opencv", camera->lensModel());
+    EXPECT_EQ(project(scenePoints(), camera1()), project(scenePoints(), camera));
+    EXPECT_REFUSED(RefractiveCamera::createByName("none", K1(), D1()), "lensModel is none; known are opencv");
+    EXPECT_REFUSED(RefractiveCamera::createByName("LENSMODEL_CAHVOR", K1(), D1()), "distCoeffs has 4 values; LENSMODEL_CAHVOR has 5");
+}
+
 TEST(Refract_Camera, is_written_and_read)
 {
     const String filename = cv::tempfile(".yml");

@@ -282,6 +282,18 @@ public:
     CV_WRAP static Ptr<RefractiveCamera> createMrcal(const String& lensModel, InputArray intrinsics,
                                                      const GlassWindow& window = GlassWindow());
 
+    /** @brief A lens of any model, by its name, behind a window: what a file calls `lens_model`.
+    @param lensModel one of lensModels().
+    @param cameraMatrix 3x3 float32/float64; skew for `fisheye` alone.
+    @param distCoeffs as many coefficients (or control points) as the model has.
+    @param window see GlassWindow.
+    */
+    CV_WRAP static Ptr<RefractiveCamera> createByName(const String& lensModel, InputArray cameraMatrix, InputArray distCoeffs,
+                                                      const GlassWindow& window = GlassWindow());
+
+    //! The names of all lens models; a number stands for each `...` in them.
+    CV_WRAP static std::vector<String> lensModels();
+
     /** @brief Reads a camera from OpenCV YAML/XML/JSON (`camera_matrix`, `distortion_coefficients` as OpenCV's
     calibration sample writes them, `lens_model`, `glass_window` as refract_calib adds) or from an mrcal .cameramodel.
     @param filename path.
@@ -316,7 +328,7 @@ public:
 
     CV_WRAP virtual Mat cameraMatrix() const = 0;        //!< 3x3 CV_64F
     CV_WRAP virtual Mat distCoeffs() const = 0;          //!< Nx1 CV_64F, as given
-    CV_WRAP virtual String lensModel() const = 0;        //!< `opencv`, `fisheye` or mrcal's name
+    CV_WRAP virtual String lensModel() const = 0;        //!< its name: one of lensModels()
     CV_WRAP virtual GlassWindow window() const = 0;      //!< a copy: see setWindow()
     /** @brief Throws as GlassWindow::check() does. */
     CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;

@@ -246,15 +246,6 @@ void DepthReader::load(int begin, int n, double* depth) const
     prefetchAhead(depths_.data, depths_.elemSize1(), size_, begin, n);
 }
 
-std::vector<double> readDistCoeffs(InputArray a, const char* name)
-{
-    const std::vector<double> d = readNumbers(a, name);
-    const size_t n = d.size();
-    if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
-        CV_Error_(Error::StsBadSize, ("%s has %d values; it must have 0, 4, 5, 8, 12 or 14", name, (int)n));
-    return d;
-}
-
 //! The rotation next to a matrix that is one but for a few digits: Newton's iteration for the polar decomposition.
 static Matx33d nearestRotation(Matx33d R)
 {

@@ -89,7 +89,6 @@ void forEachBlock(int size, const Body& body)
 
 // Small arguments. Each throws with the argument's name and value.
 Matx33d readCameraMatrix(InputArray m, const char* name);
-std::vector<double> readDistCoeffs(InputArray d, const char* name);     //!< 0, 4, 5, 8, 12 or 14 values
 Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector; empty = identity
 Vec3d readVec3(InputArray v, const char* name);
 Matx33d readProjection(InputArray p, const char* name);                 //!< 3x3 or 3x4; empty = identity

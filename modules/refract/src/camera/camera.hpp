@@ -73,8 +73,9 @@ private:
     Size size_;
 };
 
-//! The lens that a file names, from its matrices.
-Ptr<Lens> makeLens(const String& model, const Mat& cameraMatrix, const Mat& distCoeffs);
+//! The lens of a name and its arrays, which a file calls otherwise than a call does.
+Ptr<Lens> readLens(const String& model, InputArray cameraMatrix, InputArray distCoeffs,
+                   const char* nameOfMatrix = "cameraMatrix", const char* nameOfCoefficients = "distCoeffs");
 
 //! The implementation behind the public handle, which nobody else derives from; throws if it is empty, naming the argument.
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");

@@ -30,7 +30,8 @@ static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filena
     if (K.empty())
         CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
     const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
-    Ptr<RefractiveCamera> camera = makePtr<Camera>(makeLens(model, K, D), window);
+    const Ptr<Lens> lens = readLens(model, K, D, "camera_matrix", "distortion_coefficients");
+    Ptr<RefractiveCamera> camera = makePtr<Camera>(lens, window);
     if (node["image_width"].isInt() && node["image_height"].isInt())
         camera->setImageSize(Size((int)node["image_width"], (int)node["image_height"]));
     return camera;

@@ -4,6 +4,7 @@
 
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
+#include "lens/models.hpp"
 #include <climits>
 #include <cstdlib>
 #include <cstring>
@@ -190,16 +191,13 @@ Ptr<RefractiveCamera> cameraFrom(const CameraModel& model)
     return camera;
 }
 
-//! mrcal's name for an OpenCV lens with that many coefficients, of which it has no tilted ones.
-static String mrcalName(const RefractiveCamera& camera, size_t coefficients, const String& filename)
+static String mrcalName(const String& model, size_t coefficients, const String& filename)
 {
-    const String model = camera.lensModel();
-    if (model.find("LENSMODEL_") == 0)
-        return model;
-    if (model != "opencv" || coefficients > 12)
+    const String name = mrcalNameOf(model, coefficients);
+    if (name.empty())
         CV_Error_(Error::StsBadArg, ("%s: mrcal knows no lens %s with %d coefficients; save it as YAML", filename.c_str(),
                                      model.c_str(), (int)coefficients));
-    return coefficients == 0 ? String("LENSMODEL_PINHOLE") : "LENSMODEL_OPENCV" + std::to_string(coefficients);
+    return name;
 }
 
 CameraModel cameraModelOf(const RefractiveCamera& camera, const String& filename)
@@ -211,8 +209,9 @@ CameraModel cameraModelOf(const RefractiveCamera& camera, const String& filename
     if (camera.imageSize().empty())
         CV_Error_(Error::StsBadArg, ("%s: a .cameramodel states the image size; call setImageSize first", filename.c_str()));
     const Mat K = camera.cameraMatrix(), D = camera.distCoeffs();
-    CameraModel model = { mrcalName(camera, D.total(), filename), { K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
-                                                                    K.at<double>(1, 2) }, camera.imageSize(), Vec3d(), Vec3d() };
+    CameraModel model = { mrcalName(camera.lensModel(), D.total(), filename),
+                          { K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2) },
+                          camera.imageSize(), Vec3d(), Vec3d() };
     if (!D.empty())
         model.intrinsics.insert(model.intrinsics.end(), D.ptr<double>(), D.ptr<double>() + D.total());
     return model;

@@ -4,23 +4,29 @@
 
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
+#include "lens/models.hpp"
 
-/* Which lens a camera gets, made by a caller or named in a file: with lens.hpp the only place that knows all lens models. */
+/* A camera from what a caller gives; the models of lenses are in lens/models.hpp. */
 
 namespace cv { namespace refract {
+
+Ptr<Lens> readLens(const String& model, InputArray cameraMatrix, InputArray distCoeffs, const char* nameOfMatrix,
+                   const char* nameOfCoefficients)
+{
+    const Matx33d K = readCameraMatrix(cameraMatrix, nameOfMatrix);
+    return makeLens({ model, K, readNumbers(distCoeffs, nameOfCoefficients), nameOfCoefficients });
+}
 
 Ptr<RefractiveCamera> RefractiveCamera::create(InputArray cameraMatrix, InputArray distCoeffs,
                                                const GlassWindow& window)
 {
-    return makePtr<Camera>(makeOpenCVLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
-                                          readDistCoeffs(distCoeffs, "distCoeffs")), window);
+    return makePtr<Camera>(readLens("opencv", cameraMatrix, distCoeffs), window);
 }
 
 Ptr<RefractiveCamera> RefractiveCamera::createFisheye(InputArray cameraMatrix, InputArray distCoeffs,
                                                       const GlassWindow& window)
 {
-    return makePtr<Camera>(makeFisheyeLens(readCameraMatrix(cameraMatrix, "cameraMatrix"),
-                                           readNumbers(distCoeffs, "distCoeffs")), window);
+    return makePtr<Camera>(readLens("fisheye", cameraMatrix, distCoeffs), window);
 }
 
 Ptr<RefractiveCamera> RefractiveCamera::createMrcal(const String& lensModel, InputArray intrinsics,
@@ -29,17 +35,18 @@ Ptr<RefractiveCamera> RefractiveCamera::createMrcal(const String& lensModel, Inp
     return makePtr<Camera>(makeMrcalLens(lensModel, readNumbers(intrinsics, "intrinsics")), window);
 }
 
-Ptr<Lens> makeLens(const String& model, const Mat& K, const Mat& D)
+Ptr<RefractiveCamera> RefractiveCamera::createByName(const String& lensModel, InputArray cameraMatrix, InputArray distCoeffs,
+                                                     const GlassWindow& window)
 {
-    const Matx33d cameraMatrix = readCameraMatrix(K, "camera_matrix");
-    if (model == "opencv")
-        return makeOpenCVLens(cameraMatrix, readDistCoeffs(D, "distortion_coefficients"));
-    if (model == "fisheye")
-        return makeFisheyeLens(cameraMatrix, readNumbers(D, "distortion_coefficients"));
-    std::vector<double> intrinsics = { cameraMatrix(0, 0), cameraMatrix(1, 1), cameraMatrix(0, 2), cameraMatrix(1, 2) };
-    const std::vector<double> d = readNumbers(D, "distortion_coefficients");
-    intrinsics.insert(intrinsics.end(), d.begin(), d.end());
-    return makeMrcalLens(model, intrinsics);
+    return makePtr<Camera>(readLens(lensModel, cameraMatrix, distCoeffs), window);
+}
+
+std::vector<String> RefractiveCamera::lensModels()
+{
+    std::vector<String> names;
+    for (const LensModel& model : refract::lensModels())
+        names.push_back(model.pattern());
+    return names;
 }
 
 }} // namespace

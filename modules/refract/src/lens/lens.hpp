@@ -10,11 +10,8 @@
 
 namespace cv { namespace refract {
 
-/* What a lens is: a one-to-one map between directions and pixels. It knows nothing of windows.
-
-How to add one: derive from Lens in a lens_<model>.cpp of its own, state the formula and its domain of validity at the
-top, add a make function below, name it in camera/create.cpp, and add it to the list of lenses in the tests (test/scenes.hpp),
-which run the same battery over all models. With a vector form derive from KernelLens.
+/* What a lens is: a one-to-one map between directions and pixels. It knows nothing of windows. models.hpp lists all models, and
+says how to add one.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status. A
 direction or pixel outside the range where the model is one-to-one becomes REFRACT_OUTSIDE_LENS_MODEL. */
@@ -65,29 +62,6 @@ public:
     //! The same model with other parameters.
     virtual Ptr<Lens> withParameters(const std::vector<double>& parameters) const = 0;
 };
-
-//! OpenCV's model with 0, 4, 5, 8, 12 or 14 coefficients.
-Ptr<Lens> makeOpenCVLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs,
-                         const String& model = "opencv");
-//! cv::fisheye's model with 4 coefficients.
-Ptr<Lens> makeFisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs);
-//! mrcal's models by name.
-Ptr<Lens> makeMrcalLens(const String& model, const std::vector<double>& intrinsics);
-
-//! What makeMrcalLens makes of a name, its arguments checked: STEREOGRAPHIC, LONLAT, LATLON.
-Ptr<Lens> makePanoramicLens(const String& model, const std::vector<double>& intrinsics);
-//! CAHVOR (linearity 1) and CAHVORE, whose last three coefficients must be 0.
-Ptr<Lens> makeCahvorLens(const String& model, const std::vector<double>& intrinsics, double linearity);
-
-//! Control points of a spline surface over the stereographic plane, and the degrees across that it is for.
-struct SplineGrid
-{
-    int order, nx, ny;
-    double fovX;
-};
-
-//! SPLINED_STEREOGRAPHIC.
-Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& intrinsics, const SplineGrid& grid);
 
 }} // namespace
 

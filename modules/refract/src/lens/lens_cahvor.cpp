@@ -176,16 +176,18 @@ uchar CahvorLens::unbend(const Vec2d& plane, Vec3d& d) const
 
 } // namespace
 
-Ptr<Lens> makeCahvorLens(const String& model, const std::vector<double>& intrinsics, double linearity)
+Ptr<Lens> makeCahvorLens(const LensSpec& spec)
 {
-    for (size_t i = 4 + E0; i < intrinsics.size(); i++)
-        if (intrinsics[i] != 0)
-            CV_Error_(Error::StsBadArg, ("intrinsics[%d], e%d of %s, is %g: its centre moves with the angle, and a lens here has "
-                                         "one centre; fit the model with E = 0", (int)i, (int)i - 4 - E0, model.c_str(),
-                                         intrinsics[i]));
-    const size_t count = 4 + E0;
-    return makePtr<CahvorLens>(model, std::vector<double>(intrinsics.begin(), intrinsics.begin() + count), linearity,
-                               intrinsics.size() - count);
+    const int count = (int)spec.distCoeffs.size();
+    for (int i = E0; i < count; i++)
+        if (spec.distCoeffs[i] != 0)
+            CV_Error_(Error::StsBadArg, ("%s[%d], e%d of %s, is %g: its centre moves with the angle, and a lens here has "
+                                         "one centre; fit the model with E = 0", spec.argument.c_str(), (int)spec.before + i, i - E0,
+                                         spec.model.c_str(), spec.distCoeffs[i]));
+    spec.requireNoSkew();
+    std::vector<double> parameters = spec.parameters();
+    parameters.resize(4 + E0);
+    return makePtr<CahvorLens>(spec.model, parameters, spec.inName.empty() ? 1 : spec.inName[0], (size_t)(count - E0));
 }
 
 }} // namespace

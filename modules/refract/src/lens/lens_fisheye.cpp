@@ -4,6 +4,7 @@
 
 #include "lens/fisheye_model.hpp"
 #include "lens/kernel_lens.hpp"
+#include "lens/models.hpp"
 #include "math/monotone.hpp"
 
 /* cv::fisheye's model (@cite KannalaBrandt2006), theta = angle to the z axis:
@@ -45,8 +46,6 @@ private:
 FisheyeLens::FisheyeLens(const Matx33d& K, const std::vector<double>& distCoeffs)
     : KernelLens<FisheyeModel>(fisheyeKernels), K_(K)
 {
-    if (!distCoeffs.empty() && distCoeffs.size() != 4)
-        CV_Error_(Error::StsBadArg, ("distCoeffs has %d values; the fisheye model has 4", (int)distCoeffs.size()));
     m_.fx = K(0, 0); m_.fy = K(1, 1); m_.cx = K(0, 2); m_.cy = K(1, 2);
     m_.alpha = K(0, 1)/K(0, 0);
     double* k = m_.k;
@@ -92,15 +91,12 @@ std::vector<double> FisheyeLens::parameters() const
 
 Ptr<Lens> FisheyeLens::withParameters(const std::vector<double>& p) const
 {
-    return makeFisheyeLens(Matx33d(p[0], m_.alpha*p[0], p[2], 0, p[1], p[3], 0, 0, 1),
-                           std::vector<double>(p.begin() + 4, p.end()));
+    return makePtr<FisheyeLens>(Matx33d(p[0], m_.alpha*p[0], p[2], 0, p[1], p[3], 0, 0, 1),
+                                std::vector<double>(p.begin() + 4, p.end()));
 }
 
 } // namespace
 
-Ptr<Lens> makeFisheyeLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs)
-{
-    return makePtr<FisheyeLens>(cameraMatrix, distCoeffs);
-}
+Ptr<Lens> makeFisheyeLens(const LensSpec& spec) { return makePtr<FisheyeLens>(spec.cameraMatrix, spec.distCoeffs); }
 
 }} // namespace

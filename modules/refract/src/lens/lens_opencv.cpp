@@ -4,6 +4,7 @@
 
 #include "lens/opencv_model.hpp"
 #include "lens/kernel_lens.hpp"
+#include "lens/models.hpp"
 #include "math/monotone.hpp"
 
 /* OpenCV's lens model (calib3d's documentation), x = X/Z, y = Y/Z, s = r^2 = x^2 + y^2:
@@ -90,8 +91,6 @@ double monotoneRange(const double* k)
 OpenCVLens::OpenCVLens(const Matx33d& K, const std::vector<double>& distCoeffs, const String& model)
     : KernelLens<OpenCVModel>(openCVKernels), model_(model)
 {
-    if (K(0, 1) != 0)
-        CV_Error_(Error::StsBadArg, ("cameraMatrix(0, 1) is %g; this lens model has no skew", K(0, 1)));
     m_.fx = K(0, 0); m_.fy = K(1, 1); m_.cx = K(0, 2); m_.cy = K(1, 2);
     double* k = m_.k;
     std::fill(k, k + DIST_COEFFS, 0.);
@@ -239,15 +238,16 @@ std::vector<double> OpenCVLens::parameters() const
 
 Ptr<Lens> OpenCVLens::withParameters(const std::vector<double>& p) const
 {
-    return makeOpenCVLens(Matx33d(p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1),
-                          std::vector<double>(p.begin() + 4, p.end()), model_);
+    return makePtr<OpenCVLens>(Matx33d(p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1),
+                               std::vector<double>(p.begin() + 4, p.end()), model_);
 }
 
 } // namespace
 
-Ptr<Lens> makeOpenCVLens(const Matx33d& cameraMatrix, const std::vector<double>& distCoeffs, const String& model)
+Ptr<Lens> makeOpenCVLens(const LensSpec& spec)
 {
-    return makePtr<OpenCVLens>(cameraMatrix, distCoeffs, model);
+    spec.requireNoSkew();
+    return makePtr<OpenCVLens>(spec.cameraMatrix, spec.distCoeffs, spec.model);
 }
 
 }} // namespace

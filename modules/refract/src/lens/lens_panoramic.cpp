@@ -21,7 +21,7 @@ namespace {
 class StereographicLens : public PlaneLens
 {
 public:
-    StereographicLens(const String& model, const std::vector<double>& intrinsics) : PlaneLens(model, intrinsics) {}
+    explicit StereographicLens(const LensSpec& spec) : PlaneLens(spec) {}
 
 private:
     uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const CV_OVERRIDE
@@ -39,8 +39,7 @@ private:
 class LongitudeLens : public PlaneLens
 {
 public:
-    LongitudeLens(const String& model, const std::vector<double>& intrinsics, int longitude)
-        : PlaneLens(model, intrinsics), lon_(longitude), lat_(1 - longitude) {}
+    LongitudeLens(const LensSpec& spec, int longitude) : PlaneLens(spec), lon_(longitude), lat_(1 - longitude) {}
 
 private:
     uchar bend(const Vec3d& d, Vec2d& plane, Matx23d* byDirection, Vec2d*) const CV_OVERRIDE
@@ -74,11 +73,8 @@ private:
 
 } // namespace
 
-Ptr<Lens> makePanoramicLens(const String& model, const std::vector<double>& intrinsics)
-{
-    if (model == "LENSMODEL_STEREOGRAPHIC")
-        return makePtr<StereographicLens>(model, intrinsics);
-    return makePtr<LongitudeLens>(model, intrinsics, model == "LENSMODEL_LONLAT" ? 0 : 1);
-}
+Ptr<Lens> makeStereographicLens(const LensSpec& spec) { return makePtr<StereographicLens>(spec); }
+Ptr<Lens> makeLonLatLens(const LensSpec& spec) { return makePtr<LongitudeLens>(spec, 0); }
+Ptr<Lens> makeLatLonLens(const LensSpec& spec) { return makePtr<LongitudeLens>(spec, 1); }
 
 }} // namespace

@@ -29,6 +29,26 @@ namespace {
 //! Cells to a control point's distance in which the surface is looked at for folds; searches begin at every STARTS-th.
 const int CELLS = 8, STARTS = 2;
 
+//! Control points over the stereographic plane, and the degrees across that they are for.
+struct SplineGrid
+{
+    int order, nx, ny;
+    double fovX;
+};
+
+SplineGrid gridOf(const String& model, const std::vector<double>& values)
+{
+    const int MOST = 65535;
+    for (double value : values)
+        if (value != std::floor(value) || !(value >= 1 && value <= MOST))
+            CV_Error_(Error::StsBadArg, ("lensModel is %s; %g is no whole number from 1 to %d", model.c_str(), value, MOST));
+    const SplineGrid grid = { (int)values[0], (int)values[1], (int)values[2], values[3] };
+    if ((grid.order != 2 && grid.order != 3) || grid.nx <= grid.order || grid.ny <= grid.order || grid.fovX >= 360)
+        CV_Error_(Error::StsBadArg, ("lensModel is %s; its order must be 2 or 3, Nx and Ny above it, fov_x_deg below 360",
+                                     model.c_str()));
+    return grid;
+}
+
 //! The control points that a coordinate needs, what they weigh, and by how much that changes.
 template<int ORDER> struct Weights
 {
@@ -368,10 +388,14 @@ uchar SplinedLens::unbend(const Vec2d& plane, Vec3d& d) const
 
 } // namespace
 
-Ptr<Lens> makeSplinedLens(const String& model, const std::vector<double>& p, const SplineGrid& grid)
+Ptr<Lens> makeSplinedLens(const LensSpec& spec)
 {
-    const Ptr<const SplineSurface> surface = makePtr<SplineSurface>(grid, std::vector<double>(p.begin() + 4, p.end()));
-    return makePtr<SplinedLens>(model, std::vector<double>(p.begin(), p.begin() + 4), surface);
+    const SplineGrid grid = gridOf(spec.model, spec.inName);
+    spec.requireCount({ 2*(size_t)grid.nx*grid.ny });
+    spec.requireNoSkew();
+    std::vector<double> four = spec.parameters();
+    four.resize(4);
+    return makePtr<SplinedLens>(spec.model, four, makePtr<SplineSurface>(grid, spec.distCoeffs));
 }
 
 }} // namespace

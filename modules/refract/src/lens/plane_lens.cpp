@@ -6,6 +6,8 @@
 
 namespace cv { namespace refract {
 
+PlaneLens::PlaneLens(const LensSpec& spec) : PlaneLens(spec.model, spec.parameters()) { spec.requireNoSkew(); }
+
 PlaneLens::PlaneLens(const String& model, const std::vector<double>& p)
     : model_(model), fx_(p[0]), fy_(p[1]), cx_(p[2]), cy_(p[3]), coefficients_(p.begin() + 4, p.end()) {}
 

@@ -5,7 +5,7 @@
 #ifndef OPENCV_REFRACT_PLANE_LENS_HPP
 #define OPENCV_REFRACT_PLANE_LENS_HPP
 
-#include "lens/lens.hpp"
+#include "lens/models.hpp"
 
 namespace cv { namespace refract {
 
@@ -28,11 +28,13 @@ public:
     Mat distCoeffs() const CV_OVERRIDE { return columnOf(coefficients_); }
     std::vector<double> parameters() const CV_OVERRIDE;
     std::vector<String> parameterNames() const CV_OVERRIDE;
-    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE { return makeMrcalLens(model_, p); }
+    Ptr<Lens> withParameters(const std::vector<double>& p) const CV_OVERRIDE { return makeLens(model_, p); }
 
 protected:
-    //! @param intrinsics fx, fy, cx, cy and those coefficients that are parameters
-    PlaneLens(const String& model, const std::vector<double>& intrinsics);
+    //! All of its coefficients are parameters.
+    explicit PlaneLens(const LensSpec& spec);
+    //! @param parameters fx, fy, cx, cy and those coefficients that are parameters
+    PlaneLens(const String& model, const std::vector<double>& parameters);
 
     //! The pixel of one direction.
     uchar projectOne(const Vec3d& direction, double& u, double& v) const;

@@ -118,6 +118,8 @@ class refract_test(NewOpenCVTests):
         self.assertEqual('fisheye', cv.refract.RefractiveCamera.createFisheye(K, None, make_window()).lensModel())
         mrcal = cv.refract.RefractiveCamera.createMrcal('LENSMODEL_PINHOLE', np.array([2438., 2438, 644, 500]))
         self.assertEqual('LENSMODEL_PINHOLE', mrcal.lensModel())
+        self.assertIn('fisheye', cv.refract.RefractiveCamera.lensModels())
+        self.assertEqual('LENSMODEL_LONLAT', cv.refract.RefractiveCamera.createByName('LENSMODEL_LONLAT', K, None).lensModel())
 
     def test_camera_is_cloned(self):
         copy = self.camera1.clone()
