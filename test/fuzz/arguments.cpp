@@ -207,10 +207,48 @@ Lens::Lens(Bytes& bytes)
     window = windowOf(bytes);
 }
 
+namespace {
+
+//! How many coefficients a model takes, of few: 0 to 19.
+std::vector<int> countsOf(const std::string& model)
+{
+    std::vector<int> counts;
+    for (int n = 0; n < 20; n++)
+        try
+        {
+            RefractiveCamera::createByName(model, cv::Matx33d(1000, 0, 640, 0, 1000, 480, 0, 0, 1), Mat::zeros(n, 1, CV_64F));
+            counts.push_back(n);
+        }
+        catch (const cv::Exception&) {}
+    return counts;
+}
+
+//! A number for each "..." in it.
+std::string filled(Bytes& bytes, std::string model)
+{
+    for (size_t at; (at = model.find("...")) != std::string::npos; )
+        model.replace(at, 3, std::to_string(bytes.below(bytes.rarely() ? 256 : 12)));
+    return model;
+}
+
+//! A lens of any model that there is.
+cv::Ptr<RefractiveCamera> anyModel(Bytes& bytes)
+{
+    static const std::vector<cv::String> models = RefractiveCamera::lensModels();
+    const std::string model = filled(bytes, models[bytes.below((int)models.size())]);
+    const std::vector<int> counts = countsOf(model);
+    const int n = counts.empty() || bytes.rarely() ? bytes.below(400) : counts[bytes.below((int)counts.size())];
+    const Input K = intrinsicsOf(bytes, false);
+    const Input D = Input::matrix(bytes, n, 1, [&](int i, int) { return coefficient(bytes, i); });
+    return RefractiveCamera::createByName(model, K, D, windowOf(bytes));
+}
+
+} // namespace
+
 cv::Ptr<RefractiveCamera> cameraOf(Bytes& bytes)
 {
     if (bytes.rarely())
-        return bytes.maybe() ? cv::Ptr<RefractiveCamera>() : cv::Ptr<RefractiveCamera>();
+        return cv::Ptr<RefractiveCamera>();
     switch (bytes.below(4))
     {
     default:
@@ -236,6 +274,7 @@ cv::Ptr<RefractiveCamera> cameraOf(Bytes& bytes)
             return i < 2 ? bytes.about(300, 3000) : i < 4 ? bytes.about(0, 1500) : coefficient(bytes, i - 4); });
         return RefractiveCamera::createMrcal(models[model], numbers, windowOf(bytes));
     }
+    case 3: return anyModel(bytes);
     }
 }
 
