@@ -52,7 +52,8 @@ inline RigTruth paperStereo()
     rig.windows = { 0, 1 };
     rig.Rs = { cv::Matx33d::eye(), paper::rotation() };
     rig.Ts = { cv::Vec3d(), paper::T };
-    rig.cameras = { paperCamera(paper::pane()), RefractiveCamera::create(paper::K2, paper::D2, paper::pane(40, paper::NORMAL2)) };
+    rig.cameras = { paperCamera(paper::pane()),
+                    RefractiveCamera::create(paper::K2, paper::D2, paper::pane(40, paper::NORMAL2)) };
     return rig;
 }
 

@@ -134,7 +134,8 @@ struct LensKind
 //! A barrel with bumps, different in x and y.
 inline LensKind splinedLens(const char* name, int order, int nx, int ny, int fovX, double halfField)
 {
-    LensKind kind = { name, cv::format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=%d", order, nx, ny, fovX),
+    LensKind kind = { name,
+                      cv::format("LENSMODEL_SPLINED_STEREOGRAPHIC_order=%d_Nx=%d_Ny=%d_fov_x_deg=%d", order, nx, ny, fovX),
                       { 1200, 0, 640.25, 0, 1195, 512.5, 0, 0, 1 }, {}, halfField };
     const double perUnit = (nx - order)/(4*std::tan(fovX*CV_PI/720));
     for (int j = 0; j < ny; j++)
