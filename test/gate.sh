@@ -58,8 +58,7 @@ build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
 export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
 # The module, and what reads files. The tools' fits take ten times as long so: with --release.
 suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|tools|calib_tool|calib_rig|real'
-suite "parsers under sanitizers" build/sanitize -L '^refract_tools_tests$' \
-  -R 'CSV|csv|file|mesh|number|index|image|line' -LE 'slow|scene'
+suite "parsers under sanitizers" build/sanitize -L '^(units|table|frames|points_csv|poses_file|given_index|rig_data|mesh|cloud)$'
 unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
 run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh
 
