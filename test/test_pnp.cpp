@@ -169,6 +169,40 @@ TEST_CASE("Both poses of a flat target", "[pnp]")
     CHECK((one.empty() && oneT.empty() && errors.empty()));
 }
 
+TEST_CASE("Few points in space: the least of their minima", "[pnp]")
+{
+    GlassWindow thick = paperWindow();
+    thick.normal = normalize(Vec3d(0.5, -0.2, 1));
+    thick.thickness[0] = 100;
+    const int TRIALS = trials(600);
+    for (const GlassWindow& window : { GlassWindow(), thick, GlassWindow({ 0.3, 0.1, 1 }, 40, 1.49, 250, 1.333) })
+        for (int count : { 4, 5 })
+        {
+            Random random(240 + count);
+            const Ptr<RefractiveCamera> camera = paperCamera(window);
+            int wrong = 0;
+            size_t minima = 0;
+            for (int trial = 0; trial < TRIALS; trial++)
+            {
+                std::vector<Point3d> object;
+                for (int i = 0; i < count; i++)
+                    object.push_back(Point3d(random.uniform(-90, 90), random.uniform(-70, 70), random.uniform(-60, 60)));
+                const Vec3d rvec = normalize(random.vector(1))*random.uniform(0, 3);
+                const Vec3d tvec(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(500, 800));
+                std::vector<Vec3d> rvecs, tvecs;
+                std::vector<double> errors;
+                refractiveSolvePnPGeneric(object, seen(object, rvec, tvec, camera, random, 0), camera, rvecs, tvecs, false,
+                                          noArray(), noArray(), errors);
+                wrong += errors.empty() || !(errors[0] < 1e-6);
+                minima += errors.size();
+            }
+            CAPTURE(window.outerIndex, count, seed());
+            printNumber("minima of " + std::to_string(count) + " points, on average", (double)minima/TRIALS, "");
+            CHECK(wrong == 0);
+            CHECK(minima > (size_t)TRIALS);
+        }
+}
+
 TEST_CASE("No pose is false, bad arguments are named", "[pnp]")
 {
     Random random(230);

@@ -87,7 +87,8 @@ TEST_CASE("Three points on three rays have the true pose among theirs", "[pnp][r
     for (const Camera3& c : ransacCameras())
     {
         const int COUNT = 1000;
-        int found = 0;
+        int found = 0, foundAmongAll = 0;
+        size_t fast = 0, complete = 0;
         double worst = 0;
         for (int trial = 0; trial < COUNT; trial++)
         {
@@ -103,23 +104,34 @@ TEST_CASE("Three points on three rays have the true pose among theirs", "[pnp][r
             }
             RigidMotion motions[4];
             const int count = posesOfThreeRays(rays, object, motions);
+            const std::vector<RigidMotion> all = allPosesOfThreeRays(rays, object);
             Matx33d R;
             Rodrigues(s.rvec, R);
-            double nearest = INF;
-            for (int k = 0; k < count; k++)
+            const auto nearest = [&](const RigidMotion* begin, size_t number)
             {
-                for (int i = 0; i < 3; i++)     // exact, right or not: its points are on the rays
+                double least = INF;
+                for (const RigidMotion* motion = begin; motion < begin + number; motion++)
                 {
-                    const Vec3d X = motions[k].R*object[i] + motions[k].t - rays[i].origin;
-                    worst = std::max(worst, norm(X.cross(rays[i].direction)));
+                    for (int i = 0; i < 3; i++)     // exact, right or not: its points are on the rays
+                    {
+                        const Vec3d X = motion->R*object[i] + motion->t - rays[i].origin;
+                        worst = std::max(worst, norm(X.cross(rays[i].direction)));
+                    }
+                    least = std::min(least, norm(motion->t - s.tvec)/norm(s.tvec) + norm(motion->R - R));
                 }
-                nearest = std::min(nearest, norm(motions[k].t - s.tvec)/norm(s.tvec) + norm(motions[k].R - R));
-            }
-            found += nearest < 1e-4;
+                return least;
+            };
+            found += nearest(motions, count) < 1e-4;
+            foundAmongAll += nearest(all.data(), all.size()) < 1e-4;
+            fast += count;
+            complete += all.size();
         }
         CAPTURE(c.name, seed());
         printNumber(std::string("poses of three rays, ") + c.name + ": true one found", 100.*found/COUNT, "%");
+        printNumber(std::string("poses of three rays, ") + c.name + ": per sample", (double)complete/COUNT, "");
         CHECK(found > 0.97*COUNT);
+        CHECK(foundAmongAll == COUNT);
+        CHECK(complete >= fast);
         CHECK(worst < 1e-4);
     }
 }

@@ -131,27 +131,6 @@ double samplesNeeded(int agreeing, int count, double confidence)
     return right > 0 ? std::log(1 - confidence)/std::log1p(-std::min(right, 1 - DBL_EPSILON)) : DBL_MAX;
 }
 
-//! The rays of the points that have one, and which points these are.
-struct Rays
-{
-    Rays(const Camera& camera, const ImagePoints& points)
-    {
-        for (size_t i = 0; i < points.pixel.size(); i++)
-        {
-            double tau;
-            Vec3d d;
-            uchar status = REFRACT_OK;
-            camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status);
-            if (status != REFRACT_OK)
-                continue;
-            ray.push_back({ tau*camera.layers().normal(), d });
-            point.push_back((int)i);
-        }
-    }
-    std::vector<SceneRay> ray;
-    std::vector<int> point;
-};
-
 //! What a search may take.
 struct Effort
 {
@@ -162,7 +141,7 @@ struct Effort
 Candidate searchPose(const Camera& camera, const ImagePoints& points, const Jury& jury, const Effort& effort, const Pose& guess)
 {
     const int QUICK = 4;                // iterations: a start for the next judgement
-    const Rays rays(camera, points);
+    const PointRays rays(camera, points);
     const int count = (int)rays.ray.size();
     Candidate best;
     const auto consider = [&](const RigidMotion& motion)

@@ -6,10 +6,12 @@
 
 Start: every pixel's ray has its own origin tau*normal; about the mean origin the rays are nearly central, so the pose is
 found by cv::solvePnP on the rays' directions, in a frame that looks along their mean (wide lenses see beyond 90 degrees),
-and moved by the mean origin. A planar target has two such poses (IPPE gives both); the likelihood decides. */
+and moved by the mean origin. A planar target has two such poses (IPPE gives both); the likelihood decides. Few points in space
+have several minima as well, of which the closed form knows one: all poses of three of them are starts (three_rays.hpp). */
 
 #include "pose/poses.hpp"
 #include "pose/central_pose.hpp"
+#include "pose/three_rays.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"
@@ -33,10 +35,6 @@ int scatterRank(const std::vector<Point3d>& points)
     return rank;
 }
 
-namespace {
-
-const double NaN = std::numeric_limits<double>::quiet_NaN();
-
 Pose makePose(const Matx33d& R, const Vec3d& t)
 {
     Pose pose;
@@ -45,6 +43,10 @@ Pose makePose(const Matx33d& R, const Vec3d& t)
     pose.found = true;
     return pose;
 }
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 //! The points that have a ray in front, as a pinhole at the rays' mean origin sees them.
 struct CentralView
@@ -206,20 +208,70 @@ static bool isSame(const Pose& a, const Pose& b)
     return norm(rotationMatrix(a.rvec) - rotationMatrix(b.rvec)) < ROUNDING && norm(a.tvec - b.tvec) < ROUNDING*norm(b.tvec);
 }
 
+//! The poses that put any three of the points on their rays.
+static void addPosesOfTriples(const Camera& camera, const ImagePoints& points, std::vector<Pose>& poses)
+{
+    const PointRays rays(camera, points);
+    const int count = (int)rays.ray.size();
+    for (int i = 0; i < count; i++)
+        for (int j = i + 1; j < count; j++)
+            for (int k = j + 1; k < count; k++)
+            {
+                const SceneRay three[3] = { rays.ray[i], rays.ray[j], rays.ray[k] };
+                const Vec3d object[3] = { points.object[rays.point[i]], points.object[rays.point[j]],
+                                          points.object[rays.point[k]] };
+                for (const RigidMotion& motion : allPosesOfThreeRays(three, object))
+                    poses.push_back(makePose(motion.R, motion.t));
+            }
+}
+
+static bool isNew(const std::vector<PoseMinimum>& minima, const PoseMinimum& minimum)
+{
+    return std::none_of(minima.begin(), minima.end(), [&](const PoseMinimum& other)
+                        { return isSame(other.pose, minimum.pose); });
+}
+
+static void sortByError(std::vector<PoseMinimum>& minima)
+{
+    std::stable_sort(minima.begin(), minima.end(), [](const PoseMinimum& a, const PoseMinimum& b) { return a.rms < b.rms; });
+}
+
+//! Where the search for minima begins, of few points the poses with the smallest errors.
+static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& points)
+{
+    const size_t FEW = 5, MOST = 8;     // from six points on the closed form leads to the least minimum
+    std::vector<Pose> poses = closedFormPoses(camera, points);
+    if (points.pixel.size() > FEW)
+        return poses;
+    addPosesOfTriples(camera, points, poses);
+    std::vector<PoseMinimum> starts;
+    for (const Pose& pose : poses)
+    {
+        PoseMinimum start = { pose, 0 };
+        start.rms = refinePose(camera, points, start.pose, 1);
+        if (!std::isnan(start.rms) && isNew(starts, start))
+            starts.push_back(start);
+    }
+    sortByError(starts);
+    poses.clear();
+    for (size_t i = 0; i < std::min(starts.size(), MOST); i++)
+        poses.push_back(starts[i].pose);
+    return poses;
+}
+
 std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
 {
     std::vector<PoseMinimum> minima;
     if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
         return minima;
-    for (const Pose& candidate : start.found ? std::vector<Pose>(1, start) : closedFormPoses(camera, points))
+    for (const Pose& pose : start.found ? std::vector<Pose>(1, start) : startsOf(camera, points))
     {
-        PoseMinimum minimum = { candidate, 0 };
+        PoseMinimum minimum = { pose, 0 };
         minimum.rms = refinePose(camera, points, minimum.pose);
-        if (!std::isnan(minimum.rms) && std::none_of(minima.begin(), minima.end(), [&](const PoseMinimum& other)
-                                                     { return isSame(other.pose, minimum.pose); }))
+        if (!std::isnan(minimum.rms) && isNew(minima, minimum))
             minima.push_back(minimum);
     }
-    std::stable_sort(minima.begin(), minima.end(), [](const PoseMinimum& a, const PoseMinimum& b) { return a.rms < b.rms; });
+    sortByError(minima);
     return minima;
 }
 
@@ -229,108 +281,6 @@ Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, c
     const std::vector<PoseMinimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
     rms = minima.empty() ? NaN : minima[0].rms;
     return minima.empty() ? Pose() : minima[0].pose;
-}
-
-ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, int least)
-{
-    const std::vector<Point3d> objectPoints = readPoints3(objectPoints_, "objectPoints");
-    const std::vector<Point2d> imagePoints = readPoints2(imagePoints_, "imagePoints");
-    if (objectPoints.size() != imagePoints.size())
-        CV_Error_(Error::StsUnmatchedSizes, ("objectPoints has %d points, imagePoints %d; they must agree",
-                                             (int)objectPoints.size(), (int)imagePoints.size()));
-    if ((int)objectPoints.size() < least)
-        CV_Error_(Error::StsBadArg, ("objectPoints has %d points; a pose needs at least %d",
-                                     (int)objectPoints.size(), least));
-    for (const Point3d& p : objectPoints)
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            CV_Error_(Error::StsBadArg, ("objectPoints holds the point (%g, %g, %g); it must be finite", p.x, p.y, p.z));
-    return observed(objectPoints, imagePoints);
-}
-
-Pose readPose(InputArray rvec, InputArray tvec)
-{
-    return makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
-}
-
-static std::vector<PoseMinimum> solvePnP(InputArray objectPoints, InputArray imagePoints, const Camera& camera,
-                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
-{
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, useExtrinsicGuess ? 3 : 4);
-    return findMinima(camera, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
-}
-
-//! As cv::solvePnPGeneric's: of coordinates, not of distances.
-static void writeErrors(const std::vector<PoseMinimum>& minima, OutputArray reprojectionError)
-{
-    if (!reprojectionError.needed())
-        return;
-    Mat errors((int)minima.size(), 1, CV_64F);
-    for (int i = 0; i < errors.rows; i++)
-        errors.at<double>(i) = minima[i].rms/std::sqrt(2.);
-    errors.copyTo(reprojectionError);
-}
-
-static void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
-{
-    std::vector<Vec3d> r, t;
-    for (const PoseMinimum& minimum : minima)
-    {
-        r.push_back(minimum.pose.rvec);
-        t.push_back(minimum.pose.tvec);
-    }
-    writeVectors(r, rvecs);
-    writeVectors(t, tvecs);
-}
-
-bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
-                        InputArray distCoeffs, const GlassWindow& window, OutputArray rvec,
-                        OutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
-{
-    CV_INSTRUMENT_REGION();
-
-    return refractiveSolvePnP(objectPoints, imagePoints, RefractiveCamera::create(cameraMatrix, distCoeffs, window),
-                              rvec, tvec, useExtrinsicGuess, reprojectionError);
-}
-
-bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
-                        OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
-                        OutputArray reprojectionError)
-{
-    CV_INSTRUMENT_REGION();
-
-    std::vector<PoseMinimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
-    minima.resize(std::min<size_t>(minima.size(), 1));
-    writeErrors(minima, reprojectionError);
-    if (minima.empty())
-        return false;
-    Mat(minima[0].pose.rvec).copyTo(rvec);
-    Mat(minima[0].pose.tvec).copyTo(tvec);
-    return true;
-}
-
-int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
-                              OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, bool useExtrinsicGuess,
-                              InputArray rvec, InputArray tvec, OutputArray reprojectionError)
-{
-    CV_INSTRUMENT_REGION();
-
-    const std::vector<PoseMinimum> minima =
-        solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
-    writePoses(minima, rvecs, tvecs);
-    writeErrors(minima, reprojectionError);
-    return (int)minima.size();
-}
-
-int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
-                              InputArray distCoeffs, const GlassWindow& window, OutputArrayOfArrays rvecs,
-                              OutputArrayOfArrays tvecs, bool useExtrinsicGuess, InputArray rvec, InputArray tvec,
-                              OutputArray reprojectionError)
-{
-    CV_INSTRUMENT_REGION();
-
-    return refractiveSolvePnPGeneric(objectPoints, imagePoints,
-                                     RefractiveCamera::create(cameraMatrix, distCoeffs, window), rvecs, tvecs,
-                                     useExtrinsicGuess, rvec, tvec, reprojectionError);
 }
 
 }} // namespace

@@ -17,6 +17,8 @@ struct Pose
     bool found = false;
 };
 
+Pose makePose(const Matx33d& R, const Vec3d& t);
+
 //! Object -> camera, with camera 1 -> camera, gives object -> camera 1.
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
 

@@ -85,8 +85,16 @@ int centralDistances(const SceneRay (&rays)[3], const Vec3d (&object)[3], Vec3d*
     return found;
 }
 
-//! Newton's method in s; false if it does not converge to points before the origins.
-bool solveDistances(const SceneRay (&rays)[3], const Vec3d& D2, Vec3d& s, Vec3d (&X)[3])
+//! Orthonormal axes of a triangle, as columns.
+Matx33d axesOf(const Vec3d (&X)[3])
+{
+    const Vec3d x = normalize(X[1] - X[0]), z = normalize(x.cross(X[2] - X[0])), y = z.cross(x);
+    return Matx33d(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]);
+}
+
+} // namespace
+
+bool solveDistances(const SceneRay (&rays)[3], const Vec3d& squaredSides, Vec3d& s, Vec3d (&X)[3])
 {
     const double ENOUGH = 1e-9;         // the next step squares it
     for (int k = 0; k < 10; k++)
@@ -99,7 +107,7 @@ bool solveDistances(const SceneRay (&rays)[3], const Vec3d& D2, Vec3d& s, Vec3d 
         {
             const int j = (i + 1) % 3;
             const Vec3d between = X[i] - X[j];
-            f[i] = (between.dot(between) - D2[i])/2;
+            f[i] = (between.dot(between) - squaredSides[i])/2;
             J(i, i) = between.dot(rays[i].direction);
             J(i, j) = -between.dot(rays[j].direction);
         }
@@ -121,26 +129,32 @@ bool solveDistances(const SceneRay (&rays)[3], const Vec3d& D2, Vec3d& s, Vec3d 
     return false;
 }
 
-//! Orthonormal axes of a triangle, as columns.
-Matx33d axesOf(const Vec3d (&X)[3])
-{
-    const Vec3d x = normalize(X[1] - X[0]), z = normalize(x.cross(X[2] - X[0])), y = z.cross(x);
-    return Matx33d(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]);
-}
-
-} // namespace
-
-int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4])
+bool isTriangle(const Vec3d (&object)[3])
 {
     const double FLAT = 1e-6;           // sine of an angle of the triangle
     const Vec3d side = object[1] - object[0], other = object[2] - object[0];
-    if (!(norm(side.cross(other)) > FLAT*std::max(side.dot(side), other.dot(other))))
+    return norm(side.cross(other)) > FLAT*std::max(side.dot(side), other.dot(other));
+}
+
+Vec3d squaredSides(const Vec3d (&object)[3])
+{
+    return Vec3d(squaredDistance(object[0], object[1]), squaredDistance(object[1], object[2]),
+                 squaredDistance(object[2], object[0]));
+}
+
+RigidMotion motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3])
+{
+    const Matx33d R = axesOf(X)*axesOf(object).t();
+    return { R, X[0] - R*object[0] };
+}
+
+int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4])
+{
+    if (!isTriangle(object))
         return 0;
-    const Vec3d D2(squaredDistance(object[0], object[1]), squaredDistance(object[1], object[2]),
-                   squaredDistance(object[2], object[0]));
+    const Vec3d D2 = squaredSides(object);
     Vec3d starts[4], X[3];
     const int count = centralDistances(rays, object, starts);
-    const Matx33d objectAxes = axesOf(object).t();
     // The starts are distances from the mean origin.
     const Vec3d mean = (rays[0].origin + rays[1].origin + rays[2].origin)*(1./3);
     int found = 0;
@@ -148,13 +162,25 @@ int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidM
     {
         for (int i = 0; i < 3; i++)
             starts[k][i] -= (rays[i].origin - mean).dot(rays[i].direction);
-        if (!solveDistances(rays, D2, starts[k], X))
-            continue;
-        motions[found].R = axesOf(X)*objectAxes;
-        motions[found].t = X[0] - motions[found].R*object[0];
-        found++;
+        if (solveDistances(rays, D2, starts[k], X))
+            motions[found++] = motionOfTriangle(object, X);
     }
     return found;
+}
+
+PointRays::PointRays(const Camera& camera, const ImagePoints& points)
+{
+    for (size_t i = 0; i < points.pixel.size(); i++)
+    {
+        double tau;
+        Vec3d d;
+        uchar status = REFRACT_OK;
+        camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status);
+        if (status != REFRACT_OK)
+            continue;
+        ray.push_back({ tau*camera.layers().normal(), d });
+        point.push_back((int)i);
+    }
 }
 
 }} // namespace

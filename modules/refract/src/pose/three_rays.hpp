@@ -5,7 +5,8 @@
 #ifndef OPENCV_REFRACT_THREE_RAYS_HPP
 #define OPENCV_REFRACT_THREE_RAYS_HPP
 
-#include "precomp.hpp"
+#include "arrays/views.hpp"
+#include "camera/camera.hpp"
 
 namespace cv { namespace refract {
 
@@ -32,6 +33,30 @@ in s. Newton's method begins at the solutions for rays from the mean origin: Gru
 rays are far from central a solution may be missed (one in fifty behind 100 mm of tilted glass).
 @return how many of `motions` were found */
 int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4]);
+
+//! All of them, at most eight: for callers with few samples, in ten times the time.
+std::vector<RigidMotion> allPosesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3]);
+
+//! False for three points on a line or in one place.
+bool isTriangle(const Vec3d (&object)[3]);
+
+//! The squared distances of points 0 and 1, 1 and 2, 2 and 0.
+Vec3d squaredSides(const Vec3d (&object)[3]);
+
+/** Newton's method in s; false if it does not converge to points before the origins.
+@param X the points on their rays */
+bool solveDistances(const SceneRay (&rays)[3], const Vec3d& squaredSides, Vec3d& s, Vec3d (&X)[3]);
+
+//! The motion of a triangle to where its points are.
+RigidMotion motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3]);
+
+//! The rays of an image's points that have one.
+struct PointRays
+{
+    PointRays(const Camera& camera, const ImagePoints& points);
+    std::vector<SceneRay> ray;
+    std::vector<int> point;         //!< in the image
+};
 
 }} // namespace
 
