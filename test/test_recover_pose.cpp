@@ -3,6 +3,7 @@
 
 #include "calibration_scenes.hpp"
 #include "cramer_rao.hpp"
+#include "pose/relative_pose.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -20,9 +21,9 @@ struct Matched
     std::vector<uchar> isRight;
 };
 
-enum Medium { NOTHING, AIR, WATER };
+enum SceneMedium { NOTHING, AIR, WATER };
 
-GlassWindow windowIn(Medium medium, bool second)
+GlassWindow windowIn(SceneMedium medium, bool second)
 {
     if (medium == NOTHING)
         return GlassWindow();
@@ -33,14 +34,14 @@ GlassWindow windowIn(Medium medium, bool second)
 enum Scene { DEEP, FLAT };
 
 //! A pair with a wide lens.
-Matched matchedScene(Medium medium, Random& random, int count, Scene scene = DEEP,
-                     const Vec3d& rvec = Vec3d(0.05, 0.35, -0.04))
+Matched matchedScene(SceneMedium medium, Random& random, int count, Scene scene = DEEP,
+                     const Vec3d& rvec = Vec3d(0.05, 0.35, -0.04), const Vec3d& T = Vec3d(-200, 15, 40))
 {
     Matched m;
     m.camera1 = makeCamera(lensNamed("4 coefficients"), windowIn(medium, false));
     m.camera2 = makeCamera(lensNamed("4 coefficients"), windowIn(medium, true));
     m.rvec = rvec;
-    m.T = Vec3d(-200, 15, 40);
+    m.T = T;
     const Vec2d slope = scene == FLAT ? Vec2d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)) : Vec2d();
     while ((int)m.points.size() < count)
     {
@@ -149,7 +150,7 @@ struct Tally
 
 TEST_CASE("Perfect matches give the perfect pose, its length too", "[pose][recover]")
 {
-    for (Medium medium : { NOTHING, AIR, WATER })
+    for (SceneMedium medium : { NOTHING, AIR, WATER })
     {
         Random random(6000);
         Matched m = matchedScene(medium, random, 60);
@@ -179,7 +180,7 @@ TEST_CASE("Two hundred matches, forty percent wrong, against the Cramer-Rao boun
 {
     const int TRIALS = trials(10);
     const double SIGMA = 0.2;
-    for (Medium medium : { NOTHING, AIR, WATER })
+    for (SceneMedium medium : { NOTHING, AIR, WATER })
     {
         Tally tally;
         for (int trial = 0; trial < TRIALS; trial++)
@@ -208,6 +209,91 @@ TEST_CASE("Two hundred matches, forty percent wrong, against the Cramer-Rao boun
     }
 }
 
+//! Cameras that hardly move apart or not at all, in water: is the length in its interval, and the rotation off as is stated?
+static void checkShortBaseline(double length, int trialCount, double most)
+{
+    int held = 0;
+    double chi2 = 0;
+    for (int trial = 0; trial < trialCount; trial++)
+    {
+        Random random(6900 + trial);
+        Matched m = matchedScene(WATER, random, 150, DEEP, Vec3d(0.05, 0.15, -0.04), length*normalize(Vec3d(-200, 15, 40)));
+        disturb(m, random, 0.2, 0);
+        Mat R, T, covariance;
+        Vec2d interval;
+        CAPTURE(length, trial, seed());
+        REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, noArray(), covariance,
+                                      interval) > 140);
+        Vec3d rvec;
+        Rodrigues(R, rvec);
+        const Vec3d off = rvec - m.rvec;
+        chi2 += off.dot(Matx33d(Mat(covariance(Rect(0, 0, 3, 3)).clone()).ptr<double>()).inv()*off)/trialCount;
+        held += interval[0] <= length && length <= interval[1];
+    }
+    printNumber("refractiveRecoverPose, water, T of " + std::to_string((int)length) + " mm: 95 % interval holds it in",
+                100.*held/trialCount, "%");
+    printNumber("chi^2 of the rotation's three", chi2, "");
+    CAPTURE(length, seed());
+    CHECK(held >= trialCount*0.95 - 3*std::sqrt(trialCount*0.95*0.05));
+    CHECK(held <= trialCount*most);
+    CHECK(chi2 < 3 + 3*std::sqrt(6./trialCount));
+}
+
+TEST_CASE("A short baseline's length is in its interval, and a pure rotation's", "[pose][recover]")
+{
+    checkShortBaseline(3, trials(30), 1);
+    checkShortBaseline(0, trials(30), 1);
+}
+
+TEST_CASE("Intervals of short baselines hold what they say", "[.monte-carlo]")
+{
+    for (double length : { 0., 1., 3., 10., 30. })
+        checkShortBaseline(length, trials(400), 0.99);
+}
+
+TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
+{
+    Random random(6950);
+    const Matched m = matchedScene(WATER, random, 40);
+    const Camera &c1 = cameraOf(m.camera1), &c2 = cameraOf(m.camera2);
+    std::vector<Point2d> moved = m.perfect2;
+    for (Point2d& p : moved)
+        p += Point2d(random.normal(3), random.normal(3));
+    const std::vector<PixelRay> rays1 = pixelRays(c1, m.perfect1), rays2 = pixelRays(c2, moved);
+    PixelMatches matches;
+    for (size_t i = 0; i < moved.size(); i++)
+        matches.push_back({ m.perfect1[i], moved[i], rays1[i], rays2[i] });
+    const MatchedCameras pair = { c1, c2, Vec3d(), Vec3d() };
+    const auto at = [&](const Vec3d& rvec, const Vec3d& T, std::vector<Matx16d>* byPose)
+    {
+        RigidMotion motion;
+        Rodrigues(rvec, motion.R);
+        motion.t = T;
+        std::vector<double> errors;
+        sampsonErrors(pair, matches, motion, errors, byPose);
+        return errors;
+    };
+    std::vector<Matx16d> byPose;
+    at(m.rvec, m.T, &byPose);
+    double worst = 0;
+    for (int k = 0; k < 6; k++)
+    {
+        const double STEP = k < 3 ? 1e-6 : 1e-4;
+        Vec3d rvec[2] = { m.rvec, m.rvec }, T[2] = { m.T, m.T };
+        for (int side = 0; side < 2; side++)
+            (k < 3 ? rvec[side][k] : T[side][k - 3]) += side ? STEP : -STEP;
+        const std::vector<double> low = at(rvec[0], T[0], nullptr), high = at(rvec[1], T[1], nullptr);
+        for (size_t i = 0; i < low.size(); i++)
+        {
+            const double difference = (high[i] - low[i])/(2*STEP);
+            worst = std::max(worst, std::abs(difference - byPose[i](k))/(1e-3*(k < 3 ? 1000 : 1) + std::abs(difference)));
+        }
+    }
+    CAPTURE(seed());
+    printNumber("derivatives of a match's error, against differences, relative", worst, "");
+    CHECK(worst < 1e-5);
+}
+
 TEST_CASE("What refraction cannot tell has no upper end", "[pose][recover]")
 {
     Random random(6200);
@@ -230,7 +316,7 @@ TEST_CASE("A flat scene gives the right one of its two poses, or none", "[pose][
 {
     const double SIGMA = 0.2;
     const int TRIALS = trials(10);
-    for (Medium medium : { NOTHING, AIR, WATER })
+    for (SceneMedium medium : { NOTHING, AIR, WATER })
     {
         Coverage axes;
         int refused = 0;
@@ -267,7 +353,7 @@ TEST_CASE("A flat scene gives the right one of its two poses, or none", "[pose][
 
 TEST_CASE("Few and noisy matches of a deep scene have one pose, upside down as well", "[pose][recover]")
 {
-    struct Kind { Medium medium; int count; double sigma; Vec3d rvec; };
+    struct Kind { SceneMedium medium; int count; double sigma; Vec3d rvec; };
     for (const Kind& kind : { Kind{ NOTHING, 12, 0.2, Vec3d(0.05, 0.35, -0.04) }, Kind{ WATER, 12, 0.2, Vec3d(0.05, 0.35, -0.04) },
                               Kind{ NOTHING, 30, 0.5, Vec3d(0.05, 0.35, -0.04) }, Kind{ AIR, 30, 0.5, Vec3d(0.05, 0.35, -0.04) },
                               Kind{ WATER, 60, 0.5, Vec3d(0, 0, CV_PI) } })
@@ -342,7 +428,7 @@ TEST_CASE("Where both poses of a flat scene are as likely there is no answer", "
 
 TEST_CASE("Cameras that only turn: the rotation, and no long T", "[pose][recover]")
 {
-    for (Medium medium : { NOTHING, AIR, WATER })
+    for (SceneMedium medium : { NOTHING, AIR, WATER })
     {
         Random random(6600);
         Matched m = matchedScene(medium, random, 200);

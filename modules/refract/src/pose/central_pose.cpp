@@ -86,7 +86,7 @@ void posesOfPlane(const Points& n1, const Points& n2, double limit, double prob,
 
 } // namespace
 
-std::vector<RelativePose> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob)
+std::vector<RigidMotion> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob)
 {
     Points n1, n2;
     for (size_t i = 0; i < b1.normalized.size(); i++)
@@ -101,9 +101,9 @@ std::vector<RelativePose> centralPoses(const Bearings& b1, const Bearings& b2, d
         const int agreeing = posesOfScene(n1, n2, limit, prob, found);
         posesOfPlane(n1, n2, limit, prob, std::max(6, agreeing/2), found);
     }
-    std::vector<RelativePose> poses;
+    std::vector<RigidMotion> poses;
     for (const PinholePose& p : found)
-        poses.push_back({ b2.turn.t()*Matx33d(p.R)*b1.turn, b2.turn.t()*Vec3d(p.t.ptr<double>()), 1 });
+        poses.push_back({ b2.turn.t()*Matx33d(p.R)*b1.turn, b2.turn.t()*Vec3d(p.t.ptr<double>()) });
     return poses;
 }
 

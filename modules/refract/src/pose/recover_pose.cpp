@@ -2,16 +2,17 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Relative pose from matches of which some are wrong. Pinholes' poses are where the search begins (central_pose.hpp). The scale
-shows only in how the rays miss the pinholes; its likelihood has one parameter, the length of T, over which all others are
-estimated (its profile). Far out refraction fades and the profile becomes flat: lengths are told from one side only.
+/* Relative pose from matches of which some are wrong. The search, on a part of the matches where there are many, begins with
+pinholes' poses (central_pose.hpp), and is followed by a fit of all inliers. The scale shows only in how the rays miss the pinholes;
+what is known of it is the likelihood's profile (length_profile.hpp).
 
 Of a flat scene the likelihood has two minima far apart, equal without windows. So it is followed from each start that leads
 elsewhere, and where two ends are as likely there is no answer. */
 
 #include "pose/central_pose.hpp"
 #include "pose/chance.hpp"
-#include "pose/relative_pose.hpp"
+#include "pose/consensus.hpp"
+#include "pose/length_profile.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"
@@ -27,227 +28,99 @@ namespace {
 
 const double INFINITE = std::numeric_limits<double>::infinity(), NaN = std::numeric_limits<double>::quiet_NaN();
 
-PixelMatches select(const PixelMatches& matches, const std::vector<int>& which)
-{
-    PixelMatches some;
-    for (int i : which)
-    {
-        some.pixel1.push_back(matches.pixel1[i]);
-        some.pixel2.push_back(matches.pixel2[i]);
-    }
-    return some;
-}
+//! Pixels of camera 1 and of camera 2.
+typedef std::pair<std::vector<Point2d>, std::vector<Point2d> > MatchedPixels;
 
-//! A pose, and the matches that agree with it.
-struct Candidate
+Consensus score(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& motion, double limit)
 {
-    RelativePose pose;
-    double cost = DBL_MAX;              //!< sum of squared errors, cut off at the limit
-    std::vector<int> agreeing;
-    std::vector<double> errors;         //!< of these
-};
-
-Candidate judge(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose, double limit)
-{
-    Candidate c;
-    c.pose = pose;
-    Vec3d T;
+    Consensus c;
     std::vector<double> errors;
-    if (!translation(pair, pose, T))
-        return c;
-    sampsonErrors(pair, matches, pose.R, T, errors, nullptr);
+    c.motion = motion;
     c.cost = 0;
+    sampsonErrors(pair, matches, motion, errors, nullptr, limit);
     for (size_t i = 0; i < errors.size(); i++)
-    {
-        const bool agrees = std::abs(errors[i]) <= limit;       // NaN does not
-        c.cost += agrees ? errors[i]*errors[i] : limit*limit;
-        if (!agrees)
-            continue;
-        c.agreeing.push_back((int)i);
-        c.errors.push_back(errors[i]);
-    }
+        c.add((int)i, errors[i], limit);
     return c;
 }
 
-//! Lengths of T at which refraction may tell something, each twice the one before; 1 where it tells nothing.
-std::vector<double> lengthsToTry(const MatchedCameras& pair)
-{
-    if (!pair.refracts())
-        return { 1. };
-    const double unit = std::max(pair.camera1.layers().stack().total, pair.camera2.layers().stack().total)
-                        + norm(pair.centre1) + norm(pair.centre2);
-    std::vector<double> lengths;
-    for (double length = unit/64; length < 20000*unit; length *= 2)
-        lengths.push_back(length);
-    return lengths;
-}
-
-//! How likely strewn matches agree with a pose of five of them: the other pixel lies in a strip along the curve.
-Sampling samplingOf(const PixelMatches& matches, double limit)
+//! How likely uniformly random matches agree with a pose of five of them: the other pixel lies in a strip along the curve.
+Sampling samplingOf(const std::vector<Point2d>& pixels2, double limit)
 {
     const double POSES = 4;                 // of a sample, on average
-    const Size2d extent = extentOf(matches.pixel2);
+    const Size2d extent = extentOf(pixels2);
     const double strip = 2*std::sqrt(2.)*limit*std::hypot(extent.width, extent.height);
     return { 5, POSES, strip/std::max(extent.area(), DBL_MIN) };
 }
 
-//! Estimates R and baseline anew from what agrees, while that helps.
-void improve(const MatchedCameras& pair, const PixelMatches& matches, double limit, Candidate& best)
+bool isInfinitelyFar(const MatchedCameras& pair, const RigidMotion& motion)
 {
-    for (int k = 0; k < 5 && best.agreeing.size() > 6; k++)
+    return pair.refracts() && norm(motion.t) >= 0.99*lengthsToTry(pair).back();
+}
+
+//! The most likely pose near this one: over all lengths, if windows tell them and they are finite.
+double refineLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& motion, int iterations)
+{
+    double cost = INFINITE;
+    if (pair.refracts() && !isInfinitelyFar(pair, motion))
+        cost = refine(pair, matches, motion, iterations);
+    if (cost < INFINITE && !isInfinitelyFar(pair, motion))
+        return cost;
+    setLength(pair, lengthsToTry(pair).back(), motion);
+    return refineAtLength(pair, matches, motion, iterations);
+}
+
+//! Estimates the pose anew from the inliers, while that helps.
+void localOptimize(const MatchedCameras& pair, const PixelMatches& matches, double limit, Consensus& best)
+{
+    for (int k = 0; k < 5 && best.inliers.size() > 6; k++)
     {
-        RelativePose pose = best.pose;
-        if (std::isnan(refineAtLength(pair, select(matches, best.agreeing), pose, 10)))
+        RigidMotion pose = best.motion;
+        if (!(refineLength(pair, select(matches, best.inliers), pose, 10) < INFINITE))
             return;
-        const Candidate refined = judge(pair, matches, pose, limit);
+        Consensus refined = score(pair, matches, pose, limit);
         if (!(refined.cost < 0.999*best.cost))
             return;
-        best = refined;
+        best = std::move(refined);
     }
 }
 
 //! From a pinholes' pose, at the length that suits it, with limits that become narrower as the pose becomes exact.
-Candidate fromCentral(const MatchedCameras& pair, const PixelMatches& matches, RelativePose pose, double limit)
+Consensus fromCentral(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pinholes, double limit)
 {
     const double WIDE = 16;
-    Candidate best;
+    Consensus best;
+    best.motion = { pinholes.R, pair.centre2 - pinholes.R*pair.centre1 + (pair.refracts() ? pair.depth() : 1.)*pinholes.t };
     for (double wide : { WIDE*limit, WIDE/4*limit, limit })
     {
-        Candidate here;
+        Consensus here;
         for (double length : lengthsToTry(pair))
         {
-            pose.length = length;
-            const Candidate c = judge(pair, matches, pose, wide);
+            RigidMotion motion = best.motion;
+            if (!setLength(pair, length, motion))
+                continue;
+            Consensus c = score(pair, matches, motion, wide);
             if (c.cost < here.cost)
-                here = c;
+                here = std::move(c);
         }
-        improve(pair, matches, wide, here);
-        best = here;
-        pose = here.pose;
+        if (here.inliers.empty())
+            return here;
+        localOptimize(pair, matches, wide, here);
+        best = std::move(here);
     }
     return best;
-}
-
-//! Lengths and the least sums of squared errors there.
-struct Profile
-{
-    std::vector<RelativePose> poses;        //!< at growing lengths
-    std::vector<double> costs;              //!< infinite where there is none
-    int best() const { return (int)(std::min_element(costs.begin(), costs.end()) - costs.begin()); }
-};
-
-double costAt(const MatchedCameras& pair, const PixelMatches& matches, double length, RelativePose& pose)
-{
-    pose.length = length;
-    const double cost = refineAtLength(pair, matches, pose, 30);
-    return std::isnan(cost) ? INFINITE : cost;
-}
-
-//! From the start outwards, each length from its neighbour's pose.
-Profile profileOf(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& start)
-{
-    const std::vector<double> lengths = lengthsToTry(pair);
-    const int count = (int)lengths.size();
-    int first = 0;
-    while (first < count - 1 && lengths[first] < start.length)
-        first++;
-    Profile profile;
-    profile.poses.assign(count, start);
-    profile.costs.assign(count, INFINITE);
-    for (int direction : { 1, -1 })
-    {
-        RelativePose pose = start;
-        for (int i = direction > 0 ? first : first - 1; i >= 0 && i < count; i += direction)
-        {
-            RelativePose next = pose;
-            profile.costs[i] = costAt(pair, matches, lengths[i], next);
-            if (profile.costs[i] < INFINITE)
-                pose = next;
-            profile.poses[i] = next;
-        }
-    }
-    return profile;
-}
-
-//! The least cost near the profile's best, by golden sections of the logarithm of the length.
-double minimize(const MatchedCameras& pair, const PixelMatches& matches, const Profile& profile, RelativePose& pose)
-{
-    const int at = profile.best(), last = (int)profile.costs.size() - 1;
-    pose = profile.poses[at];
-    double cost = profile.costs[at];
-    if (last == 0 || at == last || at == 0)
-        return cost;
-    const double GOLDEN = 0.381966;
-    double low = profile.poses[at - 1].length, middle = pose.length, high = profile.poses[at + 1].length;
-    for (int k = 0; k < 25; k++)
-    {
-        const bool upper = high/middle > middle/low;
-        const double length = upper ? middle*std::pow(high/middle, GOLDEN) : middle*std::pow(low/middle, GOLDEN);
-        RelativePose next = pose;
-        const double there = costAt(pair, matches, length, next);
-        if (there < cost)
-        {
-            (upper ? low : high) = middle;
-            middle = length;
-            cost = there;
-            pose = next;
-        }
-        else
-            (upper ? high : low) = length;
-    }
-    return cost;
-}
-
-//! Where the profile, from its minimum towards one of its ends, rises to a cost; `open` if it does not.
-double crossing(const MatchedCameras& pair, const PixelMatches& matches, const Profile& profile, const RelativePose& best,
-                double cost, int direction, double open)
-{
-    RelativePose inside = best;
-    for (int i = 0; i < (int)profile.costs.size(); i++)
-    {
-        const int at = direction > 0 ? i : (int)profile.costs.size() - 1 - i;
-        const RelativePose& node = profile.poses[at];
-        if (direction*(node.length - best.length) <= 0)
-            continue;
-        if (profile.costs[at] <= cost)
-        {
-            inside = node;
-            continue;
-        }
-        double outside = node.length;
-        for (int k = 0; k < 20; k++)
-        {
-            RelativePose middle = inside;
-            const double length = std::sqrt(inside.length*outside);
-            if (costAt(pair, matches, length, middle) <= cost)
-                inside = middle;
-            else
-                outside = length;
-        }
-        return inside.length;
-    }
-    return open;
 }
 
 //! What is estimated, and its worth.
 struct Estimate
 {
-    RelativePose pose;
-    Vec3d T;
+    RigidMotion motion;
     Matx66d covariance;
     Vec2d interval;
-    std::vector<int> agreeing;
+    std::vector<int> inliers;
     double variance;                    //!< of an error
     std::vector<double> squares;        //!< errors of all matches, squared, cut off at the limit
     double cost() const { return std::accumulate(squares.begin(), squares.end(), 0.); }
 };
-
-//! The square of Student's t that 5 % exceed.
-double quantile95(double freedom)
-{
-    const double z = 1.959964;
-    return z*z*(1 + (z*z + 1)/(2*freedom));
-}
 
 //! Of errors with a variance of 1, by N parameters that move rotation vector and T as the columns of `motion` say.
 template<int N>
@@ -260,41 +133,40 @@ Matx66d covarianceOf(const std::vector<Matx16d>& byPose, const Matx<double, 6, N
 }
 
 //! How the errors move with rotation vector and T, and their covariance if the errors' variance is 1.
-Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose, const Vec3d& T,
-                     bool atLength, std::vector<Matx16d>& byPose)
+Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose, bool atLength,
+                     std::vector<Matx16d>& byPose)
 {
     std::vector<double> errors;
-    sampsonErrors(pair, matches, pose.R, T, errors, &byPose);
-    return atLength ? covarianceOf(byPose, motionAtLength(pair, pose)) : covarianceOf(byPose, Matx66d::eye());
+    sampsonErrors(pair, matches, pose, errors, &byPose);
+    return atLength ? covarianceOf(byPose, motionAtLength(pose)) : covarianceOf(byPose, Matx66d::eye());
 }
 
-//! The matches that agree, without those that stand out among them.
-std::vector<int> usual(const Candidate& candidate)
+//! The inliers without those that stand out among them.
+std::vector<int> withoutOutliers(const Consensus& consensus)
 {
     const double CUT_NORMAL = 3.89;         // exceeded with a chance of 1e-4
     std::vector<double> sizes;
-    for (double e : candidate.errors)
+    for (double e : consensus.errors)
         sizes.push_back(std::abs(e));
     const double scale = std::max(LEAST_SCALE, median(sizes)/0.6745);
     std::vector<int> some;
     for (size_t i = 0; i < sizes.size(); i++)
         if (sizes[i] <= CUT_NORMAL*scale)
-            some.push_back(candidate.agreeing[i]);
+            some.push_back(consensus.inliers[i]);
     return some;
 }
 
 /** Without matches that alone tell something of the pose, of whatever many others: none of these would show that one is wrong, and a
 pose gains by turning until it agrees with a wrong one. So before a plane a single match off it is not believed. */
-std::vector<int> confirmed(const MatchedCameras& pair, const PixelMatches& matches, const RelativePose& pose,
-                           const std::vector<int>& chosen)
+std::vector<int> withoutHighLeverage(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+                                     const std::vector<int>& chosen)
 {
     const double MOST = 0.5;
     const size_t MANY = 60;
-    Vec3d T;
-    if (chosen.size() < MANY || !translation(pair, pose, T))
+    if (chosen.size() < MANY)
         return chosen;
     std::vector<Matx16d> byPose;
-    const Matx66d C = covarianceOf(pair, select(matches, chosen), pose, T, !pair.refracts(), byPose);
+    const Matx66d C = covarianceOf(pair, select(matches, chosen), pose, !pair.refracts(), byPose);
     std::vector<int> some;
     for (size_t i = 0; i < chosen.size(); i++)
         if (!((byPose[i]*C*byPose[i].t())(0) > MOST))       // what part of its error a match's own pull takes
@@ -302,71 +174,20 @@ std::vector<int> confirmed(const MatchedCameras& pair, const PixelMatches& match
     return some;
 }
 
-//! The most likely pose over all lengths, from a good one; false if too few matches agree.
-bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double limit, Candidate best, Estimate& e)
+//! Some of many matches, the same ones every time.
+PixelMatches sampleOf(const PixelMatches& matches)
 {
-    std::vector<int> fitted;
-    Profile profile;
-    double cost = INFINITE;
-    for (int k = 0; k < 5; k++)
-    {
-        const std::vector<int> next = confirmed(pair, matches, best.pose, usual(best));
-        if (next.size() <= 6 || next == fitted)
-            break;
-        fitted = next;
-        const PixelMatches some = select(matches, fitted);
-        profile = profileOf(pair, some, best.pose);
-        RelativePose pose;
-        cost = minimize(pair, some, profile, pose);
-        if (!(cost < INFINITE))
-            return false;
-        best = judge(pair, matches, pose, limit);
-    }
-    if (fitted.empty() || best.agreeing.size() <= 6)
-        return false;
-    const PixelMatches some = select(matches, fitted);
-    const double freedom = (double)fitted.size() - (pair.refracts() ? 6 : 5), variance = cost/freedom;
-    const double most = cost + quantile95(freedom)*variance;
-    e.pose = best.pose;
-    e.interval = Vec2d(0, INFINITE);
-    if (pair.refracts())
-        e.interval = Vec2d(crossing(pair, some, profile, best.pose, most, -1, 0),
-                           crossing(pair, some, profile, best.pose, most, 1, INFINITE));
-    if (e.pose.length >= profile.poses.back().length)       // most likely infinite
-        costAt(pair, some, e.interval[0] > 0 ? e.interval[0] : 1, e.pose);
-    if (!translation(pair, e.pose, e.T))
-        return false;
-    std::vector<Matx16d> byPose;
-    e.covariance = variance*covarianceOf(pair, some, e.pose, e.T, e.interval[1] == INFINITE, byPose);
-    e.agreeing = best.agreeing;
-    e.variance = variance;
-    e.squares.assign(matches.size(), limit*limit);
-    for (size_t i = 0; i < best.agreeing.size(); i++)
-        e.squares[best.agreeing[i]] = best.errors[i]*best.errors[i];
-    return true;
-}
-
-//! Where the search from pinholes' poses ends, each place once.
-std::vector<Candidate> placesOf(const MatchedCameras& pair, const PixelMatches& matches, double limit,
-                                const std::vector<RelativePose>& starts)
-{
-    const double NEAR = 0.01;               // radians
-    const double SAME = 1e-6;               // of several limits the same matches may agree
-    std::vector<Candidate> places;
-    for (auto start = starts.begin(); start != starts.end(); start++)
-    {
-        if (std::any_of(starts.begin(), start, [&](const RelativePose& other)
-                        { return norm(other.R - start->R) < SAME && norm(other.baseline - start->baseline) < SAME; }))
-            continue;
-        const Candidate c = fromCentral(pair, matches, *start, limit);
-        const auto same = std::find_if(places.begin(), places.end(), [&](const Candidate& place)
-                                       { return norm(rotationVector(place.pose.R.t()*c.pose.R)) < NEAR; });
-        if (same == places.end())
-            places.push_back(c);
-        else if (c.cost < same->cost)
-            *same = c;
-    }
-    return places;
+    const size_t MOST = 500;
+    PixelMatches some;
+    RNG random(0x53554253);
+    size_t left = matches.size(), wanted = std::min(MOST, left);
+    for (size_t i = 0; i < matches.size() && wanted > 0; i++, left--)
+        if (random.uniform(0., 1.)*(double)left < (double)wanted)
+        {
+            some.push_back(matches[i]);
+            wanted--;
+        }
+    return some;
 }
 
 //! From one rotation vector to another, which may turn the long way round.
@@ -377,11 +198,95 @@ Vec3d difference(const Vec3d& from, Vec3d to)
     return norm(otherWay - from) < norm(to - from) ? otherWay - from : to - from;
 }
 
+/** The rotation at an end of the length's 95 % interval is as likely as that, which a covariance of the best pose need not say: where
+T is hardly known, rotation and T are not each other's linear functions. */
+void widen(Matx66d& covariance, const Vec3d& toEnd)
+{
+    const double NORMAL = 3.841459;         // the square that 5 % exceed
+    const double square = toEnd.dot(inverseOfPositive(covariance.get_minor<3, 3>(0, 0))*toEnd);
+    if (!(square > NORMAL))
+        return;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            covariance(r, c) += toEnd[r]*toEnd[c]*(1/NORMAL - 1/square);
+}
+
+//! The most likely pose over all lengths, from a good one; false if there are too few inliers.
+bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double limit, const RigidMotion& start, Estimate& e)
+{
+    std::vector<int> fitted;
+    PixelMatches some;
+    Consensus best = score(pair, matches, start, limit);
+    double cost = INFINITE;
+    for (int k = 0; k < 5; k++)
+    {
+        std::vector<int> next = withoutHighLeverage(pair, matches, best.motion, withoutOutliers(best));
+        if (next.size() <= 6 || next == fitted)
+            break;
+        RigidMotion motion = best.motion;
+        fitted = std::move(next);
+        some = select(matches, fitted);
+        if (k == 0)
+            motion = mostLikelyLength(pair, sampleOf(some), motion);
+        cost = refineLength(pair, some, motion, 50);
+        if (!(cost < INFINITE))
+            return false;
+        best = score(pair, matches, motion, limit);
+    }
+    if (fitted.empty() || best.inliers.size() <= 6)
+        return false;
+    const double freedom = (double)fitted.size() - (pair.refracts() ? 6 : 5);
+    std::vector<Matx16d> byPose;
+    e.motion = best.motion;
+    e.variance = cost/freedom;
+    const Matx66d unconstrained = e.variance*covarianceOf(pair, some, e.motion, !pair.refracts(), byPose);
+    const LengthInterval lengths =
+        lengthInterval(pair, some, { e.motion, cost, freedom, unconstrained.get_minor<3, 3>(3, 3) });
+    e.interval = lengths.lengths;
+    if (isInfinitelyFar(pair, e.motion))
+    {
+        setLength(pair, e.interval[0] > 0 ? e.interval[0] : 1, e.motion);
+        if (!(refineAtLength(pair, some, e.motion, 30) < INFINITE))
+            return false;
+    }
+    e.covariance = e.variance*covarianceOf(pair, some, e.motion, e.interval[1] == INFINITE, byPose);
+    for (const RigidMotion& end : lengths.ends)
+        widen(e.covariance, difference(rotationVector(e.motion.R), rotationVector(end.R)));
+    e.inliers = best.inliers;
+    e.squares.assign(matches.size(), limit*limit);
+    for (size_t i = 0; i < best.inliers.size(); i++)
+        e.squares[best.inliers[i]] = best.errors[i]*best.errors[i];
+    return true;
+}
+
+//! Where the search from pinholes' poses ends, each place once.
+std::vector<Consensus> placesOf(const MatchedCameras& pair, const PixelMatches& matches, double limit,
+                                const std::vector<RigidMotion>& starts)
+{
+    const double NEAR = 0.01;               // radians
+    const double SAME = 1e-6;               // of several limits the same matches may be inliers
+    std::vector<Consensus> places;
+    for (auto start = starts.begin(); start != starts.end(); start++)
+    {
+        if (std::any_of(starts.begin(), start, [&](const RigidMotion& other)
+                        { return norm(other.R - start->R) < SAME && norm(other.t - start->t) < SAME; }))
+            continue;
+        const Consensus c = fromCentral(pair, matches, *start, limit);
+        const auto same = std::find_if(places.begin(), places.end(), [&](const Consensus& place)
+                                       { return norm(rotationVector(place.motion.R.t()*c.motion.R)) < NEAR; });
+        if (same == places.end())
+            places.push_back(c);
+        else if (c.cost < same->cost)
+            *same = c;
+    }
+    return places;
+}
+
 /** Whether another estimate, and none of those that the covariance speaks of, is as likely. Which of two poses of a plane is right
 shows in no single match: each is off both by noise alone, in directions of its own. So the costs differ by the sum of as many
 random numbers, and by more only if one of the poses is wrong (@cite Vuong1989); if both agree with nearly as many matches, as
 what was cut off is no noise. The covariance may be that at one length, at which both are compared. */
-bool isRival(const MatchedCameras& pair, const PixelMatches& matches, const Estimate& e, const Estimate& other)
+bool isAmbiguous(const MatchedCameras& pair, const PixelMatches& matches, const Estimate& e, const Estimate& other)
 {
     const double FAR = 5, CERTAIN = 3;      // standard deviations
     const double LEFT = 1e-6;               // square pixels, that refineAtLength leaves
@@ -393,29 +298,40 @@ bool isRival(const MatchedCameras& pair, const PixelMatches& matches, const Esti
         sum += apart;
         squares += apart*apart;
     }
-    if ((double)other.agreeing.size() < AS_MANY*(double)e.agreeing.size() || sum > LEFT + CERTAIN*std::sqrt(squares))
+    if ((double)other.inliers.size() < AS_MANY*(double)e.inliers.size() || sum > LEFT + CERTAIN*std::sqrt(squares))
         return false;
-    RelativePose pose = other.pose;
-    costAt(pair, select(matches, other.agreeing), e.pose.length, pose);
-    const Vec3d off = difference(rotationVector(e.pose.R), rotationVector(pose.R));
+    RigidMotion motion = other.motion;
+    setLength(pair, norm(e.motion.t), motion);
+    refineAtLength(pair, select(matches, other.inliers), motion, 30);
+    const Vec3d off = difference(rotationVector(e.motion.R), rotationVector(motion.R));
     return off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off)*e.variance > FAR*FAR*std::max(e.variance, LEFT);
 }
 
-bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& matches, double prob, double threshold,
-             Estimate& e)
+bool recover(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, double prob, double threshold, Estimate& e)
 {
-    const Bearings b1 = bearingsOf(camera1, matches.pixel1), b2 = bearingsOf(camera2, matches.pixel2);
+    const std::vector<PixelRay> rays1 = pixelRays(camera1, pixels.first), rays2 = pixelRays(camera2, pixels.second);
+    PixelMatches matches;
+    for (size_t i = 0; i < pixels.first.size(); i++)
+        matches.push_back({ pixels.first[i], pixels.second[i], rays1[i], rays2[i] });
+    const PixelMatches sample = sampleOf(matches);
+    std::vector<Point2d> sample1, sample2;
+    for (const Match& m : sample)
+    {
+        sample1.push_back(m.pixel1);
+        sample2.push_back(m.pixel2);
+    }
+    const Bearings b1 = bearingsOf(camera1, sample1), b2 = bearingsOf(camera2, sample2);
     const MatchedCameras pair = { camera1, camera2, b1.centre, b2.centre };
-    const std::vector<Candidate> places = placesOf(pair, matches, threshold,
+    const std::vector<Consensus> places = placesOf(pair, sample, threshold,
                                                    centralPoses(b1, b2, threshold/camera1.lens().parameters()[0], prob));
     size_t most = 0;
-    for (const Candidate& place : places)
-        most = std::max(most, place.agreeing.size());
+    for (const Consensus& place : places)
+        most = std::max(most, place.inliers.size());
     std::vector<Estimate> estimates;
-    for (const Candidate& place : places)
+    for (const Consensus& place : places)
     {
         Estimate here;
-        if (2*place.agreeing.size() >= most && estimate(pair, matches, threshold, place, here))
+        if (2*place.inliers.size() >= most && estimate(pair, matches, threshold, place.motion, here))
             estimates.push_back(here);
     }
     if (estimates.empty())
@@ -423,32 +339,32 @@ bool recover(const Camera& camera1, const Camera& camera2, const PixelMatches& m
     const auto best = std::min_element(estimates.begin(), estimates.end(),
                                        [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
     e = *best;
-    return !isChance((int)matches.size(), (int)e.agreeing.size(), samplingOf(matches, threshold))
+    return !isChance((int)matches.size(), (int)e.inliers.size(), samplingOf(pixels.second, threshold))
            && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other)
-                           { return &other != &*best && isRival(pair, matches, e, other); });
+                           { return &other != &*best && isAmbiguous(pair, matches, e, other); });
 }
 
 } // namespace
 
 /** Those that both cameras saw, each once: a copy tells nothing.
 @param index of each, in the result; of one that was not seen: the result's size */
-static PixelMatches differentMatches(const std::vector<Point2d>& all1, const std::vector<Point2d>& all2, std::vector<int>& index)
+static MatchedPixels differentMatches(const std::vector<Point2d>& all1, const std::vector<Point2d>& all2, std::vector<int>& index)
 {
-    PixelMatches matches;
+    MatchedPixels matches;
     std::map<std::array<double, 4>, int> known;
     for (size_t i = 0; i < all1.size(); i++)
     {
         index.push_back(-1);
         if (!isSeen(all1[i]) || !isSeen(all2[i]))
             continue;
-        const auto entry = known.insert({ { { all1[i].x, all1[i].y, all2[i].x, all2[i].y } }, (int)matches.size() });
+        const auto entry = known.insert({ { { all1[i].x, all1[i].y, all2[i].x, all2[i].y } }, (int)matches.first.size() });
         index.back() = entry.first->second;
         if (!entry.second)
             continue;
-        matches.pixel1.push_back(all1[i]);
-        matches.pixel2.push_back(all2[i]);
+        matches.first.push_back(all1[i]);
+        matches.second.push_back(all2[i]);
     }
-    std::replace(index.begin(), index.end(), -1, (int)matches.size());
+    std::replace(index.begin(), index.end(), -1, (int)matches.first.size());
     return matches;
 }
 
@@ -468,11 +384,11 @@ static int recoverPose(InputArray points1, InputArray points2, const Ptr<Refract
     if (!(threshold > 0) || !std::isfinite(threshold))
         CV_Error_(Error::StsOutOfRange, ("threshold is %g; it must be positive", threshold));
     std::vector<int> index;
-    const PixelMatches matches = differentMatches(all1, all2, index);
+    const MatchedPixels matches = differentMatches(all1, all2, index);
     const bool found = recover(c1, c2, matches, prob, threshold, e);
-    std::vector<uchar> chosen(matches.size() + 1, 0);           // the last: what was not seen
-    for (size_t i = 0; found && i < e.agreeing.size(); i++)
-        chosen[e.agreeing[i]] = 1;
+    std::vector<uchar> chosen(matches.first.size() + 1, 0);           // the last: what was not seen
+    for (size_t i = 0; found && i < e.inliers.size(); i++)
+        chosen[e.inliers[i]] = 1;
     Mat agrees(count, 1, CV_8U);
     for (int i = 0; i < count; i++)
         agrees.at<uchar>(i) = chosen[index[i]];
@@ -480,8 +396,8 @@ static int recoverPose(InputArray points1, InputArray points2, const Ptr<Refract
         agrees.copyTo(mask);
     if (!found)
         return 0;
-    Mat(e.pose.R).copyTo(R);
-    Mat(e.T).copyTo(T);
+    Mat(e.motion.R).copyTo(R);
+    Mat(e.motion.t).copyTo(T);
     return countNonZero(agrees);
 }
 

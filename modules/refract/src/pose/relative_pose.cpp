@@ -11,113 +11,105 @@ namespace cv { namespace refract {
 
 namespace {
 
-typedef Vec<double, 5> Vec5d;                   // three of a rotation, two of the baseline's direction
+const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-Matx<double, 3, 2> tangents(const Vec3d& u)
+//! Rays of all pixels, moved by an offset.
+std::vector<Vec4d> raysAt(const Camera& camera, const std::vector<Point2d>& pixels, const Point2d& offset)
 {
-    const Vec3d a = normalize(u.cross(std::abs(u[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), b = u.cross(a);
-    return Matx<double, 3, 2>(a[0], b[0], a[1], b[1], a[2], b[2]);
-}
-
-//! The pose moved by five parameters, and how the baseline moves by the last two.
-RelativePose moved(const RelativePose& pose, const Vec5d& five, Matx<double, 3, 2>& byDirection)
-{
-    const Matx<double, 3, 2> across = tangents(pose.baseline);
-    const Vec3d sum = pose.baseline + across*Vec2d(five[3], five[4]), u = normalize(sum);
-    byDirection = (1/norm(sum))*((Matx33d::eye() - u*u.t())*across);
-    return { rotationMatrix(rotationVector(pose.R) + Vec3d(five.val)), u, pose.length };
-}
-
-//! T without the baseline, and q.
-bool parts(const MatchedCameras& pair, const RelativePose& pose, Vec3d& offset, double& q)
-{
-    offset = pair.centre2 - pose.R*pair.centre1;
-    const double along = offset.dot(pose.baseline);
-    const double square = along*along - offset.dot(offset) + pose.length*pose.length;
-    q = std::sqrt(std::max(square, 0.)) - along;
-    return square > 0 && q > 0;
-}
-
-//! dT = dOffset + dq u + q du, and T dT = 0 says what dq is.
-Matx<double, 6, 5> motion(const MatchedCameras& pair, const RelativePose& pose, const Matx<double, 3, 2>& byDirection)
-{
-    Vec3d offset;
-    double q;
-    parts(pair, pose, offset, q);
-    const Vec3d u = pose.baseline, T = offset + q*u;
-    const Matx33d keepsLength = Matx33d::eye() - (1/T.dot(u))*(u*T.t());
-    const Matx33d turned = Rotation(rotationVector(pose.R).val).derivativeOf(pair.centre1);
-    const Matx33d byRotation = -1*(keepsLength*turned);
-    const Matx<double, 3, 2> byBaseline = q*(keepsLength*byDirection);
-    Matx<double, 6, 5> both = Matx<double, 6, 5>::eye();
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 5; c++)
-            both(3 + r, c) = c < 3 ? byRotation(r, c) : byBaseline(r, c - 3);
-    return both;
-}
-
-//! Errors of all matches at one length, without the gradient's own change, which is of second order in the noise.
-struct ErrorsAtLength
-{
-    const MatchedCameras& pair;
-    const PixelMatches& matches;
-    const RelativePose& start;
-
-    //! False where a match has no distance.
-    bool operator()(const Vec5d& five, SumOfSquares<5>& sum) const
+    std::vector<Vec4d> rays(pixels.size(), Vec4d::all(NaN));
+    forEachBlock((int)pixels.size(), [&](int begin, int n)
     {
-        Matx<double, 3, 2> byDirection;
-        const RelativePose pose = moved(start, five, byDirection);
-        Vec3d T;
-        if (matches.size() == 0 || !translation(pair, pose, T))
-            return false;
-        std::vector<double> errors;
-        std::vector<Matx16d> byPose;
-        sampsonErrors(pair, matches, pose.R, T, errors, &byPose);
-        const Matx<double, 6, 5> byFive = motion(pair, pose, byDirection);
-        for (size_t i = 0; i < errors.size(); i++)
+        double u[BLOCK] = {}, v[BLOCK] = {}, tau[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK];
+        uchar status[BLOCK];
+        for (int i = 0; i < n; i++)
         {
-            if (std::isnan(errors[i]))
-                return false;
-            sum.add(errors[i], (byPose[i]*byFive).val);
+            u[i] = pixels[begin + i].x + offset.x;
+            v[i] = pixels[begin + i].y + offset.y;
+            status[i] = REFRACT_OK;
         }
-        return true;
+        camera.unproject(n, u, v, tau, x, y, z, status);
+        for (int i = 0; i < n; i++)
+            if (status[i] == REFRACT_OK)
+                rays[begin + i] = Vec4d(tau[i], x[i], y[i], z[i]);
+    });
+    return rays;
+}
+
+Vec3d directionOf(const Vec4d& ray) { return Vec3d(ray[1], ray[2], ray[3]); }
+
+//! What all matches share at a pose.
+struct PoseTerms
+{
+    PoseTerms(const MatchedCameras& pair, const RigidMotion& pose)
+        : R(pose.R), t(pose.t), normal1(pose.R*pair.camera1.layers().normal()), normal2(pair.camera2.layers().normal())
+    {
+        const Vec3d rvec = rotationVector(pose.R);
+        const Rotation rotation(rvec.val);
+        for (int k = 0; k < 3; k++)
+        {
+            const Matx33d turn = rotation.dR[k]*pose.R.t();        // of the angular velocity's cross product
+            const double axis[3] = { turn(2, 1), turn(0, 2), turn(1, 0) };
+            for (int r = 0; r < 3; r++)
+                turnByRvec(r, k) = axis[r];
+        }
     }
+    Matx33d R;
+    Vec3d t, normal1, normal2;      //!< in camera 2
+    Matx33d turnByRvec;             //!< columns: angular velocities
 };
 
-} // namespace
-
-bool translation(const MatchedCameras& pair, const RelativePose& pose, Vec3d& T)
+/** The error of one match.
+@param byPose may be null
+@param inFront whether the rays come nearest to each other beyond both windows */
+double sampsonError(const Match& m, const PoseTerms& pose, double* byPose, bool& inFront)
 {
-    Vec3d offset;
-    double q;
-    if (!parts(pair, pose, offset, q))
-        return false;
-    T = offset + q*pose.baseline;
-    return true;
+    const Vec3d a = pose.R*m.ray1.direction, origin = m.ray1.tau*pose.normal1;
+    const Vec3d w = m.ray2.tau*pose.normal2 - origin - pose.t;
+    const Vec3d &d2 = m.ray2.direction, c = a.cross(d2), byA = d2.cross(w), byD2 = w.cross(a);
+    const Vec3d byD1 = pose.R.t()*byA;
+    const double by1 = -pose.normal1.dot(c), by2 = pose.normal2.dot(c);
+    const double g[4] = { byD1.dot(m.ray1.directionByU) + by1*m.ray1.tauByPixel[0],
+                          byD1.dot(m.ray1.directionByV) + by1*m.ray1.tauByPixel[1],
+                          byD2.dot(m.ray2.directionByU) + by2*m.ray2.tauByPixel[0],
+                          byD2.dot(m.ray2.directionByV) + by2*m.ray2.tauByPixel[1] };
+    const double scale = 1/std::sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2] + g[3]*g[3]), c2 = c.dot(c);
+    inFront = -byA.dot(c) > m.ray1.surface*c2 && byD2.dot(c) > m.ray2.surface*c2;
+    const double error = w.dot(c)*scale;
+    if (!byPose)
+        return error;
+    // The derivatives of g, and of half the squared length of its gradient.
+    const Vec3d moved1 = pose.R*(g[0]*m.ray1.directionByU + g[1]*m.ray1.directionByV);
+    const Vec3d moved2 = g[2]*m.ray2.directionByU + g[3]*m.ray2.directionByV;
+    const double tau1 = g[0]*m.ray1.tauByPixel[0] + g[1]*m.ray1.tauByPixel[1];
+    const double tau2 = g[2]*m.ray2.tauByPixel[0] + g[3]*m.ray2.tauByPixel[1];
+    const Vec3d lengthByW = moved1.cross(d2) + a.cross(moved2);
+    const Vec3d lengthByTurn = moved1.cross(byA) - origin.cross(lengthByW) + a.cross(moved2.cross(w) + tau2*d2.cross(pose.normal2))
+                               - tau1*pose.normal1.cross(a).cross(d2);
+    const double ratio = error*scale;
+    const Vec3d byTurn = (a.cross(byA) - origin.cross(c) - ratio*lengthByTurn)*scale, byT = (ratio*lengthByW - c)*scale;
+    const Vec3d byRvec = pose.turnByRvec.t()*byTurn;
+    for (int k = 0; k < 3; k++)
+    {
+        byPose[k] = byRvec[k];
+        byPose[3 + k] = byT[k];
+    }
+    return error;
 }
 
-Matx<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose)
+/* Rays that do not meet in front agree best at an end of the curve, infinitely far or at a window: the distance from there, also
+over the length of its gradient. */
+void errorsAtEnds(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose, const std::vector<int>& which,
+                  std::vector<double>& errors, std::vector<Matx16d>* byPose)
 {
-    return motion(pair, pose, tangents(pose.baseline));
-}
-
-void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const Matx33d& R, const Vec3d& T,
-                   std::vector<double>& errors, std::vector<Matx16d>* byPose)
-{
-    const EpipolarDistance distance(pair.camera1, pair.camera2, R, T, 1, DepthRange{ 0, DBL_MAX });
-    const int count = (int)matches.size();
-    errors.resize(count);
-    if (byPose)
-        byPose->resize(count);
-    forEachBlock(count, [&](int begin, int n)
+    const EpipolarDistance distance(pair.camera1, pair.camera2, pose.R, pose.t, 1, DepthRange{ 0, DBL_MAX });
+    forEachBlock((int)which.size(), [&](int begin, int n)
     {
         Matches block;
         for (int i = 0; i < n; i++)
         {
-            const Point2d &p1 = matches.pixel1[begin + i], &p2 = matches.pixel2[begin + i];
-            block.ofCurve[i] = p1.x; block.ofCurve[BLOCK + i] = p1.y;
-            block.other[i] = p2.x; block.other[BLOCK + i] = p2.y;
+            const Match& m = matches[which[begin + i]];
+            block.ofCurve[i] = m.pixel1.x; block.ofCurve[BLOCK + i] = m.pixel1.y;
+            block.other[i] = m.pixel2.x; block.other[BLOCK + i] = m.pixel2.y;
             block.status[i] = REFRACT_OK;
         }
         distance.evaluate(block, n, true);
@@ -126,23 +118,151 @@ void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, cons
             const auto J = [&](int c) { return block.jacobian[c*BLOCK + i]; };
             const double gradient = std::sqrt(J(0)*J(0) + J(1)*J(1) + J(2)*J(2) + J(3)*J(3));
             const bool ok = block.status[i] == REFRACT_OK && gradient > 0;
-            errors[begin + i] = ok ? block.distance[i]/gradient : std::numeric_limits<double>::quiet_NaN();
+            errors[which[begin + i]] = ok ? block.distance[i]/gradient : NaN;
             for (int c = 0; c < 6 && byPose; c++)
-                (*byPose)[begin + i](c) = J(4 + c)/gradient;
+                (*byPose)[which[begin + i]](c) = J(4 + c)/gradient;
         }
     });
 }
 
-double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RelativePose& pose, int iterations)
+Matx<double, 3, 2> tangents(const Vec3d& u)
 {
-    const RelativePose start = pose;
+    const Vec3d a = normalize(u.cross(std::abs(u[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), b = u.cross(a);
+    return Matx<double, 3, 2>(a[0], b[0], a[1], b[1], a[2], b[2]);
+}
+
+//! The most likely pose of those that N parameters reach.
+template<int N, typename Move>
+double minimizeErrors(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations, const Move& move)
+{
     const LeastSquaresEnd end = { iterations, 1e-7, 1e-12 };        // square pixels
-    Vec5d five;
-    const double sum = minimizeSquares(ErrorsAtLength{ pair, matches, start }, end, five);
-    Matx<double, 3, 2> byDirection;
-    if (!std::isnan(sum))
-        pose = moved(start, five, byDirection);
+    std::vector<double> errors;
+    std::vector<Matx16d> byPose;
+    const auto evaluate = [&](const Vec<double, N>& x, SumOfSquares<N>& sum)
+    {
+        Matx<double, 6, N> motion;
+        sampsonErrors(pair, matches, move(x, motion), errors, &byPose);
+        for (size_t i = 0; i < errors.size(); i++)
+        {
+            if (std::isnan(errors[i]))
+                return false;
+            sum.add(errors[i], (byPose[i]*motion).val);
+        }
+        return !errors.empty();
+    };
+    Vec<double, N> x;
+    const double sum = minimizeSquares(evaluate, end, x);
+    if (std::isnan(sum))
+        return std::numeric_limits<double>::infinity();
+    Matx<double, 6, N> motion;
+    pose = move(x, motion);
     return sum;
+}
+
+} // namespace
+
+std::vector<PixelRay> pixelRays(const Camera& camera, const std::vector<Point2d>& pixels)
+{
+    const double STEP = 1e-2;           // pixels: a central difference is good to eight digits
+    const std::vector<Vec4d> at = raysAt(camera, pixels, Point2d());
+    const std::vector<Vec4d> right = raysAt(camera, pixels, Point2d(STEP, 0)), left = raysAt(camera, pixels, Point2d(-STEP, 0));
+    const std::vector<Vec4d> below = raysAt(camera, pixels, Point2d(0, STEP)), above = raysAt(camera, pixels, Point2d(0, -STEP));
+    std::vector<PixelRay> rays(pixels.size());
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        const Vec4d byU = (right[i] - left[i])*(0.5/STEP), byV = (below[i] - above[i])*(0.5/STEP);
+        const double leaving = camera.layers().leavingMu(at[i][0], camera.layers().normal().dot(directionOf(at[i])));
+        rays[i] = { at[i][0], directionOf(at[i]), Vec2d(byU[0], byV[0]), directionOf(byU), directionOf(byV), 1/leaving };
+    }
+    return rays;
+}
+
+PixelMatches select(const PixelMatches& matches, const std::vector<int>& which)
+{
+    PixelMatches some;
+    some.reserve(which.size());
+    for (int i : which)
+        some.push_back(matches[i]);
+    return some;
+}
+
+double MatchedCameras::depth() const
+{
+    return std::max(camera1.layers().stack().total, camera2.layers().stack().total) + norm(centre1) + norm(centre2);
+}
+
+bool setLength(const MatchedCameras& pair, double length, RigidMotion& pose)
+{
+    const Vec3d offset = pair.centre2 - pose.R*pair.centre1, between = pose.t - offset;
+    const double now = norm(between), along = offset.dot(between)/now;
+    const double square = along*along - offset.dot(offset) + length*length, root = std::sqrt(std::max(square, 0.));
+    // Two q may give a short T.
+    const double q = std::abs(now + along - root) <= std::abs(now + along + root) ? root - along : -root - along;
+    const bool isReached = square > 0 && q > 0;
+    pose.t = isReached ? offset + between*(q/now) : pose.t*(length/norm(pose.t));
+    return isReached;
+}
+
+Matx<double, 6, 5> motionAtLength(const RigidMotion& pose)
+{
+    const Matx<double, 3, 2> across = norm(pose.t)*tangents(normalize(pose.t));
+    Matx<double, 6, 5> motion = Matx<double, 6, 5>::eye();
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 2; c++)
+            motion(3 + r, 3 + c) = across(r, c);
+    return motion;
+}
+
+void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+                   std::vector<double>& errors, std::vector<Matx16d>* byPose, double limit)
+{
+    const PoseTerms terms(pair, pose);
+    std::vector<uchar> atEnd(matches.size());
+    errors.resize(matches.size());
+    if (byPose)
+        byPose->resize(matches.size());
+    forEachBlock((int)matches.size(), [&](int begin, int n)
+    {
+        for (int i = begin; i < begin + n; i++)
+        {
+            bool inFront;
+            errors[i] = sampsonError(matches[i], terms, byPose ? (*byPose)[i].val : nullptr, inFront);
+            atEnd[i] = !inFront && std::abs(errors[i]) <= limit;
+        }
+    });
+    std::vector<int> which;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (atEnd[i])
+            which.push_back((int)i);
+    errorsAtEnds(pair, matches, pose, which, errors, byPose);
+}
+
+double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations)
+{
+    const RigidMotion start = pose;
+    return minimizeErrors<6>(pair, matches, pose, iterations, [&](const Vec6d& six, Matx66d& motion)
+    {
+        motion = Matx66d::eye();
+        return RigidMotion{ rotationMatrix(rotationVector(start.R) + Vec3d(six.val)), start.t + Vec3d(six.val + 3) };
+    });
+}
+
+double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations)
+{
+    const RigidMotion start = pose;
+    const double length = norm(start.t);
+    const Vec3d direction = normalize(start.t);
+    const Matx<double, 3, 2> across = tangents(direction);
+    return minimizeErrors<5>(pair, matches, pose, iterations, [&](const Vec<double, 5>& five, Matx<double, 6, 5>& motion)
+    {
+        const Vec3d sum = direction + across*Vec2d(five[3], five[4]), u = normalize(sum);
+        const Matx<double, 3, 2> byDirection = (length/norm(sum))*((Matx33d::eye() - u*u.t())*across);
+        motion = Matx<double, 6, 5>::eye();
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 2; c++)
+                motion(3 + r, 3 + c) = byDirection(r, c);
+        return RigidMotion{ rotationMatrix(rotationVector(start.R) + Vec3d(five.val)), length*u };
+    });
 }
 
 }} // namespace

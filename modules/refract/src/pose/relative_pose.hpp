@@ -6,46 +6,66 @@
 #define OPENCV_REFRACT_RELATIVE_POSE_HPP
 
 #include "camera/camera.hpp"
+#include "pose/rigid_motion.hpp"
+
+/* Two cameras' pose and what matches say of it. Two rays o + s d meet if
+
+    g = (o2 - R o1 - T) . (R d1 x d2) = 0
+
+(the generalised epipolar constraint, @cite Pless2003). A match's error is Sampson's, g over the length of its gradient by the
+four pixel coordinates: to first order how far its two pixels together are from agreeing. Nothing is projected, so that a
+thousand errors take some tenths of a millisecond. */
 
 namespace cv { namespace refract {
 
-//! Matches of two cameras.
-struct PixelMatches
+//! A pixel's ray, tau normal + s direction, and how it moves with the pixel. NaN where there is none.
+struct PixelRay
 {
-    std::vector<Point2d> pixel1, pixel2;
-    size_t size() const { return pixel1.size(); }
+    double tau;
+    Vec3d direction;
+    Vec2d tauByPixel;
+    Vec3d directionByU, directionByV;
+    double surface;                 //!< s at the last surface
 };
 
-/** Two cameras, judged by matches. Errors are Sampson's: a match's distance from its epipolar curve over the length of its
-gradient, to first order how far its two pixels together are from agreeing. */
+std::vector<PixelRay> pixelRays(const Camera& camera, const std::vector<Point2d>& pixels);
+
+struct Match
+{
+    Point2d pixel1, pixel2;
+    PixelRay ray1, ray2;
+};
+typedef std::vector<Match> PixelMatches;
+
+PixelMatches select(const PixelMatches& matches, const std::vector<int>& which);
+
 struct MatchedCameras
 {
     const Camera &camera1, &camera2;
     Vec3d centre1, centre2;         //!< near which all rays pass, each in its camera
     bool refracts() const { return camera1.refracts() || camera2.refracts(); }
+    //! A length at which refraction tells the most of the scale: how deep the windows are.
+    double depth() const;
 };
 
-/** Camera 1 -> camera 2: T = centre2 - R centre1 + q baseline, with q such that T has its length. The baseline is what a pair
-of pinholes at the centres knows; it hardly depends on the length. */
-struct RelativePose
-{
-    Matx33d R;
-    Vec3d baseline;                 //!< unit
-    double length;                  //!< of T
-};
+/** The pose at another length of T. T = centre2 - R centre1 + q baseline: the baseline is what pinholes at the centres know, and
+hardly depends on the length. False where no q gives this length; T then keeps its direction. */
+bool setLength(const MatchedCameras& pair, double length, RigidMotion& pose);
 
-//! False if no baseline of this direction gives T this length.
-bool translation(const MatchedCameras& pair, const RelativePose& pose, Vec3d& T);
+/** Of each match, NaN where it has no ray.
+@param byPose if it is wanted, by the rotation vector (3) and by T (3)
+@param limit errors beyond it need no exact value */
+void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+                   std::vector<double>& errors, std::vector<Matx16d>* byPose, double limit = DBL_MAX);
 
-//! Of each match, NaN where it has no distance; byPose, if it is wanted, by the rotation vector (3) and by T (3).
-void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const Matx33d& R, const Vec3d& T,
-                   std::vector<double>& errors, std::vector<Matx16d>* byPose);
+//! The most likely pose near this one: the sum of squared errors, infinite if there is none.
+double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations);
 
-//! Most likely R and baseline for the pose's length: the sum of squared errors, NaN if there is none.
-double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RelativePose& pose, int iterations);
+//! The same for the length that T has.
+double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations);
 
-/** Columns: how the rotation vector and T move by the five parameters that refineAtLength estimates. */
-Matx<double, 6, 5> motionAtLength(const MatchedCameras& pair, const RelativePose& pose);
+//! Columns: how the rotation vector and T move by the five parameters that refineAtLength estimates.
+Matx<double, 6, 5> motionAtLength(const RigidMotion& pose);
 
 }} // namespace
 

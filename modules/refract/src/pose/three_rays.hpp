@@ -7,6 +7,7 @@
 
 #include "arrays/views.hpp"
 #include "camera/camera.hpp"
+#include "pose/rigid_motion.hpp"
 
 namespace cv { namespace refract {
 
@@ -14,13 +15,6 @@ namespace cv { namespace refract {
 struct SceneRay
 {
     Vec3d origin, direction;    //!< direction unit
-};
-
-//! Object -> camera.
-struct RigidMotion
-{
-    Matx33d R;
-    Vec3d t;
 };
 
 /** The motions that put three object points on three rays, which need not meet (the generalised perspective three-point
