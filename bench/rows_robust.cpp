@@ -147,7 +147,7 @@ Row recoverRow(const std::shared_ptr<Matched>& m, const std::string& key, const 
     };
     r.error = [=] { return degreesOff(*m); };
     r.peerError = [=] { r.peer(); return degreesOff(*m); };
-    r.successes = [=] { return m->agreeing >= 110 ? 1 : 0; };
+    r.successes = [=] { return m->agreeing >= 0.55*(double)m->pixels1.size() ? 1 : 0; };
     return r;
 }
 
@@ -159,6 +159,8 @@ void addRobustRows(std::vector<Row>& rows)
     rows.push_back(pnpRow(std::make_shared<Trials>(1.333, 100, 0.7), "pnp_ransac_water", "the same in water"));
     rows.push_back(recoverRow(std::make_shared<Matched>(1, 200, 0.4), "recover_pose", "relative pose, 80 of 200 wrong"));
     rows.push_back(recoverRow(std::make_shared<Matched>(1.333, 200, 0.4), "recover_pose_water", "the same in water"));
+    rows.push_back(recoverRow(std::make_shared<Matched>(1, 5000, 0.4), "recover_pose_many", "relative pose, 2000 of 5000 wrong"));
+    rows.push_back(recoverRow(std::make_shared<Matched>(1.333, 5000, 0.4), "recover_pose_many_water", "the same in water"));
 }
 
 } // namespace bench
