@@ -269,7 +269,7 @@ TEST_CASE("The reduced normal equations are the inverse of the whole bound", "[b
         const ReducedBundle reduced(bundle, true);
         CHECK(reduced.stepLeft() < 1e-6);
         Mat stated;
-        eigen2cv(rigCovariance(bundle.rig(), reduced.information(), sigma*sigma), stated);
+        eigen2cv(publicCovariance(bundle.rig(), halfCovariance(bundle.rig(), reduced.information()), sigma*sigma), stated);
         for (int c = 0; c < 2; c++)
         {
             const int first = 16*c + 8;         // 8 of the lens

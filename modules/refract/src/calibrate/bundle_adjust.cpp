@@ -83,14 +83,14 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
     task.knowledge[0].kind = PoseKnowledge::EXACT;
 }
 
-bool needsLengths(const BundleTask& task)
+//! What tells the scale.
+void checkScale(BundleTask& task)
 {
-    const bool isRigKnown = task.pixels.size() > 1 && !(task.flags & GLASS_FREE_EXTRINSICS);
-    const bool arePosesKnown = task.poses.size() > 1 && (task.flags & GLASS_USE_POSES);
-    if (task.lengths.empty() && !isRigKnown && !arePosesKnown)
+    task.isRigKnown = task.pixels.size() > 1 && !(task.flags & GLASS_FREE_EXTRINSICS);
+    task.arePosesKnown = task.poses.size() > 1 && (task.flags & GLASS_USE_POSES);
+    if (task.lengths.empty() && !task.isRigKnown && !task.arePosesKnown)
         CV_Error(Error::StsBadArg, "nothing tells the scale: give a length between two points (lengths), or R and T of several "
                                    "cameras without GLASS_FREE_EXTRINSICS, or the poses of several views (GLASS_USE_POSES)");
-    return !isRigKnown && !arePosesKnown;
 }
 
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
@@ -139,7 +139,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     task.points.resize(checkedPointCount(pixels, task.points.size()), Point3d(NaN, NaN, NaN));
     task.lengths = readLengths(lengths, (int)task.points.size());
     readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
-    task.needsLengths = needsLengths(task);
+    checkScale(task);
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);

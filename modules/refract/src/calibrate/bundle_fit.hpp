@@ -20,7 +20,7 @@ struct BundleTask
     std::vector<KnownLength> lengths;
     int flags;
     TermCriteria criteria;
-    bool needsLengths;                          //!< nothing else tells the scale
+    bool isRigKnown, arePosesKnown;             //!< R and T of several cameras, poses of several views: they tell the scale
     bool wantsPointDeviations;
 };
 

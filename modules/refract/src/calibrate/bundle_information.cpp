@@ -24,13 +24,15 @@ using Eigen::VectorXd;
 // What is left of a squared effect below this part of it is rounding.
 const double ROUNDING = 1e-12;
 
-//! Y, Y^T Y = A^+.
-MatrixXd inverseRoot(const MatrixXd& A)
+//! Y, Y^T Y = A^+. @param isRegular if given: whether A has an inverse
+MatrixXd inverseRoot(const MatrixXd& A, bool* isRegular = nullptr)
 {
     const VectorXd scale = A.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal()*A*scale.asDiagonal());
     const VectorXd& values = eigen.eigenvalues();
     const VectorXd roots = (values.array() > ROUNDING*values.maxCoeff()).select(values.cwiseSqrt().cwiseInverse(), 0.);
+    if (isRegular)
+        *isRegular = values[0] > ROUNDING*values.maxCoeff();
     return roots.asDiagonal()*eigen.eigenvectors().transpose()*scale.asDiagonal();
 }
 
@@ -79,8 +81,12 @@ void ReducedBundle::addImages()
             image.rows.rightCols(6) = derivatives.byPose;
         CV_Assert(column == ofRig);
 
-        const MatrixXd products = image.rows.transpose()*image.rows;
-        const VectorXd gradient = image.rows.transpose()*derivatives.residuals;
+        MatrixXd used = image.rows;
+        for (int row = 0; 2*row < used.rows(); row++)
+            if (!bundle_.isInlier(i, row))
+                used.middleRows<2>(2*row).setZero();
+        const MatrixXd products = used.transpose()*used;
+        const VectorXd gradient = used.transpose()*derivatives.residuals;
         for (size_t c = 0; c < image.columns.size(); c++)
         {
             gradient_[image.columns[c]] += gradient[c];
@@ -131,7 +137,7 @@ ReducedBundle::Eliminated ReducedBundle::eliminate(const Cluster& cluster) const
         Er += byValues.transpose()*residual;
     }
     Eliminated result;
-    result.Y = inverseRoot(EE);
+    result.Y = inverseRoot(EE, &result.isDetermined);
     result.W = result.Y*EF;
     result.ofResiduals = result.Y*Er;
     return result;
@@ -180,25 +186,33 @@ double ReducedBundle::stepLeft() const
     return std::sqrt(ofPoints_ + std::max(ofRest, 0.));
 }
 
+//! Y, Y^T Y = inverse of the poses' part of the scaled matrix, the rig being known.
+MatrixXd ReducedBundle::poseInverseRoot() const
+{
+    const int ofRig = space_.count, ofPoses = count_ - ofRig;
+    if (ofPoses == 0)
+        return MatrixXd(0, 0);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaledMatrix(matrix_, effect_).bottomRightCorner(ofPoses, ofPoses));
+    if (!(eigen.eigenvalues()[0] > ROUNDING))
+    {
+        int worst;
+        eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&worst);
+        const auto pose = std::find(firstOfPose_.begin(), firstOfPose_.end(), ofRig + worst/6*6);
+        const int view = (int)(pose - firstOfPose_.begin());
+        CV_Error_(Error::StsNoConv, ("the points do not determine the poses, that of view %d least; leave it out, or add "
+                                     "points that it shares with others", view));
+    }
+    return eigen.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal()*eigen.eigenvectors().transpose();
+}
+
 Information ReducedBundle::information() const
 {
     const int ofRig = space_.count, ofPoses = count_ - ofRig;
-    const MatrixXd S = scaledMatrix(matrix_, effect_);
+    const MatrixXd S = scaledMatrix(matrix_, effect_), Y = poseInverseRoot();
     MatrixXd A = S.topLeftCorner(ofRig, ofRig);
     if (ofPoses > 0)
     {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(S.bottomRightCorner(ofPoses, ofPoses));
-        if (!(eigen.eigenvalues()[0] > ROUNDING))
-        {
-            int worst;
-            eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&worst);
-            const auto pose = std::find(firstOfPose_.begin(), firstOfPose_.end(), ofRig + worst/6*6);
-            const int view = (int)(pose - firstOfPose_.begin());
-            CV_Error_(Error::StsNoConv, ("the points do not determine the poses, that of view %d least; leave it out, or add "
-                                         "points that it shares with others", view));
-        }
-        const VectorXd roots = eigen.eigenvalues().cwiseSqrt().cwiseInverse();
-        const MatrixXd rows = roots.asDiagonal()*(eigen.eigenvectors().transpose()*S.bottomLeftCorner(ofPoses, ofRig));
+        const MatrixXd rows = Y*S.bottomLeftCorner(ofPoses, ofRig);
         A -= rows.transpose()*rows;
     }
     Information information;
@@ -212,12 +226,29 @@ Information ReducedBundle::information() const
     return information;
 }
 
-Mat ReducedBundle::pointDeviations(double variance) const
+/** H, H H^T = covariance of the rig's parameters and the poses together: with H_r of the rig alone, and the poses' Y and scaled
+matrix B by the rig, [ H_r 0; -Y^T Y B H_r  Y^T ]. What the rig's covariance says of a weak direction so holds for all. */
+MatrixXd ReducedBundle::jointHalf(const MatrixXd& half) const
+{
+    const int ofRig = space_.count, ofPoses = count_ - ofRig;
+    const MatrixXd S = scaledMatrix(matrix_, effect_), Y = poseInverseRoot();
+    MatrixXd joint = MatrixXd::Zero(count_, half.cols() + ofPoses);
+    joint.topLeftCorner(ofRig, half.cols()) = half;
+    if (ofPoses == 0)
+        return joint;
+    const VectorXd scale = effect_.tail(ofPoses).cwiseInverse();
+    joint.bottomRightCorner(ofPoses, ofPoses) = scale.asDiagonal()*Y.transpose();
+    if (ofRig > 0)
+        joint.bottomLeftCorner(ofPoses, half.cols()) = -(scale.asDiagonal()*(Y.transpose()*(Y*(
+            S.bottomLeftCorner(ofPoses, ofRig)*(effect_.head(ofRig).asDiagonal()*half)))));
+    return joint;
+}
+
+Mat ReducedBundle::pointDeviations(const MatrixXd& half, double variance) const
 {
     Mat_<double> deviations(bundle_.points().empty() ? 0 : (int)bundle_.points().size(), 3,
                             std::numeric_limits<double>::quiet_NaN());
-    const VectorXd scale = effect_.cwiseInverse();
-    const MatrixXd half = count_ == 0 ? MatrixXd() : MatrixXd(inverseRoot(scaledMatrix(matrix_, effect_))*scale.asDiagonal());
+    const MatrixXd joint = jointHalf(half);
     const std::vector<Cluster>& clusters = bundle_.clusters();
     parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
     {
@@ -226,12 +257,67 @@ Mat ReducedBundle::pointDeviations(double variance) const
             const Eliminated part = eliminate(clusters[i]);
             VectorXd variances = part.Y.colwise().squaredNorm();
             if (count_ > 0)
-                variances += (half*part.W.transpose()*part.Y).colwise().squaredNorm().transpose();
+                variances += (joint.transpose()*(part.W.transpose()*part.Y)).colwise().squaredNorm().transpose();
             for (int k = 0; k < clusters[i].size(); k++)
-                deviations(clusters[i].points[k/3], k % 3) = std::sqrt(variance*variances[k]);
+                deviations(clusters[i].points[k/3], k % 3) = part.isDetermined ? std::sqrt(variance*variances[k])
+                                                                               : std::numeric_limits<double>::infinity();
         }
     });
     return deviations;
+}
+
+//! @param ofPoints, cross, ofCameras covariance of the cluster's points, of them with the columns, of the columns
+Matx22d ReducedBundle::prediction(const Observation& observation, const MatrixXd& ofPoints, const MatrixXd& cross,
+                                  const MatrixXd& ofCameras) const
+{
+    const ImageRows& image = images_[observation.image];
+    const int count = (int)image.columns.size(), at = 3*observation.at;
+    const Eigen::Matrix<double, 2, 3> E = bundle_.state(observation.image).byPoint.middleRows<2>(2*observation.row);
+    const MatrixXd F = image.rows.middleRows<2>(2*observation.row);
+    MatrixXd S(count, count), X(3, count);
+    for (int j = 0; j < count; j++)
+    {
+        X.col(j) = cross.block<3, 1>(at, image.columns[j]);
+        for (int i = 0; i < count; i++)
+            S(i, j) = ofCameras(image.columns[i], image.columns[j]);
+    }
+    const Eigen::Matrix2d both = E*X*F.transpose();
+    const Eigen::Matrix2d H = E*ofPoints.block<3, 3>(at, at)*E.transpose() + both + both.transpose() + F*S*F.transpose();
+    return Matx22d(H(0, 0), H(0, 1), H(1, 0), H(1, 1));
+}
+
+std::vector<std::vector<Matx22d> > ReducedBundle::predictions() const
+{
+    const std::vector<Cluster>& clusters = bundle_.clusters();
+    std::vector<std::vector<Observation> > ofCluster(clusters.size());
+    std::vector<std::vector<Matx22d> > all;
+    for (int i = 0; i < (int)images_.size(); i++)
+    {
+        const std::vector<int>& index = bundle_.rig().images()[i].points.index;
+        all.push_back(std::vector<Matx22d>(index.size(), Matx22d::zeros()));
+        for (int row = 0; row < (int)index.size(); row++)
+            if (bundle_.clusterOf(index[row]) >= 0)
+                ofCluster[bundle_.clusterOf(index[row])].push_back({ i, row, bundle_.placeInCluster(index[row]) });
+    }
+    MatrixXd C(count_, count_);
+    if (count_ > 0)
+    {
+        const VectorXd scale = (effect_.array() > 0).select(effect_.cwiseInverse(), 0.);
+        const MatrixXd half = inverseRoot(scaledMatrix(matrix_, effect_))*scale.asDiagonal();
+        C = half.transpose()*half;
+    }
+    parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+        {
+            const Eliminated part = eliminate(clusters[i]);
+            const MatrixXd toPoints = -part.Y.transpose()*part.W, cross = toPoints*C;
+            const MatrixXd ofPoints = part.Y.transpose()*part.Y + cross*toPoints.transpose();
+            for (const Observation& observation : ofCluster[i])
+                all[observation.image][observation.row] = prediction(observation, ofPoints, cross, C);
+        }
+    });
+    return all;
 }
 
 }} // namespace

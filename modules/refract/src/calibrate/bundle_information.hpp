@@ -22,9 +22,14 @@ public:
     double stepLeft() const;
     //! On the rig's parameters, poses unknown. Throws, naming the view, if a pose is not determined by the points.
     Information information() const;
-    /** One standard deviation of each coordinate of the scene's points; NaN where they are not in use.
+    /** One standard deviation of each coordinate of the scene's points; NaN where they are not in use, infinite where the images
+    do not determine them.
+    @param half of the rig's covariance, as halfCovariance() has it from information()
     @param variance of a pixel coordinate */
-    Mat pointDeviations(double variance) const;
+    Mat pointDeviations(const Eigen::MatrixXd& half, double variance) const;
+    /** H (studentized.hpp) of every observation of a point in use, per image, per point of it; the bundle must have been evaluated
+    with all of them. */
+    std::vector<std::vector<Matx22d> > predictions() const;
 
 private:
     //! One image's derivatives by the free parameters and the pose that it depends on, and where they stand among all.
@@ -38,11 +43,21 @@ private:
     {
         Eigen::MatrixXd W, Y;
         Eigen::VectorXd ofResiduals;
+        bool isDetermined;
+    };
+    //! What an observation's pixel has to do with: its point in the cluster, and columns among all.
+    struct Observation
+    {
+        int image, row, at;
     };
     void addImages();
     void addClusters();
     void addPriors();
     Eliminated eliminate(const Cluster& cluster) const;
+    Eigen::MatrixXd poseInverseRoot() const;
+    Eigen::MatrixXd jointHalf(const Eigen::MatrixXd& half) const;
+    Matx22d prediction(const Observation& observation, const Eigen::MatrixXd& ofPoints, const Eigen::MatrixXd& cross,
+                       const Eigen::MatrixXd& ofCameras) const;
 
     const BundleProblem& bundle_;
     const FreeSpace space_;

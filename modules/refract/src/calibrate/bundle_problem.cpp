@@ -76,7 +76,9 @@ BundleProblem::BundleProblem(const Rig& rig, const std::vector<PixelViews>& pixe
 void BundleProblem::setPoints(const std::vector<Point3d>& points, const std::vector<std::vector<uchar> >& isInlier)
 {
     const std::vector<int> first = firstOfCluster(points, lengths_);
-    std::vector<int> clusterOf(pointCount_, -1), at(pointCount_);
+    std::vector<int>&clusterOf = clusterOf_, &at = at_;
+    clusterOf.assign(pointCount_, -1);
+    at.assign(pointCount_, -1);
     std::vector<std::vector<int> > members;
     for (int i = 0; i < pointCount_; i++)
     {
@@ -103,6 +105,7 @@ void BundleProblem::setPoints(const std::vector<Point3d>& points, const std::vec
     for (const KnownLength& length : lengths_)
         if (isUsed(points[length.a]) && isUsed(points[length.b]))
             clusters_[clusterOf[length.a]].lengths.push_back({ at[length.a], at[length.b], length.length, length.sigma });
+    isInlier_.assign(rig_.images().size(), std::vector<uchar>());
     for (int i = 0; i < (int)rig_.images().size(); i++)
     {
         const std::vector<int>& index = rig_.images()[i].points.index;
@@ -115,6 +118,7 @@ void BundleProblem::setPoints(const std::vector<Point3d>& points, const std::vec
             clusters_[clusterOf[index[row]]].sightings.push_back({ i, row, at[index[row]] });
         }
         rig_.setRootWeights(i, rootWeights);
+        isInlier_[i].assign(rootWeights.begin(), rootWeights.end());
     }
     rig_.setObjectPoints(this->points());
 }
@@ -180,6 +184,23 @@ bool BundleProblem::evaluate(bool wantsDerivatives)
     });
     hasDerivatives_ = wantsDerivatives;
     return std::all_of(states_.begin(), states_.end(), [](const ImageState& state) { return state.isPossible; });
+}
+
+void BundleProblem::evaluateAll(std::vector<std::vector<uchar> >& hasImage)
+{
+    hasImage.assign(states_.size(), std::vector<uchar>());
+    std::vector<std::vector<double> > weights;
+    for (int i = 0; i < (int)states_.size(); i++)
+    {
+        const RigImage& image = rig_.images()[i];
+        weights.push_back(image.rootWeights);
+        for (double error : rig_.pixelErrors(image, rig_.pose(image.view)))
+            hasImage[i].push_back(clusterOf_[image.points.index[hasImage[i].size()]] >= 0 && std::isfinite(error));
+        rig_.setRootWeights(i, std::vector<double>(hasImage[i].begin(), hasImage[i].end()));
+    }
+    CV_Assert(evaluate(true));
+    for (int i = 0; i < (int)states_.size(); i++)
+        rig_.setRootWeights(i, weights[i]);
 }
 
 void BundleProblem::PrepareForEvaluation(bool wantsDerivatives, bool isNewPoint)

@@ -57,10 +57,14 @@ public:
     void setPoints(const std::vector<Point3d>& points, const std::vector<std::vector<uchar> >& isInlier);
     std::vector<Point3d> points() const;    //!< of the whole scene; NaN: not in use
     const std::vector<Cluster>& clusters() const { return clusters_; }
+    //! Of a point in use: its cluster, and where it stands there; -1: not in use.
+    int clusterOf(int point) const { return clusterOf_[point]; }
+    int placeInCluster(int point) const { return at_[point]; }
+    //! What setPoints() said, where a point is in use.
+    bool isInlier(int image, int row) const { return isInlier_[image][row] != 0; }
 
-    /** As RigProblem::solve().
-    @param cauchy scale of Cauchy's loss; 0: squares */
-    bool solve(const TermCriteria& criteria, double cauchy = 0);
+    //! As RigProblem::solve().
+    bool solve(const TermCriteria& criteria);
 
     int lengthCount() const;                //!< between points in use
     int equationCount() const;
@@ -72,6 +76,10 @@ public:
     /** Residuals and derivatives of all images at the current values, and of the points' places in the scene's frame.
     False where a point has no image. */
     bool evaluate(bool wantsDerivatives);
+    /** Derivatives as if every observation of a point in use had a weight of one, also those that are left out, but for those
+    without an image.
+    @param hasImage per image, per point of it: 0 for what has no derivatives */
+    void evaluateAll(std::vector<std::vector<uchar> >& hasImage);
     struct ImageState
     {
         RigProblem::Derivatives derivatives;
@@ -82,7 +90,7 @@ public:
 
 private:
     void PrepareForEvaluation(bool wantsDerivatives, bool isNewPoint) override;
-    void solveInside(TrustRegion& region, double cauchy);
+    void solveInside(TrustRegion& region);
     bool isAtMinimum();
 
     RigProblem rig_;
@@ -90,6 +98,8 @@ private:
     const std::vector<KnownLength> lengths_;
     std::vector<double> values_;            //!< of all clusters, one after the other
     std::vector<Cluster> clusters_;
+    std::vector<int> clusterOf_, at_;       //!< per point
+    std::vector<std::vector<uchar> > isInlier_;
     std::vector<ImageState> states_;
     bool hasDerivatives_;
 };

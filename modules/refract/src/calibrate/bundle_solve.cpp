@@ -9,7 +9,6 @@ rig_solve.cpp's. */
 #include "calibrate/bundle_problem.hpp"
 #include "calibrate/bundle_information.hpp"
 #include "calibrate/trust_region.hpp"
-#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
 namespace cv { namespace refract {
@@ -98,23 +97,20 @@ bool BundleProblem::isAtMinimum()
     return ReducedBundle(*this, false).stepLeft() < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
 }
 
-bool BundleProblem::solve(const TermCriteria& criteria, double cauchy)
+bool BundleProblem::solve(const TermCriteria& criteria)
 {
-    return takeTurns(criteria, [this, cauchy](TrustRegion& region) {
-        solveInside(region, cauchy);
+    return takeTurns(criteria, [this](TrustRegion& region) {
+        solveInside(region);
         evaluate(true);
         return region.outcome != ceres::FAILURE && !(rig_.isOnBound() && rig_.holdAtBounds())
-               && region.outcome == ceres::CONVERGENCE && (cauchy > 0 || isAtMinimum());
+               && region.outcome == ceres::CONVERGENCE && isAtMinimum();
     });
 }
 
-void BundleProblem::solveInside(TrustRegion& region, double cauchy)
+void BundleProblem::solveInside(TrustRegion& region)
 {
     ceres::Problem::Options problemOptions;
     problemOptions.evaluation_callback = this;
-    problemOptions.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    const ceres::CauchyLoss cauchyLoss(cauchy > 0 ? cauchy : 1);
-    ceres::LossFunction* const loss = cauchy > 0 ? const_cast<ceres::CauchyLoss*>(&cauchyLoss) : nullptr;
     ceres::Problem problem(problemOptions);
     const std::shared_ptr<ceres::ParameterBlockOrdering> ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     int group = 1;      // one for each block: inside a group, Ceres orders by address, which differs from run to run
@@ -137,7 +133,7 @@ void BundleProblem::solveInside(TrustRegion& region, double cauchy)
             std::vector<double*> blocks = { values, rig_.poseValues(image.view) };
             for (int i : rig_.blocksOf(image))
                 blocks.push_back(rig_.blocks()[i].values.data());
-            problem.AddResidualBlock(new PixelResidual(*this, cluster, sighting), loss, blocks);
+            problem.AddResidualBlock(new PixelResidual(*this, cluster, sighting), nullptr, blocks);
         }
         for (const KnownLength& length : cluster.lengths)
             problem.AddResidualBlock(new LengthResidual(cluster, length, rig_.pixelSigma()), nullptr, values);

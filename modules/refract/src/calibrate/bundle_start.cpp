@@ -53,7 +53,9 @@ struct ImagePlace
     Vec3d t;
 };
 
-void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& points, std::vector<Meeting>& meetings)
+//! @param isUsed per point of the image; empty: all
+void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& points, const std::vector<uchar>& isUsed,
+             std::vector<Meeting>& meetings)
 {
     const Vec3d normal = camera.layers().normal();
     for (int begin = 0; begin < (int)points.pixel.size(); begin += BLOCK)
@@ -69,7 +71,7 @@ void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& p
         }
         camera.unproject(n, u, v, tau, x, y, z, status);
         for (int k = 0; k < n; k++)
-            if (status[k] == REFRACT_OK)
+            if (status[k] == REFRACT_OK && (isUsed.empty() || isUsed[begin + k]))
                 meetings[points.index[begin + k]].add(place.R.t()*(tau[k]*normal - place.t),
                                                       place.R.t()*Vec3d(x[k], y[k], z[k]));
     }
@@ -95,7 +97,7 @@ std::vector<Point3d> startPoints(const RigProblem& problem, const std::vector<Po
     for (const RigImage& image : problem.images())
     {
         places.push_back(ImagePlace(problem, rig, image));
-        addRays(rig.cameras[image.camera], places.back(), image.points, meetings);
+        addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), meetings);
         for (int index : image.points.index)
             seen[index]++;
     }
@@ -112,6 +114,22 @@ std::vector<Point3d> startPoints(const RigProblem& problem, const std::vector<Po
             if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k], points[index]))
                 points[index] = Point3d(NaN, NaN, NaN);
     }
+    return points;
+}
+
+std::vector<Point3d> rayMeetings(const RigProblem& problem, int pointCount, const std::vector<std::vector<uchar> >& isUsed)
+{
+    const Rig rig = problem.rig();
+    std::vector<Meeting> meetings(pointCount);
+    for (size_t i = 0; i < isUsed.size(); i++)
+    {
+        const RigImage& image = problem.images()[i];
+        if (std::any_of(isUsed[i].begin(), isUsed[i].end(), [](uchar used) { return used != 0; }))
+            addRays(rig.cameras[image.camera], ImagePlace(problem, rig, image), image.points, isUsed[i], meetings);
+    }
+    std::vector<Point3d> points;
+    for (const Meeting& meeting : meetings)
+        points.push_back(Point3d(meeting.point()));
     return points;
 }
 

@@ -13,6 +13,10 @@ namespace cv { namespace refract {
 if fewer than two do, if their rays are parallel, or if one of these images could not see the point where it would be. */
 std::vector<Point3d> startPoints(const RigProblem& rig, const std::vector<Point3d>& given);
 
+/** Where the rays of some observations come closest; NaN where there are fewer than two, or they are parallel.
+@param isUsed per image, per point of it */
+std::vector<Point3d> rayMeetings(const RigProblem& problem, int pointCount, const std::vector<std::vector<uchar> >& isUsed);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_BUNDLE_START_HPP

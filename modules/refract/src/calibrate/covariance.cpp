@@ -158,14 +158,15 @@ void refuseHopeless(const std::vector<FreeParameter>& parameters, const MatrixXd
         refuse(parameters, hopelessPart(half, excess, worst), 1, sigma);
 }
 
-//! Covariance of the public parameters.
+} // namespace
+
 MatrixXd publicCovariance(const RigProblem& rig, const MatrixXd& half, double variance)
 {
+    if (half.size() == 0)       // only poses and points are free
+        return MatrixXd::Zero(rig.publicCount(), rig.publicCount());
     const MatrixXd all = rig.publicBasis()*half;
     return variance*all*all.transpose();
 }
-
-} // namespace
 
 MatrixXd rigCovariance(const RigProblem& rig, double variance, int required)
 {
@@ -175,11 +176,11 @@ MatrixXd rigCovariance(const RigProblem& rig, double variance, int required)
     return publicCovariance(rig, half, variance);
 }
 
-MatrixXd rigCovariance(const RigProblem& rig, const Information& information, double variance)
+MatrixXd halfCovariance(const RigProblem& rig, const Information& information)
 {
-    if (information.effect.size() == 0)     // only poses and points are free
-        return MatrixXd::Zero(rig.publicCount(), rig.publicCount());
-    return publicCovariance(rig, halfCovariance(freeParameters(rig, 0), information), variance);
+    if (information.effect.size() == 0)
+        return MatrixXd(0, 0);
+    return halfCovariance(freeParameters(rig, 0), information);
 }
 
 }} // namespace

@@ -17,8 +17,11 @@ naming the direction, if the data do not determine what is free.
 @param required what must be determined by itself, GLASS_REQUIRE_...; of the rest it is enough that combinations are */
 Eigen::MatrixXd rigCovariance(const RigProblem& rig, double variance, int required = REQUIRE_ALL);
 
-//! The same from information that also scene points left; only what is lost altogether is refused.
-Eigen::MatrixXd rigCovariance(const RigProblem& rig, const Information& information, double variance);
+/** H, H H^T = covariance of the free parameters for unit pixel noise, from information that also scene points left; only what
+is lost altogether is refused. */
+Eigen::MatrixXd halfCovariance(const RigProblem& rig, const Information& information);
+//! Of the public parameters, from H.
+Eigen::MatrixXd publicCovariance(const RigProblem& rig, const Eigen::MatrixXd& half, double variance);
 
 }} // namespace
 

@@ -38,31 +38,6 @@ void checkFreedom(const RigProblem& rig)
                                      rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
 }
 
-//! Solves; where something is known with a covariance, until it is weighed against the pixels' own noise.
-RobustOutcome solve(RigProblem& rig, const RigTask& task, int seenCount, const TermCriteria& criteria)
-{
-    const int ROUNDS = 20;
-    RobustOutcome outcome;
-    for (int round = 0; round < ROUNDS; round++)
-    {
-        if (task.flags & GLASS_ROBUST)
-            outcome = solveRobustly(rig, seenCount, criteria);
-        else
-        {
-            outcome.converged = rig.solve(criteria);
-            outcome.varianceFactor = 1;
-            outcome.imageStatus.assign(rig.images().size(), (uchar)GLASS_IMAGE_USED);
-        }
-        if (!rig.hasPriors() || !outcome.converged)
-            break;
-        const double before = rig.pixelSigma();
-        rig.setPixelSigma(std::sqrt(outcome.varianceFactor*rig.squaredError()/std::max(rig.freedom(), 1)));
-        if (std::abs(rig.pixelSigma() - before) < 1e-4*before)
-            break;
-    }
-    return outcome;
-}
-
 void describeImages(const RigProblem& rig, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
 {
     const int columns = 2*rig.cameraCount();
@@ -183,7 +158,8 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
     RigProblem problem(start.rig, task.views, start.poses, task.knowledge, task.cameras, task.flags);
     if (!(task.flags & GLASS_ROBUST))
         checkFreedom(problem);
-    const RobustOutcome outcome = solve(problem, task, seenCount(task_.views), criteria);
+    RigFitProblem fitProblem(problem);
+    const FitOutcome outcome = Fit(fitProblem, (task.flags & GLASS_ROBUST) != 0, seenCount(task_.views), criteria).run();
     checkFreedom(problem);
 
     // First, as what is undetermined is also what does not converge.
@@ -193,7 +169,7 @@ RigFit fitRig(Rig& rig, const RigTask& task_)
         CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
                                      "what the views hardly determine", criteria.maxCount));
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
-    describeImages(problem, task, outcome.imageStatus, fit);
+    describeImages(problem, task, fitProblem.imageStatus(), fit);
     markUnusable(task_, fit);
     if (task.wantsJacobian)
         eigen2cv(rigJacobian(problem), fit.jacobian);

@@ -5,22 +5,33 @@
 #ifndef OPENCV_REFRACT_RIG_ROBUST_HPP
 #define OPENCV_REFRACT_RIG_ROBUST_HPP
 
-#include "calibrate/rig_problem.hpp"
+#include "calibrate/robust_fit.hpp"
 
 namespace cv { namespace refract {
 
-//! What became of the images and of their points; see rig_robust.cpp.
-struct RobustOutcome
+//! A calibration: the points are the target's. Images whose target was not where the view's other images have it are wrong.
+class RigFitProblem : public FitProblem
 {
-    bool converged;
-    double varianceFactor;              //!< corrects the residuals' variance for what was cut off
-    std::vector<uchar> imageStatus;     //!< GlassImageStatus, in the order of RigProblem::images()
-};
+public:
+    explicit RigFitProblem(RigProblem& rig) : FitProblem(rig), status_(rig.images().size(), (uchar)GLASS_IMAGE_USED) {}
 
-/** Solves with points left out that are wrong, and images whose target was not where the view's other images have it.
-Throws if fewer than half of the points fit.
-@param seenCount points that the caller gave */
-RobustOutcome solveRobustly(RigProblem& rig, int seenCount, const TermCriteria& criteria);
+    bool solve(const TermCriteria& criteria) override { return rig().solve(criteria); }
+    int equationCount() const override { return rig().equationCount(); }
+    int freedom() const override { return rig().freedom(); }
+    double squaredError() const override { return rig().squaredError(); }
+    bool hasPriors() const override { return rig().hasPriors(); }
+    double rootWeight(double ratio) const override;
+    void leaveOutImages(double scale) override;
+    void setInliers(Masks& inliers) override;
+    std::vector<std::vector<DeletionResidual> > deletionResiduals(const Masks& inliers) override;
+    String minorityFault(int fitting, int seen) const override;
+
+    //! GlassImageStatus, in the order of RigProblem::images().
+    const std::vector<uchar>& imageStatus() const { return status_; }
+
+private:
+    std::vector<uchar> status_;
+};
 
 /** The views without the points that agree with no common pose of their image, to start from. Images without a pose
 become empty. */
