@@ -176,12 +176,15 @@ public:
     //! Covariance of camera c's normal in its tangents and, if free, its distance and thickness.
     cv::Mat ofCamera(int c) const
     { return covariance_(cv::Rect(firstOfCamera(c), firstOfCamera(c), perCamera_, perCamera_)).clone(); }
+    //! Standard deviation of a coordinate of a point; of a coordinate of T of camera c > 0.
+    double point(int i, int coordinate) const { return std::sqrt(at(firstPoint_ + 3*i + coordinate)); }
+    double translation(int c, int coordinate) const { return std::sqrt(at(firstExtrinsics_ + 6*(c - 1) + 3 + coordinate)); }
 
 private:
     double at(int i) const { return covariance_.at<double>(i, i); }
     int firstOfCamera(int c) const { return c*perCamera_; }
     const int free_;
-    int perCamera_;
+    int perCamera_, firstExtrinsics_, firstPoint_;
     cv::Mat covariance_;
 };
 
@@ -191,6 +194,8 @@ inline BundleBound::BundleBound(const RigTruth& rig, const BundleScene& scene, i
     perCamera_ = ((free & NORMAL) ? 2 : 0) + ((free & DISTANCE) ? 1 : 0) + ((free & THICKNESS) ? 1 : 0);
     const int extrinsics = cameras*perCamera_, poses = extrinsics + ((free & EXTRINSICS) ? 6*(cameras - 1) : 0);
     const int scenePoints = poses + 6*(views - 1), count = scenePoints + 3*points;
+    firstExtrinsics_ = extrinsics;
+    firstPoint_ = scenePoints;
     cv::Mat information = cv::Mat::zeros(count, count, CV_64F);
     for (int c = 0; c < cameras; c++)
         for (int view = 0; view < views; view++)

@@ -38,6 +38,41 @@ double largestPointError(const BundleCall& call, const BundleScene& scene)
     return largest;
 }
 
+//! The inner problem at the truth, evaluated.
+std::unique_ptr<BundleProblem> bundleAt(const RigTruth& truth, const BundleScene& scene, double sigma, int flags)
+{
+    Rig rig;
+    std::vector<Pose> poses;
+    const auto poseOf = [](const Vec3d& rvec, const Vec3d& tvec)
+    {
+        Pose pose;
+        pose.rvec = rvec;
+        pose.tvec = tvec;
+        return pose;
+    };
+    for (size_t c = 0; c < truth.cameras.size(); c++)
+    {
+        Vec3d rvec;
+        Rodrigues(truth.Rs[c], rvec);
+        rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
+        rig.owner.push_back((int)c);
+        rig.extrinsics.push_back(poseOf(rvec, truth.Ts[c]));
+    }
+    for (size_t view = 0; view < scene.rvecs.size(); view++)
+        poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
+    std::vector<PoseKnowledge> known(poses.size());
+    known[0].kind = PoseKnowledge::EXACT;
+    std::vector<KnownLength> knownLengths;
+    for (const Vec4d& l : scene.lengths)
+        knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
+    std::unique_ptr<BundleProblem> bundle(new BundleProblem(rig, scene.pixels, (int)scene.points.size(), poses, known,
+                                                            knownLengths, flags));
+    bundle->rig().setPixelSigma(sigma);
+    bundle->setPoints(scene.points, {});
+    REQUIRE(bundle->evaluate(true));
+    return bundle;
+}
+
 } // namespace
 
 TEST_CASE("A wand of known length is all that a standing rig needs", "[bundle]")
@@ -238,34 +273,8 @@ TEST_CASE("The reduced normal equations are the inverse of the whole bound", "[b
         REQUIRE(!scene.lengths.empty());
         const BundleBound bound(truth, scene, BundleBound::NORMAL | BundleBound::DISTANCE | BundleBound::EXTRINSICS, sigma);
 
-        Rig rig;
-        std::vector<Pose> poses;
-        for (size_t c = 0; c < 2; c++)
-        {
-            rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
-            rig.owner.push_back((int)c);
-            Pose pose;
-            Rodrigues(truth.Rs[c], pose.rvec);
-            pose.tvec = truth.Ts[c];
-            rig.extrinsics.push_back(pose);
-        }
-        for (size_t view = 0; view < scene.rvecs.size(); view++)
-        {
-            Pose pose;
-            pose.rvec = scene.rvecs[view];
-            pose.tvec = scene.tvecs[view];
-            poses.push_back(pose);
-        }
-        std::vector<PoseKnowledge> known(poses.size());
-        known[0].kind = PoseKnowledge::EXACT;
-        std::vector<KnownLength> knownLengths;
-        for (const Vec4d& l : scene.lengths)
-            knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
-        BundleProblem bundle(rig, scene.pixels, (int)scene.points.size(), poses, known, knownLengths,
-                             GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
-        bundle.rig().setPixelSigma(sigma);
-        bundle.setPoints(scene.points, {});
-        REQUIRE(bundle.evaluate(true));
+        const std::unique_ptr<BundleProblem> at = bundleAt(truth, scene, sigma, GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+        BundleProblem& bundle = *at;
         const ReducedBundle reduced(bundle, true);
         CHECK(reduced.stepLeft() < 1e-6);
         Mat stated;
@@ -280,6 +289,37 @@ TEST_CASE("The reduced normal equations are the inverse of the whole bound", "[b
             CHECK(stated.at<double>(first + 3, first + 3) == Approx(expected.at<double>(2, 2)).epsilon(1e-6));
         }
     }
+}
+
+TEST_CASE("What is hardly known is as uncertain in points as in cameras", "[bundle]")
+{
+    CAPTURE(seed());
+    const double sigma = 0.1;
+    for (bool moves : { false, true })
+        for (double lengthSigma : { 0.02, 1., 100., 1e4 })
+        {
+            CAPTURE(moves, lengthSigma);
+            Random random(15);
+            const RigTruth truth = wandRig(2, 1);
+            BundleScene scene = moves ? makeMovingScene(truth, 4, 20, random, 0) : makeWandScene(truth, 15, random, 0);
+            for (Vec4d& length : scene.lengths)
+                length[3] = lengthSigma;
+            keepWhatAllSee(scene);
+            REQUIRE(!scene.lengths.empty());
+            const std::unique_ptr<BundleProblem> bundle = bundleAt(truth, scene, sigma, GLASS_FREE_EXTRINSICS);
+            const ReducedBundle reduced(*bundle, true);
+            const Eigen::MatrixXd half = halfCovariance(bundle->rig(), reduced.information());
+            const Eigen::MatrixXd stated = publicCovariance(bundle->rig(), half, sigma*sigma);
+            const Mat_<double> ofPoints = reduced.pointDeviations(half, sigma*sigma);
+            const BundleBound bound(truth, scene, BundleBound::NORMAL | BundleBound::EXTRINSICS, sigma);
+            const int T = (int)stated.rows() - 3;
+            for (int i = 0; i < 3; i++)
+            {
+                CHECK(std::sqrt(stated(T + i, T + i)) == Approx(bound.translation(1, i)).epsilon(2e-3));
+                for (size_t point = 0; point < scene.points.size(); point++)
+                    CHECK(ofPoints((int)point, i) == Approx(bound.point((int)point, i)).epsilon(2e-3));
+            }
+        }
 }
 
 TEST_CASE("Results do not depend on the number of threads", "[bundle]")
