@@ -171,7 +171,7 @@ TEST_CASE("Both poses of a flat target", "[pnp]")
 
 TEST_CASE("Few points in space: the least of their minima", "[pnp]")
 {
-    GlassWindow thick = paperWindow();
+    GlassWindow thick = paper::pane();
     thick.normal = normalize(Vec3d(0.5, -0.2, 1));
     thick.thickness[0] = 100;
     const int TRIALS = trials(600);
