@@ -294,6 +294,54 @@ TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
     CHECK(worst < 1e-5);
 }
 
+TEST_CASE("An inexact camera is part of a relative pose's covariance and interval", "[pose][recover]")
+{
+    const int TRIALS = trials(20);
+    const double SIGMA_INDEX = 0.002;
+    double inexact = 0, forgotten = 0;
+    int held = 0, heldForgotten = 0;
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(7000 + trial);
+        Matched m = matchedScene(WATER, random, 200);
+        disturb(m, random, 0.2, 0);
+        GlassWindow window1 = m.camera1->window(), window2 = m.camera2->window();
+        window1.outerIndex += random.normal(SIGMA_INDEX);
+        window2.outerIndex += random.normal(SIGMA_INDEX);
+        m.camera1->setWindow(window1);
+        m.camera2->setWindow(window2);
+        std::vector<Mat> covariances;
+        for (const Ptr<RefractiveCamera>& camera : { m.camera1, m.camera2 })
+        {
+            const int count = (int)camera->parameterNames().size();
+            covariances.push_back(Mat::zeros(count, count, CV_64F));
+            covariances.back().at<double>(count - 1, count - 1) = SIGMA_INDEX*SIGMA_INDEX;
+        }
+        CAPTURE(trial, seed());
+        const auto chiSquare = [&](InputArrayOfArrays cameraCovariances, int& inside)
+        {
+            Mat R, T, C;
+            Vec2d interval;
+            REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, noArray(), C, interval,
+                                          cameraCovariances) > 100);
+            inside += interval[0] <= norm(m.T) && norm(m.T) <= interval[1];
+            Vec3d rvec;
+            Rodrigues(R, rvec);
+            const Vec3d off = rvec - m.rvec;
+            return off.dot(Matx33d(Mat(C(Rect(0, 0, 3, 3)).clone()).ptr<double>()).inv()*off);
+        };
+        inexact += chiSquare(covariances, held)/TRIALS;
+        forgotten += chiSquare(noArray(), heldForgotten)/TRIALS;
+    }
+    CAPTURE(seed());
+    printNumber("chi^2 of a rotation's three, indices of water off by 0.002: stated", inexact, "");
+    printNumber("chi^2 of a rotation's three, indices of water off by 0.002: forgotten", forgotten, "");
+    std::cout << "[numbers] intervals that hold the length: " << held << ", forgotten " << heldForgotten << " of " << TRIALS << std::endl;
+    CHECK(inexact < 3 + 3*std::sqrt(6./TRIALS));
+    CHECK(forgotten > 2*inexact);
+    CHECK(held >= TRIALS*0.95 - 3*std::sqrt(TRIALS*0.95*0.05));
+}
+
 TEST_CASE("What refraction cannot tell has no upper end", "[pose][recover]")
 {
     Random random(6200);
@@ -499,6 +547,13 @@ TEST_CASE("Relative poses: unseen points, nothing to find, overload, errors", "[
         disturb(all, random, 0.2, 200);
         CHECK(refractiveRecoverPose(all.pixels1, all.pixels2, all.camera1, all.camera2, R2, T2, 0.999, 1, mask2) == 0);
         CHECK((T2.empty() && countNonZero(mask2) == 0));
+    }
+    SECTION("no matches are no inliers")
+    {
+        mask2.resize(3);
+        CHECK(refractiveRecoverPose(std::vector<Point2d>(), std::vector<Point2d>(), m.camera1, m.camera2, R2, T2, 0.999, 1,
+                                    mask2) == 0);
+        CHECK((R2.empty() && T2.empty() && mask2.empty()));
     }
     SECTION("errors")
     {

@@ -1147,7 +1147,7 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 //! @{
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
-@param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess).
+@param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess), or none.
 @param imagePoints N raw pixels; a NaN point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
@@ -1156,7 +1156,7 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 @param tvec object -> camera translation.
 @param useExtrinsicGuess rvec, tvec are the start.
 @param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as cv::solvePnPGeneric has it.
-@return false if there is no pose, as fewer than 4 points (3 with useExtrinsicGuess) were seen, they lie on a line, or no pose
+@return false if there is no pose, as there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a line, or no pose
 gives all of them an image; rvec and tvec are then left as they were, reprojectionError is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
@@ -1169,9 +1169,28 @@ CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePo
         const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec,
         bool useExtrinsicGuess = false, OutputArray reprojectionError = noArray());
 
+/** @brief refractiveSolvePnP with the covariance of the pose.
+@param objectPoints as above.
+@param imagePoints as above.
+@param camera as above.
+@param rvec as above.
+@param tvec as above.
+@param useExtrinsicGuess as above.
+@param reprojectionError as above.
+@param covariance 6x6 CV_64F of rvec (radians) and tvec (the caller's unit), in this order; NaN where neither sigma is given nor
+residuals are left (three points).
+@param sigma standard deviation of a pixel's coordinate, in pixels; 0: estimated from the residuals.
+@param cameraCovariance what is not exact of the camera: an LxL covariance of its L lens parameters, or a PxP one of its P parameters
+in the order of RefractiveCamera::parameterNames(). It enlarges covariance; the pose stays as it is. noArray(): the camera is exact.
+@return as above; covariance is empty where there is no pose.
+*/
+CV_EXPORTS_AS(refractiveSolvePnPExtended) bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
+        OutputArray reprojectionError, OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray());
+
 /** @brief All poses of a known target that explain what is seen: the minima of the reprojection error, the smallest first.
 
-A flat target has two, of which noise may choose the wrong one when it is small or seen straight on. Where both starts lead to
+Four or five points may have several, of which only the first few have small errors. A flat target has two, of which noise may choose the wrong one when it is small or seen straight on. Where both starts lead to
 one minimum there is one.
 
 @param objectPoints as refractiveSolvePnP.
@@ -1197,6 +1216,48 @@ CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray i
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
         bool useExtrinsicGuess = false, InputArray rvec = noArray(), InputArray tvec = noArray(),
         OutputArray reprojectionError = noArray());
+
+/** @brief refractiveSolvePnPGeneric with the covariance of each pose.
+@param objectPoints as above.
+@param imagePoints as above.
+@param camera as above.
+@param rvecs as above.
+@param tvecs as above.
+@param useExtrinsicGuess as above.
+@param rvec as above.
+@param tvec as above.
+@param reprojectionError as above.
+@param covariances 6x6 CV_64F of each pose, as refractiveSolvePnPExtended.
+@param sigma as refractiveSolvePnPExtended.
+@param cameraCovariance as refractiveSolvePnPExtended.
+@return as above.
+*/
+CV_EXPORTS_AS(refractiveSolvePnPGenericExtended) int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
+        bool useExtrinsicGuess, InputArray rvec, InputArray tvec, OutputArray reprojectionError,
+        OutputArrayOfArrays covariances, double sigma = 0, InputArray cameraCovariance = noArray());
+
+/** @brief All poses that put three points on their pixels' rays: cv::solveP3P through a window.
+
+There are up to four without a window and up to eight with one, as its rays do not pass through one point; all are found.
+
+@param objectPoints 3 or 4 3-D points, or none.
+@param imagePoints as many raw pixels; a NaN point was not seen.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvecs object -> camera rotation vector of each pose, 3x1 CV_64F. With a fourth point the poses are sorted by its error, the
+smallest first, and those that give it no image are left out.
+@param tvecs object -> camera translation of each pose, 3x1 CV_64F.
+@return the number of poses; 0 if there is none, as the first three points lie on a line or one of them was not seen.
+*/
+CV_EXPORTS_W int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
+
+//! @overload
+CV_EXPORTS_W int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
 
 /** @brief Pose of a known target among wrong matches: cv::solvePnPRansac through a window.
 
@@ -1231,20 +1292,42 @@ CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray i
         bool useExtrinsicGuess = false, int iterationsCount = 100, float reprojectionError = 8.0f,
         double confidence = 0.99, OutputArray inliers = noArray());
 
+/** @brief refractiveSolvePnPRansac with the covariance of the pose.
+@param objectPoints as above.
+@param imagePoints as above.
+@param camera as above.
+@param rvec as above.
+@param tvec as above.
+@param useExtrinsicGuess as above.
+@param iterationsCount as above.
+@param reprojectionError as above.
+@param confidence as above.
+@param inliers as above.
+@param covariance 6x6 CV_64F, as refractiveSolvePnPExtended, of the inliers that do not stand out.
+@param sigma as refractiveSolvePnPExtended.
+@param cameraCovariance as refractiveSolvePnPExtended.
+@return as above; covariance is empty where there is no pose.
+*/
+CV_EXPORTS_AS(refractiveSolvePnPRansacExtended) bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
+        const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
+        int iterationsCount, float reprojectionError, double confidence, OutputArray inliers,
+        OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray());
+
 /** @brief Relative pose of two calibrated cameras from matches of which some are wrong: cv::recoverPose through windows, which
 also gives the distance between the cameras, as well as refraction tells it.
 
 A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
 in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
 refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the direction
-of T are determined, if less well than a pinhole pair's, as the length is estimated with them: not where the cameras hardly move
-apart (T shorter than the windows are deep), which leaves R good to some tenths of a degree and T unknown, whatever is stated.
+of T are determined, if less well than a pinhole pair's, as the length is estimated with them. Where the cameras hardly
+move apart (T shorter than the windows are deep) R is good to some hundredths of a degree and T to a part of a unit, as is stated,
+if the windows turn with the cameras by some degrees.
 
 The matches of a flat scene agree with two poses, as cv::decomposeHomographyMat's; refraction, or a point that would be behind a
 camera, mostly tells which is right. A match that alone tells something of the pose, as the only one off the plane, is left out of
 the estimate: nothing would show that it is wrong.
 
-@param points1 N >= 6 raw pixels of camera 1; NaN points are left out.
+@param points1 N >= 6 raw pixels of camera 1, or none (0 inliers); NaN points are left out.
 @param points2 N raw pixels of camera 2.
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
@@ -1275,8 +1358,8 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
 /** @brief refractiveRecoverPose with what the estimate is worth.
 @param points1 N raw pixels of camera 1.
 @param points2 N raw pixels of camera 2.
-@param camera1 lens and window of camera 1, taken as exact.
-@param camera2 lens and window of camera 2, taken as exact.
+@param camera1 lens and window of camera 1.
+@param camera2 lens and window of camera 2.
 @param R 3x3 CV_64F.
 @param T 3x1 CV_64F.
 @param prob as above.
@@ -1286,12 +1369,16 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
 is that of R and the direction alone, for the length that T has (its rank is 5).
 @param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile: where
 refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
+@param cameraCovariances of both cameras what is not exact: an LxL covariance of its L lens parameters, or a PxP one of its P
+parameters in the order of RefractiveCamera::parameterNames(), or an empty one: exact. It enlarges covariance and scaleInterval;
+R and T stay as they are. noArray(): both are exact.
 @return as above.
 */
 CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         OutputArray R, OutputArray T, double prob, double threshold, OutputArray mask,
-        OutputArray covariance, CV_OUT Vec2d& scaleInterval);
+        OutputArray covariance, CV_OUT Vec2d& scaleInterval,
+        InputArrayOfArrays cameraCovariances = noArray());
 
 //! @}
 

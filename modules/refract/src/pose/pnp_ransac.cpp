@@ -7,7 +7,8 @@ their squared distances from its images, cut off at the limit (MSAC: @cite TorrZ
 all before is refined on the points that agree with it (LO-RANSAC: @cite ChumMatasKittler2003). */
 
 #include "pose/chance.hpp"
-#include "pose/poses.hpp"
+#include "pose/consensus.hpp"
+#include "pose/pose_covariance.hpp"
 #include "pose/three_rays.hpp"
 #include "arrays/arrays.hpp"
 #include "math/robust_scale.hpp"
@@ -20,20 +21,11 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! A pose, and what the points say of it.
-struct Candidate
-{
-    RigidMotion motion;
-    double cost = DBL_MAX;              //!< sum of squared distances, cut off at the limit
-    std::vector<int> agreeing;
-    std::vector<double> distances;      //!< of these
-};
-
-//! Lets all points judge poses.
-class Jury
+//! Scores poses by all points (MSAC).
+class MsacScorer
 {
 public:
-    Jury(const Camera& camera, const ImagePoints& points, double limit) : camera_(camera), points_(points), limit2_(limit*limit)
+    MsacScorer(const Camera& camera, const ImagePoints& points, double limit) : camera_(camera), points_(points), limit2_(limit*limit)
     {
         for (const Point3d& X : points.object)
         {
@@ -42,8 +34,8 @@ public:
     }
 
     /** The cost of a pose, or some number above `enough` where it is.
-    @param agreeing points, and their distances; may be null */
-    double judge(const RigidMotion& motion, double enough, Candidate* agreeing = nullptr) const
+    @param errors of the points; may be null */
+    double score(const RigidMotion& motion, double enough, double* errors = nullptr) const
     {
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], cost = 0;
         uchar status[BLOCK];
@@ -61,20 +53,22 @@ public:
                 const Point2d& p = points_.pixel[begin + i];
                 const double e2 = status[i] == REFRACT_OK ? (u[i] - p.x)*(u[i] - p.x) + (v[i] - p.y)*(v[i] - p.y) : DBL_MAX;
                 cost += std::min(e2, limit2_);
-                if (!agreeing || e2 > limit2_)
-                    continue;
-                agreeing->agreeing.push_back(begin + i);
-                agreeing->distances.push_back(std::sqrt(e2));
+                if (errors)
+                    errors[begin + i] = std::sqrt(e2);
             }
         }
         return cost;
     }
 
-    Candidate candidate(const RigidMotion& motion) const
+    Consensus consensus(const RigidMotion& motion) const
     {
-        Candidate c;
+        std::vector<double> errors(points_.pixel.size());
+        score(motion, DBL_MAX, errors.data());
+        Consensus c;
         c.motion = motion;
-        c.cost = judge(motion, DBL_MAX, &c);
+        c.cost = 0;
+        for (size_t i = 0; i < errors.size(); i++)
+            c.add((int)i, errors[i], std::sqrt(limit2_));
         return c;
     }
 
@@ -108,16 +102,16 @@ Pose poseOf(const RigidMotion& motion)
 
 RigidMotion motionOf(const Pose& pose) { return { rotationMatrix(pose.rvec), pose.tvec }; }
 
-//! A better candidate from the points that agree with this one, if there is one.
-bool improve(const Camera& camera, const ImagePoints& points, const Jury& jury, int iterations, Candidate& best)
+//! A better pose from the inliers of this one, if there is one.
+bool localOptimize(const Camera& camera, const ImagePoints& points, const MsacScorer& scorer, int iterations, Consensus& best)
 {
-    const ImagePoints agreeing = select(points, best.agreeing);
-    if (agreeing.pixel.size() < 4 || scatterRank(agreeing.object) < 2)
+    const ImagePoints inliers = select(points, best.inliers);
+    if (inliers.pixel.size() < 4 || scatterRank(inliers.object) < 2)
         return false;
     Pose pose = poseOf(best.motion);
-    if (std::isnan(refinePose(camera, agreeing, pose, iterations)))
+    if (std::isnan(refinePose(camera, inliers, pose, iterations)))
         return false;
-    const Candidate refined = jury.candidate(motionOf(pose));
+    const Consensus refined = scorer.consensus(motionOf(pose));
     if (!(refined.cost < best.cost))
         return false;
     best = refined;
@@ -125,9 +119,9 @@ bool improve(const Camera& camera, const ImagePoints& points, const Jury& jury, 
 }
 
 //! Samples after which, with this confidence, one had no wrong point.
-double samplesNeeded(int agreeing, int count, double confidence)
+double samplesNeeded(int inliers, int count, double confidence)
 {
-    const double right = (double)agreeing*(agreeing - 1)*(agreeing - 2)/((double)count*(count - 1)*(count - 2));
+    const double right = (double)inliers*(inliers - 1)*(inliers - 2)/((double)count*(count - 1)*(count - 2));
     return right > 0 ? std::log(1 - confidence)/std::log1p(-std::min(right, 1 - DBL_EPSILON)) : DBL_MAX;
 }
 
@@ -138,25 +132,25 @@ struct Effort
     double confidence;
 };
 
-Candidate searchPose(const Camera& camera, const ImagePoints& points, const Jury& jury, const Effort& effort, const Pose& guess)
+Consensus searchPose(const Camera& camera, const ImagePoints& points, const MsacScorer& scorer, const Effort& effort, const Pose& guess)
 {
     const int QUICK = 4;                // iterations: a start for the next judgement
     const PointRays rays(camera, points);
     const int count = (int)rays.ray.size();
-    Candidate best;
+    Consensus best;
     const auto consider = [&](const RigidMotion& motion)
     {
-        if (!(jury.judge(motion, best.cost) < best.cost))
+        if (!(scorer.score(motion, best.cost) < best.cost))
             return;
-        best = jury.candidate(motion);
-        for (int k = 0; k < 3 && improve(camera, points, jury, QUICK, best); k++) {}
+        best = scorer.consensus(motion);
+        for (int k = 0; k < 3 && localOptimize(camera, points, scorer, QUICK, best); k++) {}
     };
     if (guess.found)
         consider(motionOf(guess));
     RNG random(0x52414E53);
     for (int k = 0; k < effort.samples && count >= 3; k++)
     {
-        if (k >= samplesNeeded((int)best.agreeing.size(), count, effort.confidence))
+        if (k >= samplesNeeded((int)best.inliers.size(), count, effort.confidence))
             break;
         int sample[3];
         sample[0] = random.uniform(0, count);
@@ -195,24 +189,31 @@ int countDifferent(const ImagePoints& points)
 
 } // namespace
 
-/* The limit is often generous, and a wrong point within it pulls the pose. So the last fits are of the points that do not stand
-out among those that agree. */
-static void settle(const Camera& camera, const ImagePoints& points, const Jury& jury, Candidate& best)
+//! The inliers that do not stand out among them: the limit is often generous, and a wrong point within it pulls the pose.
+static std::vector<int> withoutOutliers(const Consensus& consensus)
 {
-    const size_t ENOUGH = 12;           // to tell what is usual
+    const size_t ENOUGH = 12;           // to tell the scale
+    if (consensus.inliers.size() < ENOUGH)
+        return consensus.inliers;
+    const double scale = std::max(LEAST_SCALE, truncatedScale(consensus.errors, scaleOf(consensus.errors), CUT));
+    std::vector<int> some;
+    for (size_t i = 0; i < consensus.inliers.size(); i++)
+        if (consensus.errors[i] <= CUT*scale)
+            some.push_back(consensus.inliers[i]);
+    return some;
+}
+
+static void refineOnInliers(const Camera& camera, const ImagePoints& points, const MsacScorer& scorer, Consensus& best)
+{
     std::vector<int> last;
-    for (int k = 0; k < 10 && best.agreeing.size() >= ENOUGH; k++)
+    for (int k = 0; k < 10; k++)
     {
-        const double usual = std::max(LEAST_SCALE, truncatedScale(best.distances, scaleOf(best.distances), CUT));
-        std::vector<int> fitted;
-        for (size_t i = 0; i < best.agreeing.size(); i++)
-            if (best.distances[i] <= CUT*usual)
-                fitted.push_back(best.agreeing[i]);
+        const std::vector<int> fitted = withoutOutliers(best);
         const ImagePoints some = select(points, fitted);
         Pose pose = poseOf(best.motion);
         if (fitted == last || scatterRank(some.object) < 2 || std::isnan(refinePose(camera, some, pose)))
             return;
-        best = jury.candidate(motionOf(pose));
+        best = scorer.consensus(motionOf(pose));
         last = fitted;
     }
 }
@@ -221,16 +222,16 @@ static void settle(const Camera& camera, const ImagePoints& points, const Jury& 
 static Pose solveRobustly(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort,
                           const Pose& guess, std::vector<int>& inliers)
 {
-    const Jury jury(camera, points, limit);
-    Candidate best = searchPose(camera, points, jury, effort, guess);
-    for (int k = 0; k < 10 && improve(camera, points, jury, 100, best); k++) {}
-    settle(camera, points, jury, best);
-    const ImagePoints agreeing = select(points, best.agreeing);
-    const int different = countDifferent(agreeing);
-    if (different < 4 || scatterRank(agreeing.object) < 2
+    const MsacScorer scorer(camera, points, limit);
+    Consensus best = searchPose(camera, points, scorer, effort, guess);
+    for (int k = 0; k < 10 && localOptimize(camera, points, scorer, 100, best); k++) {}
+    refineOnInliers(camera, points, scorer, best);
+    const ImagePoints some = select(points, best.inliers);
+    const int different = countDifferent(some);
+    if (different < 4 || scatterRank(some.object) < 2
         || isChance(countDifferent(points), different, samplingOf(points, limit)))
         return Pose();
-    inliers = agreeing.index;
+    inliers = some.index;
     return poseOf(best.motion);
 }
 
@@ -258,6 +259,33 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
         return false;
     Mat(pose.rvec).copyTo(rvec);
     Mat(pose.tvec).copyTo(tvec);
+    return true;
+}
+
+bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
+                              OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess, int iterationsCount,
+                              float reprojectionError, double confidence, OutputArray inliers_, OutputArray covariance,
+                              double sigma, InputArray cameraCovariance)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Camera& seenBy = cameraOf(camera);
+    const PoseNoise noise = readPoseNoise(sigma, cameraCovariance, seenBy);
+    std::vector<int> inliers;
+    const bool found = refractiveSolvePnPRansac(objectPoints, imagePoints, camera, rvec, tvec, useExtrinsicGuess, iterationsCount,
+                                                reprojectionError, confidence, inliers);
+    if (inliers_.needed())
+        Mat(inliers, true).copyTo(inliers_);
+    if (!found)
+    {
+        covariance.release();
+        return false;
+    }
+    // Those of the points that the pose was fitted to.
+    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    const MsacScorer scorer(seenBy, points, reprojectionError);
+    const Consensus consensus = scorer.consensus(motionOf(readPose(rvec, tvec)));
+    Mat(poseCovariance(seenBy, select(points, withoutOutliers(consensus)), poseOf(consensus.motion), noise)).copyTo(covariance);
     return true;
 }
 

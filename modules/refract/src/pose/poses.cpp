@@ -231,7 +231,7 @@ static bool isNew(const std::vector<PoseMinimum>& minima, const PoseMinimum& min
                         { return isSame(other.pose, minimum.pose); });
 }
 
-static void sortByError(std::vector<PoseMinimum>& minima)
+void sortByError(std::vector<PoseMinimum>& minima)
 {
     std::stable_sort(minima.begin(), minima.end(), [](const PoseMinimum& a, const PoseMinimum& b) { return a.rms < b.rms; });
 }

@@ -36,6 +36,8 @@ struct PoseMinimum
     double rms;         //!< of distances
 };
 
+void sortByError(std::vector<PoseMinimum>& minima);
+
 //! All minima that the start, or else the closed forms, lead to, the smallest first.
 std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start);
 
@@ -46,9 +48,11 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, i
 int scatterRank(const std::vector<Point3d>& points);
 
 /** The arguments of a pose's calls, without the points that were not seen; throws with the arguments' names.
-@param least points that there must be */
-ImagePoints readPosePoints(InputArray objectPoints, InputArray imagePoints, int least);
+@param least points that there must be, or none at all
+@param most points that there may be */
+ImagePoints readPosePoints(InputArray objectPoints, InputArray imagePoints, int least, int most = INT_MAX);
 Pose readPose(InputArray rvec, InputArray tvec);
+void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
 
 //! The part of an image's points that must agree with one pose, else the image is of no use.
 const double LEAST_AGREEING = 1./3;

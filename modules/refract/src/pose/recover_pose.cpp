@@ -13,6 +13,7 @@ elsewhere, and where two ends are as likely there is no answer. */
 #include "pose/chance.hpp"
 #include "pose/consensus.hpp"
 #include "pose/length_profile.hpp"
+#include "pose/pose_covariance.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"
@@ -116,7 +117,9 @@ struct Estimate
     RigidMotion motion;
     Matx66d covariance;
     Vec2d interval;
-    std::vector<int> inliers;
+    RigidMotion likely;                 //!< of all lengths, though the most likely one be infinite
+    Matx66d ofNoise;                    //!< covariance of that, all lengths
+    std::vector<int> fitted, inliers;
     double variance;                    //!< of an error
     std::vector<double> squares;        //!< errors of all matches, squared, cut off at the limit
     double cost() const { return std::accumulate(squares.begin(), squares.end(), 0.); }
@@ -243,6 +246,8 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     const LengthInterval lengths =
         lengthInterval(pair, some, { e.motion, cost, freedom, unconstrained.get_minor<3, 3>(3, 3) });
     e.interval = lengths.lengths;
+    e.likely = e.motion;
+    e.ofNoise = unconstrained;
     if (isInfinitelyFar(pair, e.motion))
     {
         setLength(pair, e.interval[0] > 0 ? e.interval[0] : 1, e.motion);
@@ -252,6 +257,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     e.covariance = e.variance*covarianceOf(pair, some, e.motion, e.interval[1] == INFINITE, byPose);
     for (const RigidMotion& end : lengths.ends)
         widen(e.covariance, difference(rotationVector(e.motion.R), rotationVector(end.R)));
+    e.fitted = fitted;
     e.inliers = best.inliers;
     e.squares.assign(matches.size(), limit*limit);
     for (size_t i = 0; i < best.inliers.size(); i++)
@@ -307,13 +313,92 @@ bool isAmbiguous(const MatchedCameras& pair, const PixelMatches& matches, const 
     return off.dot(inverseOfPositive(e.covariance.get_minor<3, 3>(0, 0))*off)*e.variance > FAR*FAR*std::max(e.variance, LEFT);
 }
 
-bool recover(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, double prob, double threshold, Estimate& e)
+PixelMatches matchesOf(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels)
 {
     const std::vector<PixelRay> rays1 = pixelRays(camera1, pixels.first), rays2 = pixelRays(camera2, pixels.second);
     PixelMatches matches;
     for (size_t i = 0; i < pixels.first.size(); i++)
         matches.push_back({ pixels.first[i], pixels.second[i], rays1[i], rays2[i] });
-    const PixelMatches sample = sampleOf(matches);
+    return matches;
+}
+
+/** How the estimate moves with one camera's parameters, those that vary: by differences of the errors.
+@param which camera, 1 or 2 */
+Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, const RigidMotion& motion,
+                   int which, const Mat& covariance)
+{
+    const double STEP = 0.1;                    // standard deviations
+    const auto errorsAt = [&](const Camera& c1, const Camera& c2, std::vector<Matx16d>* byPose)
+    {
+        std::vector<double> errors;
+        sampsonErrors({ c1, c2, Vec3d(), Vec3d() }, matchesOf(c1, c2, pixels), motion, errors, byPose);
+        return errors;
+    };
+    std::vector<Matx16d> byPose;
+    errorsAt(camera1, camera2, &byPose);
+    SumOfSquares<6> sum;
+    for (const Matx16d& by : byPose)
+        sum.add(0, by.val);
+    const Matx66d inverse = inverseOfPositive(sum.curvature);
+    const Camera& camera = which == 1 ? camera1 : camera2;
+    Mat moved = Mat::zeros(6, covariance.rows, CV_64F);
+    for (int k = 0; k < covariance.rows; k++)
+    {
+        const double deviation = std::sqrt(std::max(covariance.at<double>(k, k), 0.));
+        if (deviation == 0)
+            continue;
+        std::vector<double> errors[2];
+        for (int side = 0; side < 2; side++)
+        {
+            std::vector<double> parameters = camera.parameters();
+            parameters[k] += (side ? STEP : -STEP)*deviation;
+            Camera changed = camera;
+            changed.setParameters(parameters);
+            errors[side] = which == 1 ? errorsAt(changed, camera2, nullptr) : errorsAt(camera1, changed, nullptr);
+        }
+        Vec6d gradient;
+        for (size_t i = 0; i < byPose.size(); i++)
+        {
+            const double change = (errors[1][i] - errors[0][i])/(2*STEP*deviation);
+            for (int r = 0; r < 6 && !std::isnan(change); r++)
+                gradient[r] += byPose[i](r)*change;
+        }
+        Mat(inverse*gradient).copyTo(moved.col(k));
+    }
+    return moved;
+}
+
+/** Adds what inexact cameras do to the pose, and makes the interval of its length longer: by as much, in the logarithm, as the
+length's standard deviation grows. */
+void addCameras(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, const Mat (&covariances)[2], Estimate& e)
+{
+    MatchedPixels fitted;
+    for (int i : e.fitted)
+    {
+        fitted.first.push_back(pixels.first[i]);
+        fitted.second.push_back(pixels.second[i]);
+    }
+    Matx66d ofCameras = Matx66d::zeros();
+    for (int which : { 1, 2 })
+    {
+        const Mat& C = covariances[which - 1];
+        if (C.empty())
+            continue;
+        const Mat G = motionByCamera(camera1, camera2, fitted, e.likely, which, C);
+        ofCameras += Matx66d(Mat(G*C*G.t()).ptr<double>());
+    }
+    const Vec3d along = normalize(e.likely.t);
+    const double noise = along.dot(e.ofNoise.get_minor<3, 3>(3, 3)*along);
+    const double growth = std::sqrt(1 + along.dot(ofCameras.get_minor<3, 3>(3, 3)*along)/noise), length = norm(e.likely.t);
+    if (growth > 1 && std::isfinite(growth))
+        for (int k = 0; k < 2; k++)
+            e.interval[k] = length*std::pow(e.interval[k]/length, growth);
+    e.covariance += ofCameras;
+}
+
+bool recover(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, double prob, double threshold, Estimate& e)
+{
+    const PixelMatches matches = matchesOf(camera1, camera2, pixels), sample = sampleOf(matches);
     std::vector<Point2d> sample1, sample2;
     for (const Match& m : sample)
     {
@@ -368,24 +453,46 @@ static MatchedPixels differentMatches(const std::vector<Point2d>& all1, const st
     return matches;
 }
 
+static void readCameraCovariances(InputArrayOfArrays given, const Camera& camera1, const Camera& camera2, Mat (&covariances)[2])
+{
+    if (given.empty())
+        return;
+    std::vector<Mat> all;
+    given.getMatVector(all);
+    if (all.size() != 2)
+        CV_Error_(Error::StsUnmatchedSizes, ("cameraCovariances has %d matrices; it must be one for each of the 2 cameras",
+                                             (int)all.size()));
+    covariances[0] = readCameraCovariance(all[0], camera1, "cameraCovariances[0]");
+    covariances[1] = readCameraCovariance(all[1], camera2, "cameraCovariances[1]");
+}
+
 static int recoverPose(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
                        const Ptr<RefractiveCamera>& camera2, OutputArray R, OutputArray T, double prob, double threshold,
-                       OutputArray mask, Estimate& e)
+                       OutputArray mask, InputArrayOfArrays cameraCovariances, Estimate& e)
 {
     const Camera &c1 = cameraOf(camera1, "camera1"), &c2 = cameraOf(camera2, "camera2");
     const std::vector<Point2d> all1 = readPoints2(points1, "points1"), all2 = readPoints2(points2, "points2");
     const int count = (int)all1.size();
     if (all1.size() != all2.size())
         CV_Error_(Error::StsUnmatchedSizes, ("points1 has %d points, points2 %d; they must agree", count, (int)all2.size()));
+    if (count == 0)
+    {
+        mask.release();
+        return 0;
+    }
     if (count < 6)
         CV_Error_(Error::StsBadArg, ("points1 has %d points; a relative pose needs at least 6", count));
     if (!(prob > 0 && prob < 1))
         CV_Error_(Error::StsOutOfRange, ("prob is %g; it must lie between 0 and 1", prob));
     if (!(threshold > 0) || !std::isfinite(threshold))
         CV_Error_(Error::StsOutOfRange, ("threshold is %g; it must be positive", threshold));
+    Mat covariances[2];
+    readCameraCovariances(cameraCovariances, c1, c2, covariances);
     std::vector<int> index;
     const MatchedPixels matches = differentMatches(all1, all2, index);
     const bool found = recover(c1, c2, matches, prob, threshold, e);
+    if (found && !cameraCovariances.empty())
+        addCameras(c1, c2, matches, covariances, e);
     std::vector<uchar> chosen(matches.first.size() + 1, 0);           // the last: what was not seen
     for (size_t i = 0; found && i < e.inliers.size(); i++)
         chosen[e.inliers[i]] = 1;
@@ -408,7 +515,7 @@ int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<Refr
     CV_INSTRUMENT_REGION();
 
     Estimate e;
-    return recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, e);
+    return recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, noArray(), e);
 }
 
 int refractiveRecoverPose(InputArray points1, InputArray points2, InputArray cameraMatrix1, InputArray distCoeffs1,
@@ -424,12 +531,12 @@ int refractiveRecoverPose(InputArray points1, InputArray points2, InputArray cam
 
 int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
                           const Ptr<RefractiveCamera>& camera2, OutputArray R, OutputArray T, double prob, double threshold,
-                          OutputArray mask, OutputArray covariance, Vec2d& scaleInterval)
+                          OutputArray mask, OutputArray covariance, Vec2d& scaleInterval, InputArrayOfArrays cameraCovariances)
 {
     CV_INSTRUMENT_REGION();
 
     Estimate e;
-    const int count = recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, e);
+    const int count = recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, cameraCovariances, e);
     scaleInterval = count > 0 ? e.interval : Vec2d(NaN, NaN);
     Mat(count > 0 ? e.covariance : Matx66d::all(NaN)).copyTo(covariance);
     return count;
