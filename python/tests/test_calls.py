@@ -293,6 +293,10 @@ def test_relative_pose_among_wrong_matches(rig):
     count, R, T, mask, covariance, interval = refract.refractiveRecoverPoseExtended(
         rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.)
     assert covariance.shape == (6, 6) and interval[0] <= np.linalg.norm(T)
+    inexact = [np.diag(np.full(len(camera.parameterNames()), 1e-6)) for camera in (rig.camera1, rig.camera2)]
+    wider = refract.refractiveRecoverPoseExtended(rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.,
+                                                  cameraCovariances=inexact)[4]
+    assert (np.diag(wider) > np.diag(covariance)).all()
     unseen = np.full_like(off, np.nan)
     assert refract.refractiveRecoverPose(rig.pixels1, unseen, rig.camera1, rig.camera2)[0] == 0
 
@@ -307,6 +311,9 @@ def test_pose_among_wrong_matches(rig, board):
         assert found is True and inliers.dtype == np.int32
         np.testing.assert_array_equal(inliers.ravel(), np.setdiff1d(np.arange(len(pixels)), wrong))
         np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-4)
+    found, rvec, tvec, inliers, covariance = refract.refractiveSolvePnPRansacExtended(
+        board.target[0], pixels, rig.camera1, False, 300, 2., 0.999, sigma=0.1)
+    assert covariance.shape == (6, 6) and covariance[5, 5] > 0
     unseen = np.full_like(pixels, np.nan)
     found, rvec, _, _ = refract.refractiveSolvePnPRansac(board.target[0], unseen, rig.camera1)
     assert found is False and rvec is None

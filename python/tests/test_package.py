@@ -16,6 +16,8 @@ CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "co
          "initRefractiveUndistortRectifyMap", "refractivePointsOnPlane", "refractiveProjectPoints",
          "refractiveProjectPointsExtended", "refractiveEpipolarDistance", "refractiveEpipolarDistanceExtended",
          "refractiveRecoverPose", "refractiveRecoverPoseExtended", "refractiveSolvePnP", "refractiveSolvePnPRansac",
+         "refractiveSolvePnPExtended", "refractiveSolvePnPGenericExtended", "refractiveSolvePnPRansacExtended",
+         "refractiveSolveP3P",
          "refractiveUndistortPoints", "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass",
          "triangulateRefractive", "triangulateRefractiveExtended", "writeRig", "refractiveBundleAdjust",
          "refractiveBundleAdjustExtended", "refractiveIndex"]

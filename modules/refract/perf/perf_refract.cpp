@@ -120,4 +120,24 @@ PERF_TEST_P(Refract, solvePnP, Scene::all())
     SANITY_CHECK_NOTHING();
 }
 
+PERF_TEST_P(Refract, solvePnPRansac, Scene::all())
+{
+    makePoints(100);
+    for (size_t i = 0; i < pixels1.size(); i += 2)
+        pixels1[i] += Point2d(60, -40);
+    Vec3d r, t;
+    TEST_CYCLE() refractiveSolvePnPRansac(points, pixels1, camera1, r, t);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, recoverPose, Scene::all())
+{
+    makePoints(1000);
+    for (size_t i = 0; i < pixels2.size(); i += 4)
+        pixels2[i] += Point2d(60, 40);
+    Mat R, t;
+    TEST_CYCLE() refractiveRecoverPose(pixels1, pixels2, camera1, camera2, R, t);
+    SANITY_CHECK_NOTHING();
+}
+
 }} // namespace

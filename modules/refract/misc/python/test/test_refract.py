@@ -321,6 +321,32 @@ class refract_test(NewOpenCVTests):
             count, rvecs, tvecs, errors = cv.refract.refractiveSolvePnPGeneric(make_board(), pixels, *args)
             self.assertEqual((count, count, (count, 1)), (len(rvecs), len(tvecs), errors.shape))
             self.assertClose(pose[1], tvecs[0], 1e-4)
+        found, rvec, tvec, error, covariance = cv.refract.refractiveSolvePnPExtended(
+            make_board(), pixels, self.camera1, False, sigma=0.1)
+        self.assertEqual((True, (6, 6)), (found, covariance.shape))
+        count, rvecs, tvecs = cv.refract.refractiveSolveP3P(make_board()[:4], pixels[:4], self.camera1)
+        self.assertEqual((count, count), (len(rvecs), len(tvecs)))
+
+    def test_pnp_ransac(self):
+        pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
+        pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
+        pixels.reshape(-1, 2)[::4] += 40
+        for args in ((self.camera1,), (K, D, make_window())):
+            found, rvec, tvec, inliers = cv.refract.refractiveSolvePnPRansac(make_board(), pixels, *args, reprojectionError=2.)
+            self.assertIs(True, found)
+            self.assertClose(pose[1], tvec, 1e-4)
+            self.assertEqual(1, inliers[0, 0])
+
+    def test_recover_pose(self):
+        points = make_board() + np.array([0, 0, 600.])
+        points.reshape(-1, 3)[:, 2] += 9*(np.arange(points.size//3) % 7)
+        pose = np.array([0, 0.2, 0]), np.array([-180., 2, 25])
+        pixels1 = cv.refract.refractiveProjectPoints(points, np.zeros(3), np.zeros(3), self.camera1)[0]
+        pixels2 = cv.refract.refractiveProjectPoints(points, *pose, self.camera2)[0]
+        count, R, T, mask = cv.refract.refractiveRecoverPose(pixels1, pixels2, self.camera1, self.camera2)
+        self.assertEqual(count, mask.sum())
+        self.assertLess(len(points.reshape(-1, 3))//2, count)
+        self.assertClose(cv.Rodrigues(pose[0])[0], R, 1e-2)
 
 
 if __name__ == '__main__':
