@@ -50,21 +50,21 @@ typedef std::vector<Point2d> Points;
 //! R and baseline of pinholes.
 struct PinholePose { Mat R, t; };
 
-//! By the essential matrix; how many matches agree.
+//! By the essential matrix; the number of inliers.
 int posesOfScene(const Points& n1, const Points& n2, double limit, double prob, std::vector<PinholePose>& poses)
 {
     const Mat K = Mat::eye(3, 3, CV_64F);
     Mat mask, R, t;
     const Mat E = findEssentialMat(n1, n2, K, RANSAC, prob, limit, 1000, mask);
-    const int agreeing = E.rows == 3 ? recoverPose(E, n1, n2, K, R, t, 1e9, mask) : 0;
-    if (agreeing >= 6)
+    const int inliers = E.rows == 3 ? recoverPose(E, n1, n2, K, R, t, 1e9, mask) : 0;
+    if (inliers >= 6)
         poses.push_back({ R, t });
-    return agreeing;
+    return inliers;
 }
 
-/** By the homography, of a plane that is in front of all points that agree. One essential matrix of a plane's matches is as good as
+/** By the homography, of a plane that is in front of all inliers. One essential matrix of a plane's matches is as good as
 the other, and findEssentialMat has one of them only.
-@param least matches that must agree for the scene to be taken for a plane */
+@param least inliers that a scene taken for a plane must have */
 void posesOfPlane(const Points& n1, const Points& n2, double limit, double prob, int least, std::vector<PinholePose>& poses)
 {
     Mat mask;
@@ -98,8 +98,8 @@ std::vector<RigidMotion> centralPoses(const Bearings& b1, const Bearings& b2, do
     std::vector<PinholePose> found;
     for (double limit = threshold; limit <= 32*threshold && n1.size() >= 6; limit *= 2)
     {
-        const int agreeing = posesOfScene(n1, n2, limit, prob, found);
-        posesOfPlane(n1, n2, limit, prob, std::max(6, agreeing/2), found);
+        const int inliers = posesOfScene(n1, n2, limit, prob, found);
+        posesOfPlane(n1, n2, limit, prob, std::max(6, inliers/2), found);
     }
     std::vector<RigidMotion> poses;
     for (const PinholePose& p : found)

@@ -8,12 +8,12 @@ namespace cv { namespace refract {
 
 static double logBinomial(int n, int k) { return std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.); }
 
-bool isChance(int count, int agreeing, const Sampling& s)
+bool isExplainedByChance(int count, int inliers, const Sampling& s)
 {
-    if (agreeing == count)
+    if (inliers == count)
         return false;
-    return std::log(s.answers*(count - s.size)) + logBinomial(count, agreeing) + logBinomial(agreeing, s.size)
-           + (agreeing - s.size)*std::log(std::min(s.chance, 1.)) >= 0;
+    return std::log(s.answers*(count - s.size)) + logBinomial(count, inliers) + logBinomial(inliers, s.size)
+           + (inliers - s.size)*std::log(std::min(s.chance, 1.)) >= 0;
 }
 
 Size2d extentOf(const std::vector<Point2d>& pixels)

@@ -14,12 +14,13 @@ struct Sampling
 {
     int size;               //!< of a sample
     double answers;         //!< of a sample, on average
-    double chance;          //!< that an answer agrees with a pixel strewn evenly over the image
+    double chance;          //!< that a uniformly random pixel is an inlier of an answer
 };
 
-/** Whether as many of `count` would agree with some answer if all were strewn: the expected number of sets of so many, of which a
-sample gives an answer that the others agree with (@cite MoisanStival2004), is one or more. All of them are no chance. */
-bool isChance(int count, int agreeing, const Sampling& sampling);
+/** Whether some answer would have as many inliers among `count` uniformly random pixels: the expected number of such sets, each with
+a sample whose answer has the others as inliers, is one or more (a contrario, @cite MoisanStival2004). Where all are inliers it is
+false. */
+bool isExplainedByChance(int count, int inliers, const Sampling& sampling);
 
 //! Width and height of the part of an image that has these pixels.
 Size2d extentOf(const std::vector<Point2d>& pixels);

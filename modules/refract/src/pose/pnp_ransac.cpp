@@ -2,9 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Pose of a target among wrong matches. Random samples of three points give poses (three_rays.hpp); all points judge a pose by
-their squared distances from its images, cut off at the limit (MSAC: @cite TorrZisserman2000). A pose that is better than
-all before is refined on the points that agree with it (LO-RANSAC: @cite ChumMatasKittler2003). */
+/* Pose of a target among wrong matches. Random samples of three points give poses (three_rays.hpp); all points score a pose by
+their squared distances from its images, cut off at the limit (MSAC: @cite TorrZisserman2000). A pose with a lower cost than
+all before is refined on its inliers (LO-RANSAC: @cite ChumMatasKittler2003). */
 
 #include "pose/chance.hpp"
 #include "pose/consensus.hpp"
@@ -134,7 +134,7 @@ struct Effort
 
 Consensus searchPose(const Camera& camera, const ImagePoints& points, const MsacScorer& scorer, const Effort& effort, const Pose& guess)
 {
-    const int QUICK = 4;                // iterations: a start for the next judgement
+    const int QUICK = 4;                // iterations: a start for the next score
     const PointRays rays(camera, points);
     const int count = (int)rays.ray.size();
     Consensus best;
@@ -171,7 +171,7 @@ Consensus searchPose(const Camera& camera, const ImagePoints& points, const Msac
     return best;
 }
 
-//! How likely strewn pixels agree with a pose of three of them.
+//! How likely uniformly random pixels are inliers of a pose of three of them.
 Sampling samplingOf(const ImagePoints& points, double limit)
 {
     const double POSES = 2;             // of a sample, on average
@@ -218,7 +218,7 @@ static void refineOnInliers(const Camera& camera, const ImagePoints& points, con
     }
 }
 
-//! The pose, and which of the target's points agree with it; not found if there is none.
+//! The pose and its inliers; not found if there is none.
 static Pose solveRobustly(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort,
                           const Pose& guess, std::vector<int>& inliers)
 {
@@ -229,7 +229,7 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
     const ImagePoints some = select(points, best.inliers);
     const int different = countDifferent(some);
     if (different < 4 || scatterRank(some.object) < 2
-        || isChance(countDifferent(points), different, samplingOf(points, limit)))
+        || isExplainedByChance(countDifferent(points), different, samplingOf(points, limit)))
         return Pose();
     inliers = some.index;
     return poseOf(best.motion);

@@ -171,9 +171,9 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
     const int TRIALS = 500;                     // a third of the points right: still 6 samples of four right ones
     const ImagePoints points = observed(objectPoints, imagePoints);
     const CentralView view(camera, points);
-    std::vector<Point2d> agreeing;
+    std::vector<Point2d> chosen;
     if (view.object.size() < 4 || scatterRank(view.object) < 2)
-        return agreeing;
+        return chosen;
     const double focalLength = camera.lens().parameters()[0];
     const double least = std::max(4., LEAST_AGREEING*(double)points.pixel.size());
     std::vector<int> inliers;
@@ -185,11 +185,11 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
             inliers.clear();
     }
     if ((double)inliers.size() < least)
-        return agreeing;
-    agreeing.assign(imagePoints.size(), Point2d(NaN, NaN));
+        return chosen;
+    chosen.assign(imagePoints.size(), Point2d(NaN, NaN));
     for (int i : inliers)
-        agreeing[points.index[view.point[i]]] = points.pixel[view.point[i]];
-    return agreeing;
+        chosen[points.index[view.point[i]]] = points.pixel[view.point[i]];
+    return chosen;
 }
 
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)

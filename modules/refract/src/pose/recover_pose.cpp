@@ -424,7 +424,7 @@ bool recover(const Camera& camera1, const Camera& camera2, const MatchedPixels& 
     const auto best = std::min_element(estimates.begin(), estimates.end(),
                                        [](const Estimate& a, const Estimate& b) { return a.cost() < b.cost(); });
     e = *best;
-    return !isChance((int)matches.size(), (int)e.inliers.size(), samplingOf(pixels.second, threshold))
+    return !isExplainedByChance((int)matches.size(), (int)e.inliers.size(), samplingOf(pixels.second, threshold))
            && std::none_of(estimates.begin(), estimates.end(), [&](const Estimate& other)
                            { return &other != &*best && isAmbiguous(pair, matches, e, other); });
 }
@@ -496,16 +496,16 @@ static int recoverPose(InputArray points1, InputArray points2, const Ptr<Refract
     std::vector<uchar> chosen(matches.first.size() + 1, 0);           // the last: what was not seen
     for (size_t i = 0; found && i < e.inliers.size(); i++)
         chosen[e.inliers[i]] = 1;
-    Mat agrees(count, 1, CV_8U);
+    Mat isInlier(count, 1, CV_8U);
     for (int i = 0; i < count; i++)
-        agrees.at<uchar>(i) = chosen[index[i]];
+        isInlier.at<uchar>(i) = chosen[index[i]];
     if (mask.needed())
-        agrees.copyTo(mask);
+        isInlier.copyTo(mask);
     if (!found)
         return 0;
     Mat(e.motion.R).copyTo(R);
     Mat(e.motion.t).copyTo(T);
-    return countNonZero(agrees);
+    return countNonZero(isInlier);
 }
 
 int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
