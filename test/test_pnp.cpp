@@ -273,7 +273,7 @@ TEST_CASE("Poses are as good as is stated, noise and an inexact camera included"
 TEST_CASE("Three points: all poses; a fourth tells the right one", "[pnp]")
 {
     Random random(260);
-    GlassWindow thick = paperWindow();
+    GlassWindow thick = paper::pane();
     thick.normal = normalize(Vec3d(0.5, -0.2, 1));
     thick.thickness[0] = 100;
     for (const GlassWindow& window : { GlassWindow(), thick })
