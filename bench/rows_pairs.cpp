@@ -170,6 +170,32 @@ Row triangulateRow(const Data& d, const std::string& key, const std::string& wor
     return r;
 }
 
+/* The covariance of each point beside the point alone: both in one run. A calibration's covariance is full: every parameter is
+correlated with every other. */
+Row covarianceRow(const Data& d, const std::string& key, const std::string& work, bool isCalibrated, double target)
+{
+    Row r = triangulateRow(d, key, work, TRIANGULATE_OPTIMAL, target);
+    r.peerName = "triangulateRefractive without";
+    r.bytes = 57 + 72;
+    const int own = (int)d->scene1.camera->parameterNames().size(), count = 2*own + 6;
+    Mat calibration;
+    if (isCalibrated)
+    {
+        std::mt19937_64 engine(9);
+        std::normal_distribution<double> normal(0, 1e-4);
+        Mat_<double> root(count, count);
+        for (double& value : root)
+            value = normal(engine);
+        calibration = root*root.t();
+    }
+    const auto covariance = std::make_shared<Mat>();
+    r.ours = [=] { triangulateRefractive(d->scene1.camera, d->scene2.camera, R, T, d->pixels1, d->pixels2, d->points, d->status,
+                                         TRIANGULATE_OPTIMAL, 0.1, calibration, *covariance); };
+    r.peer = [=] { triangulateRefractive(d->scene1.camera, d->scene2.camera, R, T, d->pixels1, d->pixels2, d->points,
+                                         d->status); };
+    return r;
+}
+
 //! Four cameras round a volume, and noisy pixels of the same points in all of them.
 struct Rig
 {
@@ -309,6 +335,8 @@ void addPairRows(std::vector<Row>& rows, int count)
     const Data many = std::make_shared<Pair>(count), few = std::make_shared<Pair>(std::min(count, 2000));
     rows.push_back(triangulateRow(many, "triangulate", "triangulate, maximum likelihood", TRIANGULATE_OPTIMAL, 1/4.));
     rows.push_back(triangulateRow(many, "midpoint", "triangulate, midpoint", TRIANGULATE_MIDPOINT, 1/15.));
+    rows.push_back(covarianceRow(many, "triangulate_covariance", "triangulate, with covariance", false, 2));
+    rows.push_back(covarianceRow(many, "triangulate_calibrated", "triangulate, with the calibration's covariance", true, 3));
     rows.push_back(rigRow(count, "triangulate_rig", "triangulate, 4 cameras", 0, 2.2));
     rows.push_back(rigRow(count, "triangulate_missing", "triangulate, 4 cameras, some unseen", 2, 0));
     Row cv = rigRow(count, "triangulate_cv", "triangulate, 4 cameras", 0, 2.2/12);

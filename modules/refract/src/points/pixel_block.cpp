@@ -6,8 +6,7 @@
 
 namespace cv { namespace refract {
 
-uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images,
-                     std::vector<std::vector<double> >* parameters)
+uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images)
 {
     std::fill(images.errors.begin(), images.errors.end(), 0);
     std::fill(images.byPoint.begin(), images.byPoint.end(), Vec3d());
@@ -17,8 +16,7 @@ uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int 
             continue;
         Vec2d pixel;
         Matx23d J;
-        const uchar status = cameras[c].camera->projectJacobian(cameras[c].place.apply(X), pixel, J.val,
-                                                                parameters ? (*parameters)[c].data() : NULL);
+        const uchar status = cameras[c].camera->projectJacobian(cameras[c].place.apply(X), pixel, J.val, NULL);
         if (status != REFRACT_OK)
             return status;
         J = J*cameras[c].place.R;

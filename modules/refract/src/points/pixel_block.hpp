@@ -47,10 +47,8 @@ struct PointImages
     std::vector<Vec3d> byPoint;         //!< of the predicted pixels, in the frame of camera 1
 };
 
-/** Where X would be seen by the cameras that see point i; the first reason why one cannot.
-@param parameters derivatives by each camera's parameters, 2 x its parameterCount(), row-major; may be null */
-uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images,
-                     std::vector<std::vector<double> >* parameters = NULL);
+//! Where X would be seen by the cameras that see point i; the first reason why one cannot.
+uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int i, const Vec3d& X, PointImages& images);
 
 //! A point that is not beyond the windows of all cameras that see it gets a status that says so.
 void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n);

@@ -39,6 +39,21 @@ struct CameraErrors
     Columns byPoint;            //!< derivatives of the predicted pixels, in the frame of the camera
 };
 
+//! Derivatives of one camera's pixels by the point; 0 where it is not seen.
+struct PixelsByPoint
+{
+    const double* R;            //!< rotation from the frame of camera 1; null: none
+    Columns byPoint;            //!< 2x3, in the frame of the camera
+};
+
+//! Derivatives of one camera's pixels by parameters, of which some are uncertain.
+struct PixelsByParameters
+{
+    Columns values;             //!< two rows
+    const int* which;           //!< columns of the uncertain ones
+    int count;                  //!< how many they are
+};
+
 //! How rays of one camera become curves in the image of another, X' = R X + T.
 struct CurveFrame
 {
@@ -100,6 +115,17 @@ struct PointKernels
     /** One Gauss-Newton step of points (in the frame of camera 1) towards least squared pixel errors in all images.
     @param moved square of the pixels that the step moves the predictions */
     void (*gaussNewton)(int n, int cameras, const CameraErrors* errors, double* x, double* y, double* z, double* moved);
+
+    /** E = A C B^T, the covariance of two cameras' pixels (2x2) from that of their parameters.
+    @param C A.count x B.count, row by row; isSame: its lower triangle, half of the diagonal, 0 above it; E = A C A^T + its transpose */
+    void (*carryCovariance)(int n, const PixelsByParameters& A, const PixelsByParameters& B, const double* C, bool isSame,
+                            const Columns& E);
+    /** Covariance of maximum-likelihood points, 3x3 in the frame of camera 1: J^+ (variance I + E) J^+^T; NaN where the pixels do
+    not determine the point.
+    @param E two rows and columns a camera; may be null
+    @param byPixel scratch: 2*cameras x 3 */
+    void (*pointCovariance)(int n, int cameras, const PixelsByPoint* pixels, double variance, const Columns& E,
+                            const Columns& byPixel, const Columns& covariance);
 
     //! Rays -> curves; no answer (in CURVE_FAR) where a ray has no point in the range.
     bool (*curvesOf)(const CurveFrame& frame, int n, const double* tau, const double* dx, const double* dy, const double* dz,

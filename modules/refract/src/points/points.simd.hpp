@@ -295,6 +295,128 @@ void gaussNewton(int n, int cameras, const CameraErrors* errors, double* px, dou
     });
 }
 
+//! Some rows of C at once, so that a register of B is loaded once for all of them; b: B's from first on.
+template<int ROWS, typename At>
+inline void carryRows(const PixelsByParameters& A, const double* C, int perRow, int p, const Lanes (*b)[2], int first, int end, At at,
+                      Lanes e[2][2])
+{
+    Lanes t[ROWS][2];
+    for (int i = 0; i < ROWS; i++)
+        t[i][0] = t[i][1] = all(0);
+    for (int q = first; q < end; q++)
+        for (int i = 0; i < ROWS; i++)
+        {
+            const double c = C[(p + i)*perRow + q];
+            t[i][0] += c*b[q - first][0];
+            t[i][1] += c*b[q - first][1];
+        }
+    for (int i = 0; i < ROWS; i++)
+        for (int k = 0; k < 2; k++)
+        {
+            const Lanes a = load(A.values.at(k, A.which[p + i]), at);
+            e[k][0] += a*t[i][0];
+            e[k][1] += a*t[i][1];
+        }
+}
+
+void carryCovariance(int n, const PixelsByParameters& A, const PixelsByParameters& B, const double* C, bool isSame, const Columns& E)
+{
+    enum { ROWS = 4, CHUNK = 32 };      // a copy of B's columns side by side: their places are too alike for the cache
+    const auto smaller = [](int i, int j) { return i < j ? i : j; };
+    eachRegister(n, [&](auto at)
+    {
+        Lanes e[2][2] = { { all(0), all(0) }, { all(0), all(0) } }, b[CHUNK][2];
+        for (int first = 0; first < B.count; first += CHUNK)
+        {
+            const int last = smaller(first + CHUNK, B.count);
+            for (int q = first; q < last; q++)
+                for (int k = 0; k < 2; k++)
+                    b[q - first][k] = load(B.values.at(k, B.which[q]), at);
+            int p = 0;
+            for (; p + ROWS <= A.count; p += ROWS)
+                carryRows<ROWS>(A, C, B.count, p, b, first, isSame ? smaller(p + ROWS, last) : last, at, e);
+            for (; p < A.count; p++)
+                carryRows<1>(A, C, B.count, p, b, first, isSame ? smaller(p + 1, last) : last, at, e);
+        }
+        storeAt(isSame ? e[0][0] + e[0][0] : e[0][0], E, 0, 0, at);
+        storeAt(isSame ? e[0][1] + e[1][0] : e[0][1], E, 0, 1, at);
+        storeAt(isSame ? e[1][0] + e[0][1] : e[1][0], E, 1, 0, at);
+        storeAt(isSame ? e[1][1] + e[1][1] : e[1][1], E, 1, 1, at);
+    });
+}
+
+//! Row k of a camera's derivatives, in the frame of camera 1.
+template<typename At>
+inline Vector inFrame1(const PixelsByPoint& camera, int k, At at)
+{
+    const Vector D = loadRow(camera.byPoint, k, at);
+    const double* R = camera.R;
+    if (!R)
+        return D;
+    return { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
+}
+
+//! Upper triangle of a symmetric matrix.
+struct Symmetric { Lanes xx, xy, xz, yy, yz, zz; };
+
+inline Vector operator*(const Symmetric& A, const Vector& v)
+{
+    return { A.xx*v.x + A.xy*v.y + A.xz*v.z, A.xy*v.x + A.yy*v.y + A.yz*v.z, A.xz*v.x + A.yz*v.y + A.zz*v.z };
+}
+
+//! The inverse by Cholesky's factors of A scaled to a diagonal of ones; NaN where A is singular.
+inline Symmetric inverseOf(const Symmetric& A)
+{
+    const double LEAST = 2.220446e-16;      // of a pivot
+    const auto root = [=](Lanes pivot) { return 1/sqrt(select(pivot > LEAST, pivot, all(NAN))); };
+    const Lanes sx = 1/sqrt(A.xx), sy = 1/sqrt(A.yy), sz = 1/sqrt(A.zz);
+    // A = S L L^T S; k = 1/diagonal of L, m = L^-1.
+    const Lanes lyx = A.xy*sx*sy, lzx = A.xz*sx*sz, ky = root(1 - lyx*lyx), lzy = (A.yz*sy*sz - lzx*lyx)*ky;
+    const Lanes kz = root(1 - lzx*lzx - lzy*lzy), myx = -lyx*ky, mzy = -lzy*ky*kz, mzx = -(lzx + lzy*myx)*kz;
+    return { sx*sx*(1 + myx*myx + mzx*mzx), sx*sy*(myx*ky + mzx*mzy), sx*sz*mzx*kz,
+             sy*sy*(ky*ky + mzy*mzy), sy*sz*mzy*kz, sz*sz*kz*kz };
+}
+
+void pointCovariance(int n, int cameras, const PixelsByPoint* pixels, double variance, const Columns& E, const Columns& byPixel,
+                     const Columns& covariance)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes zero = all(0);
+        Symmetric A = { zero, zero, zero, zero, zero, zero };       // J^T J
+        for (int k = 0; k < 2*cameras; k++)
+        {
+            const Vector D = inFrame1(pixels[k/2], k % 2, at);
+            A = { A.xx + D.x*D.x, A.xy + D.x*D.y, A.xz + D.x*D.z, A.yy + D.y*D.y, A.yz + D.y*D.z, A.zz + D.z*D.z };
+        }
+        const Symmetric inverse = inverseOf(A);
+        Symmetric C = { variance*inverse.xx, variance*inverse.xy, variance*inverse.xz, variance*inverse.yy, variance*inverse.yz,
+                        variance*inverse.zz };
+        for (int k = 0; E.data && k < 2*cameras; k++)
+        {
+            const Vector F = inverse*inFrame1(pixels[k/2], k % 2, at);
+            storeAt(F.x, byPixel, k, 0, at);
+            storeAt(F.y, byPixel, k, 1, at);
+            storeAt(F.z, byPixel, k, 2, at);
+        }
+        for (int k = 0; E.data && k < 2*cameras; k++)
+        {
+            Vector g = { zero, zero, zero };
+            for (int l = 0; l < 2*cameras; l++)
+            {
+                const Lanes e = load(E.at(k, l), at);
+                const Vector F = loadRow(byPixel, l, at);
+                g = { g.x + e*F.x, g.y + e*F.y, g.z + e*F.z };
+            }
+            const Vector F = loadRow(byPixel, k, at);
+            C = { C.xx + F.x*g.x, C.xy + F.x*g.y, C.xz + F.x*g.z, C.yy + F.y*g.y, C.yz + F.y*g.z, C.zz + F.z*g.z };
+        }
+        storeAt(C.xx, covariance, 0, 0, at); storeAt(C.xy, covariance, 0, 1, at); storeAt(C.xz, covariance, 0, 2, at);
+        storeAt(C.xy, covariance, 1, 0, at); storeAt(C.yy, covariance, 1, 1, at); storeAt(C.yz, covariance, 1, 2, at);
+        storeAt(C.xz, covariance, 2, 0, at); storeAt(C.yz, covariance, 2, 1, at); storeAt(C.zz, covariance, 2, 2, at);
+    });
+}
+
 // Curves: see epipolar_curve.hpp for t and unit.
 
 const double CURVE_END = 1e-10;     // of t, from infinity and from the ray's origin
@@ -442,7 +564,7 @@ void distanceDerivatives(const CurveMotion& given, int n, const double* px, cons
 
 constexpr PointKernels pointTable = {
     transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, meetRays,
-    gaussNewton, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
+    gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
 };
 
 }}} // namespace

@@ -143,15 +143,6 @@ private:
     std::vector<String> names_;
 };
 
-//! Isotropic noise of all pixels, by rows.
-std::vector<double> isotropic(int cameras, double sigma)
-{
-    std::vector<double> covariance((size_t)4*cameras*cameras);
-    for (int k = 0; k < 2*cameras; k++)
-        covariance[(size_t)k*(2*cameras + 1)] = sigma*sigma;
-    return covariance;
-}
-
 /** @param mayMiss NaN: not seen, rather than no number
 @param pointCovariance may be null, else its results go into covariance, one row a point */
 void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool mayMiss, OutputArray points3D,
@@ -160,8 +151,8 @@ void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool m
     if (flags != TRIANGULATE_OPTIMAL && flags != TRIANGULATE_MIDPOINT)
         CV_Error_(Error::StsBadFlag, ("flags is %d; it must be TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT", flags));
     if (pointCovariance)
-        covariance = Mat(images.size(), 9, CV_64F, Scalar::all(std::numeric_limits<double>::quiet_NaN()));
-    const std::vector<double> noise = isotropic(images.cameras(), sigma);
+        covariance.create(images.size(), 9, CV_64F);
+    const Columns none = { NULL, 0, 0 };
     PointWriter out(points3D, images.size(), 3, images.depth());
     StatusWriter outStatus(status, images.size());
     forEachBlock(images.size(), [&](int begin, int n)
@@ -173,9 +164,8 @@ void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool m
             images.load(begin, n, block);
         out.prepare(begin, n);
         triangulateBlock(cameras, block, n, flags);
-        for (int i = 0; i < n && pointCovariance; i++)
-            if (block.status[i] == REFRACT_OK)
-                pointCovariance->evaluate(block, i, noise.data(), covariance.ptr<double>(begin + i));
+        if (pointCovariance)
+            pointCovariance->evaluate(block, n, sigma*sigma, none, (Matx33d*)covariance.ptr<double>(begin));
         out.store(begin, n, block.x, block.y, block.z, block.status);
         outStatus.store(begin, n, block.status);
     });

@@ -29,21 +29,35 @@ void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, in
 @param enough a step that moves the images by less, in pixels, is the last; 0: to the accuracy of double */
 void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, double off, double enough);
 
-//! Covariance of a maximum-likelihood point.
+//! Covariances of maximum-likelihood points, a block at a time.
 class PointCovariance
 {
 public:
     //! calibration: empty, or as calibrateGlassRig returns it.
     PointCovariance(const PlacedCameras& cameras, InputArray calibration);
-    /** @param block which cameras see point i
-    @param pixels covariance of u1, v1, u2, v2, ..., by rows
-    @param covariance 3x3 by rows; NaN where a camera that sees the point should not */
-    void evaluate(const PixelBlock& block, int i, const double* pixels, double* covariance) const;
+    /** @param block points, and which cameras see them
+    @param variance of each pixel coordinate
+    @param pixels what it is more: 2x2 covariances of the last camera's pixels; may be null
+    @param covariance 3x3 by rows of each point; NaN where it has no answer, or where a camera that sees the point should not */
+    void evaluate(const PixelBlock& block, int n, double variance, const Columns& pixels, Matx33d* covariance) const;
 
 private:
-    struct Calibration;
+    struct Block;
+    void differentiate(const PixelBlock& block, int n, Block& work) const;
+    void carry(int n, Block& work) const;
+
+    //! The uncertain parameters of one camera: its own, then its rotation vector and translation.
+    struct Parameters
+    {
+        int count;                      //!< all of them
+        int lensAndWindow;              //!< of these, the camera's own
+        std::vector<int> uncertain;     //!< columns with a variance
+        std::vector<int> index;         //!< of the uncertain ones in the calibration's covariance
+        Matx33d dR[3];                  //!< by the rotation vector
+    };
     const PlacedCameras& cameras_;
-    Ptr<Calibration> calibration_;
+    std::vector<Parameters> parameters_;
+    std::vector<std::vector<double> > covariance_;      //!< of each pair of cameras (a, b <= a), see carryCovariance; empty: exact
 };
 
 //! Throws unless it is finite and not negative.

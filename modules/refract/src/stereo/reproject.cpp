@@ -137,34 +137,43 @@ private:
                 points.at<Vec3f>(y, x) = rectified;
             else
                 points.at<Vec3d>(y, x) = rectified;
-            if (covariance_)
-                storeCovariance(run, i, y, covariance);
         }
+        if (covariance_)
+            storeCovariances(run, y, covariance);
     }
 
-    void storeCovariance(const Run& run, int i, int y, Mat& covariance) const
+    //! The pixel of image 1 is the one that was asked; its partner in image 2 is off by sigma pixels of disparity.
+    void storeCovariances(const Run& run, int y, Mat& covariance) const
     {
         typedef Vec<double, 9> Vec9d;
-        Matx33d C;
-        covariance_->evaluate(run.pixels, i, pixelCovariance(run, i, sigmaAt(y, run.column[i])).val, C.val);
+        const RectifiedView& view = rectified_.second;
+        const PixelBlock& p = run.pixels;
+        double planeD[BLOCK], x[BLOCK], yNext[BLOCK], u[BLOCK], v[BLOCK], pixels[4*BLOCK];
+        uchar status[BLOCK];
+        Matx33d C[BLOCK];
+        for (int i = 0; i < run.size; i++)
+        {
+            x[i] = run.x2[i] + (rectified_.axis == 0);
+            yNext[i] = run.y2[i] + (rectified_.axis == 1);
+        }
+        view.interpolate(run.size, run.x2, run.y2, planeD);
+        view.pinhole().toRaw(run.size, x, yNext, planeD, u, v, status);
+        const Columns out = { pixels, 2, BLOCK };
+        for (int i = 0; i < run.size; i++)
+        {
+            const double sigma = sigmaAt(y, run.column[i]), du = sigma*(u[i] - p.pixel(2)[i]), dv = sigma*(v[i] - p.pixel(3)[i]);
+            out.at(0, 0)[i] = du*du;
+            out.at(0, 1)[i] = out.at(1, 0)[i] = du*dv;
+            out.at(1, 1)[i] = dv*dv;
+        }
+        covariance_->evaluate(p, run.size, 0, out, C);
         const Matx33d& R1 = rectified_.first.R();
-        covariance.at<Vec9d>(y, run.column[i]) = Vec9d((R1*C*R1.t()).val);
+        for (int i = 0; i < run.size; i++)
+            if (p.status[i] == REFRACT_OK)
+                covariance.at<Vec9d>(y, run.column[i]) = Vec9d((R1*C[i]*R1.t()).val);
     }
 
     double sigmaAt(int y, int x) const { return sigma_.total() == 1 ? sigma_.at<double>(0, 0) : sigma_.at<double>(y, x); }
-
-    //! Of a disparity whose partner in image 2 is off by sigma; the pixel of image 1 is the one that was asked.
-    Matx44d pixelCovariance(const Run& run, int i, double disparitySigma) const
-    {
-        const RectifiedView& view = rectified_.second;
-        const double x = run.x2[i] + (rectified_.axis == 0), y = run.y2[i] + (rectified_.axis == 1);
-        double planeD, u, v;
-        view.interpolate(1, &run.x2[i], &run.y2[i], &planeD);
-        uchar status = REFRACT_OK;
-        view.pinhole().toRaw(1, &x, &y, &planeD, &u, &v, &status);
-        const Vec4d step(0, 0, u - run.pixels.pixel(2)[i], v - run.pixels.pixel(3)[i]);     // of a pixel of disparity
-        return disparitySigma*disparitySigma*step*step.t();
-    }
 
     const RectifiedPair& rectified_;
     const PointCovariance* covariance_;
