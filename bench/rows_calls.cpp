@@ -51,7 +51,7 @@ Row surfaceMapRow()
 {
     struct Data { Scene scene = Scene(FIVE, 1); Mat depth = Mat(SIZE, CV_32F), P, map1, map2, peer1, peer2; };
     const auto d = std::make_shared<Data>();
-    const Vec3d centre(-1, 2, 7);
+    const Vec3d centre = 7*d->scene.window.normal;
     for (int y = 0; y < SIZE.height; y++)
         for (int x = 0; x < SIZE.width; x++)
             d->depth.at<float>(y, x) = (float)(600 + 100*std::sin(x/150.)*std::cos(y/120.));
@@ -107,6 +107,11 @@ void addOnePointRows(std::vector<Row>& rows)
         project);
     plain.tolerance = DBL_MAX;      // it makes a camera each time
     rows.push_back(plain);
+    Row fitted = oneRow("one_plain_undistort", "undistort one point from K, D and window", "cv::undistortPoints", [=]
+        { refractiveUndistortPoints(d->points.pixels, d->pixels, d->scene.K, d->scene.D, d->scene.window, d->points.depths, noArray(),
+                                    d->scene.K, d->status); }, undistort);
+    fitted.tolerance = DBL_MAX;     // and fits the inverse of its lens
+    rows.push_back(fitted);
 }
 
 //! The same work in float32 against float64, and by two threads against one.

@@ -318,6 +318,23 @@ TEST_CASE("Epipolar distances: no answer, types, errors", "[epipolar]")
                                    bare, Vec3d(), Vec3d(), distances, status);
         CHECK(std::abs(distances[0]) == Approx(5));
     }
+    SECTION("DBL_MAX is infinity")
+    {
+        Mat a, b, depthsA, depthsB, jacobian, st;
+        const std::vector<Point2d> far(1, Point2d(600, 500)), beyond(1, Point2d(5000, 500));
+        for (const std::vector<Point2d>& other : { far, beyond, std::vector<Point2d>(1, Point2d(-5000, 500)) })
+        {
+            refractiveEpipolarDistance(far, other, m.camera1, m.camera2, m.rvec, m.T, a, st, 1, Vec2d(0, DBL_MAX), depthsA, jacobian);
+            refractiveEpipolarDistance(far, other, m.camera1, m.camera2, m.rvec, m.T, b, st, 1, Vec2d(0, INF), depthsB, jacobian);
+            CHECK(largestDifference(a, b) == 0);
+            CHECK((std::isnan(depthsA.at<double>(0)) || depthsA.at<double>(0) == depthsB.at<double>(0)));
+            CHECK(depthsA.at<double>(0) != DBL_MAX);
+        }
+        std::vector<std::vector<Point2d> > lines, same;
+        computeRefractiveEpilines(far, 1, m.camera1, m.camera2, m.rvec, m.T, Vec2d(300, DBL_MAX), lines);
+        computeRefractiveEpilines(far, 1, m.camera1, m.camera2, m.rvec, m.T, Vec2d(300, INF), same);
+        CHECK(lines == same);
+    }
     SECTION("errors")
     {
         const auto why = [&](InputArray p2, int which, const Vec2d& range)

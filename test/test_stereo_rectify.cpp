@@ -529,6 +529,24 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     CHECK_THAT(map(depth, r.P2, r.P2, good.T), Contains("R"));
     CHECK_THAT(map(depth, r.R2, r.R2, good.T), Contains("P is 3x3"));
     CHECK_THAT(map(depth, r.R2, r.P2, r.P2), Contains("T"));
+    // P, T and the camera of different cameras.
+    CHECK(map(depth, r.R2, r.P2, good.T) == "");
+    CHECK_THAT(map(depth, r.R2, r.P2, noArray()), Contains("P and T (0, 0, 0) do not belong together"));
+    CHECK_THAT(map(depth, r.R1, r.P1, good.T), Contains("do not belong together"));
+    CHECK_THAT(map(depth, r.R2, r.P2, 1.1*good.T), Contains("do not belong together"));
+    CHECK_THAT(thrown([&] { initRefractiveStereoRectifyMap(good.camera1, depth, r.R1, r.P1, good.T, Size(64, 48), CV_32FC1, map1, map2); }),
+               Contains("do not belong together"));
+    CHECK_THAT(thrown([&] { initRefractiveStereoRectifyMap(good.camera1, 700., r.R2, r.P2, noArray(), Size(64, 48), CV_32FC1, map1,
+                                                           map2); }), Contains("do not belong together"));
+    Mat number1, number2;       // a depth that is a number
+    initRefractiveStereoRectifyMap(good.camera2, 700., r.R2, r.P2, good.T, Size(64, 48), CV_32FC1, number1, number2);
+    CHECK(map(depth, r.R2, r.P2, good.T) == "");
+    CHECK(norm(number1, map1, NORM_INF) + norm(number2, map2, NORM_INF) == 0);
+    const Mat metres(48, 64, CV_16U, Scalar(700)), same(48, 64, CV_32F, Scalar(700));       // a depth camera's image
+    CHECK(map(same, r.R2, r.P2, good.T) == "");
+    map1.copyTo(number1);
+    CHECK(map(metres, r.R2, r.P2, good.T) == "");
+    CHECK(norm(number1, map1, NORM_INF) == 0);
 
     Mat points, disparity(48, 64, CV_32F, Scalar(300)), covariance;
     const auto reproject = [&](InputArray d, InputArray R1, InputArray depth2, InputArray sigma)
@@ -565,7 +583,9 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     CHECK_THAT(reproject(Mat_<double>(disparity), r.R1, depth, 0.1), Contains("disparity is CV_64FC1"));
     CHECK_THAT(reproject(disparity, r.R2, depth, 0.1), Contains("R1, R2 and R"));
     CHECK_THAT(thrown([&] { refractiveReprojectImageTo3D(disparity, points, good.camera1, good.camera2, good.R, good.T, r.R1, r.R2, r.P1,
-                                                         r.P1, depth, depth); }), Contains("P1 and P2 are those of one pinhole"));
+                                                         r.P1, depth, depth); }), Contains("P2 and T") && Contains("do not belong"));
+    CHECK_THAT(thrown([&] { refractiveReprojectImageTo3D(disparity, points, good.camera1, good.camera2, good.R, 2*good.T, r.R1, r.R2,
+                                                         r.P1, r.P2, depth, depth); }), Contains("P2 and T") && Contains("do not belong"));
     CHECK_THAT(reproject(disparity, r.R1, noArray(), 0.1), Contains("depth2"));
     CHECK_THAT(reproject(disparity, r.R1, depth, -0.1), Contains("disparitySigma"));
     CHECK_THAT(reproject(disparity, r.R1, depth, Mat(3, 3, CV_32F, Scalar(1))), Contains("disparitySigma is 3x3"));

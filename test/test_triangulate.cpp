@@ -330,6 +330,76 @@ TEST_CASE("The calibration's covariance is carried to the point", "[triangulate]
                Contains("calibrationCovariance") && Contains("9"));
 }
 
+TEST_CASE("Correlations of the calibration are carried, too", "[triangulate]")
+{
+    CAPTURE(seed());
+    Random random;
+    const Scene s = makeScene(allLenses()[2], allLenses()[3], makeWindow(LAMINATE, random), makeWindow(AIR_GLASS_WATER, random), 70,
+                              random);
+    const int total = (int)(s.camera1->parameterNames().size() + s.camera2->parameterNames().size()) + 6;
+    const auto predict = [&](const Mat& covariance)
+    {
+        Mat points, status, C;
+        triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, points, status, TRIANGULATE_OPTIMAL, 0.,
+                              covariance, C);
+        return C;
+    };
+    Mat all = Mat::zeros(total, total, CV_64F), sum;
+    for (int k = 0; k < 5; k++)
+    {
+        Mat v(total, 1, CV_64F);
+        for (int i = 0; i < total; i++)
+            v.at<double>(i) = i % 7 == k ? 0 : random.normal(1e-4);     // some are known exactly
+        // All parameters move as one, so that the point moves on a line: of rank one.
+        const Mat one = predict(v*v.t());
+        for (int i = 0; i < one.rows; i++)
+        {
+            Vec3d variances;
+            Matx33d axes;
+            eigen(Matx33d(one.ptr<double>(i)), variances, axes);
+            REQUIRE(variances[0] > 0);
+            REQUIRE(std::abs(variances[1]) < 1e-9*variances[0]);
+        }
+        all += v*v.t();
+        sum = k == 0 ? one.clone() : Mat(sum + one);
+    }
+    CHECK(norm(predict(all), sum, NORM_INF) < 1e-9*norm(sum, NORM_INF));
+}
+
+TEST_CASE("Reprojection errors of triangulated points are those of projecting them", "[triangulate]")
+{
+    CAPTURE(seed());
+    Random random;
+    Scene s = makeScene(allLenses()[2], allLenses()[3], makeWindow(PANE_IN_AIR, random), makeWindow(AIR_GLASS_WATER, random), 70, random);
+    addNoise(s, 0.5, random);
+    s.pixels1[3][0] = NaN;
+    for (int flags : { TRIANGULATE_OPTIMAL, TRIANGULATE_MIDPOINT })
+    {
+        std::vector<Vec3d> points;
+        std::vector<uchar> status;
+        std::vector<Vec2d> back1, back2;
+        Mat C, errors;
+        triangulateRefractive(s.camera1, s.camera2, s.R, s.T, s.pixels1, s.pixels2, points, status, flags, 0.5, noArray(), C, errors);
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), s.camera1, back1);
+        refractiveProjectPoints(points, s.R, s.T, s.camera2, back2);
+        const int count = (int)s.points.size();
+        REQUIRE(errors.size() == Size(2, count));
+        REQUIRE(errors.type() == CV_64FC1);
+        for (int i = 0; i < count; i++)
+        {
+            CAPTURE(i, flags);
+            if (status[i] != REFRACT_OK)
+            {
+                CHECK((std::isnan(errors.at<double>(i, 0)) && std::isnan(errors.at<double>(i, 1))));
+                continue;
+            }
+            CHECK(errors.at<double>(i, 0) == Approx(norm(back1[i] - s.pixels1[i])).margin(1e-9));
+            CHECK(errors.at<double>(i, 1) == Approx(norm(back2[i] - s.pixels2[i])).margin(1e-9));
+        }
+        CHECK(status[3] == REFRACT_NOT_FINITE);
+    }
+}
+
 TEST_CASE("A point without answer has no covariance", "[triangulate]")
 {
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray());

@@ -360,6 +360,46 @@ TEST_CASE("Points in the covariance's ellipsoids are as many as they should be",
     CHECK(std::abs(sum/(3*count) - 1) < 5*std::sqrt(6./count)/3);
 }
 
+TEST_CASE("A point that some cameras do not see has the covariance and the errors of those that do", "[triangulate_rig]")
+{
+    CAPTURE(seed());
+    Random random;
+    const Rig truth = makeRig(4, 130, random);
+    Rig all = truth;
+    addNoise(all, 0.3, random);
+    const Rig rig = hidden(all, [](int c, int i) { return c != i % 4; });       // three of the four
+    int total = 6*3;
+    for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+        total += (int)camera->parameterNames().size();
+    Mat root(total, total, CV_64F);
+    for (double& value : Mat_<double>(root))
+        value = random.normal(1e-5);
+    const Mat calibration = root*root.t();
+    Mat points, status, C, errors;
+    triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, rig.pixels, points, status, 0, 0.3, calibration, C, errors);
+    const int count = (int)rig.points.size();
+    REQUIRE(errors.size() == Size(4, count));
+    for (int i : { 1, 2, 3, 5, 64, 65, count - 1 })         // each alone
+    {
+        REQUIRE(i < count);
+        if (status.at<uchar>(i) != REFRACT_OK)
+            continue;
+        std::vector<std::vector<Vec2d> > one;
+        for (int c = 0; c < 4; c++)
+            one.push_back(std::vector<Vec2d>(1, rig.pixels[c][i]));
+        Mat p, s, own, e;
+        triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, one, p, s, 0, 0.3, calibration, own, e);
+        CAPTURE(i);
+        CHECK(norm(own, C.row(i), NORM_INF) < 1e-9*norm(own, NORM_INF));
+        for (int c = 0; c < 4; c++)
+        {
+            CHECK(std::isnan(e.at<double>(c)) == (c == i % 4));
+            if (c != i % 4)
+                CHECK(e.at<double>(c) == Approx(errors.at<double>(i, c)).margin(1e-9));
+        }
+    }
+}
+
 TEST_CASE("The covariance of a rig's calibration is carried to the point", "[triangulate_rig]")
 {
     CAPTURE(seed());

@@ -97,6 +97,13 @@ TEST_CASE("A wrong field is named with its value", "[window]")
     CHECK_THAT(thrown([] { GlassWindow(Vec3d(0, INF, 1), 1, 1.5); }), Contains("normal") && Contains("inf"));
     CHECK_THAT(thrown([] { GlassWindow(Vec3d(0, 0, -1), 1, 1.5); }), Contains("normal") && Contains("-1"));
     CHECK_THAT(thrown([] { GlassWindow(Vec3d(0, 0, 1), -3, 1.5); }), Contains("thickness") && Contains("-3"));
+    // A pane of thickness 0 has no effect.
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    std::vector<Point2d> bare, through;
+    refractiveProjectPoints(std::vector<Point3d>(1, Point3d(50, -20, 600)), Vec3d(), Vec3d(), K, noArray(), GlassWindow(), bare);
+    refractiveProjectPoints(std::vector<Point3d>(1, Point3d(50, -20, 600)), Vec3d(), Vec3d(), K, noArray(),
+                            GlassWindow(Vec3d(0.2, 0, 1), 0, 1.5, 30), through);
+    CHECK(norm(bare[0] - through[0]) < 1e-10);
     CHECK_THAT(thrown([] { GlassWindow(Vec3d(0, 0, 1), 1, 0.75); }), Contains("index") && Contains("0.75"));
 }
 

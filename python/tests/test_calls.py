@@ -46,15 +46,64 @@ def test_undistort(rig):
 
 @pytest.mark.parametrize("depth", [600., 600, np.float64(600), (600.,), np.array([600.]), np.array(600.),
                                    np.full(5, 600., np.float32)])
-@pytest.mark.parametrize("count", [1, 5])     # a number for four points is refused
+@pytest.mark.parametrize("count", [1, 4, 5])
 def test_one_depth_in_every_form(rig, depth, count):
-    if np.size(depth) > count:
+    if np.size(depth) > 1 and np.size(depth) != count:
         pytest.skip("as many depths as points")
     points = np.column_stack((rig.points[:count, :2], np.full(count, 600.)))
     pixels, _ = refract.refractiveProjectPoints(points, ZERO, ZERO, rig.camera1)
     corrected, status = refract.refractiveUndistortPoints(pixels, rig.camera1, depth=depth)
     assert not status.any()
     np.testing.assert_allclose(corrected[:, 0], points[:, :2]/600., atol=1e-10)
+    back, status = refract.refractiveDistortPoints(corrected, rig.camera1, depth)
+    np.testing.assert_allclose(back, pixels, atol=1e-7)
+
+
+def test_no_depth_is_said_only_without_window(rig):
+    with pytest.raises(refract.error, match="depth is"):
+        refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, None)
+    with pytest.raises(refract.error, match="depth is"):
+        refract.initRefractiveUndistortRectifyMap(rig.camera1, None, None, None, (64, 48), 5)
+    bare = refract.RefractiveCamera.create(rig.K1, rig.D1)
+    none, _ = refract.refractiveUndistortPoints(rig.pixels1, bare, None)
+    some, _ = refract.refractiveUndistortPoints(rig.pixels1, bare, 700)
+    np.testing.assert_array_equal(none, some)
+
+
+@pytest.mark.parametrize("depth", [600., 600, np.array([600.]), np.array([0., 0., 1., 600.])])
+def test_images(rig, depth):
+    image = np.full((1024, 1280, 3), 99, np.uint8)
+    for camera in (rig.lens1, (rig.camera1,)):
+        K, roi = refract.getOptimalNewRefractiveCameraMatrix(*camera, depth, (1280, 1024), 0)
+        assert K.shape == (3, 3) and tuple(roi) == (0, 0, 1280, 1024)
+        corrected = refract.refractiveUndistortImage(image, *camera, depth, newCameraMatrix=K)
+        assert corrected.shape == image.shape and corrected.min() == 99
+        drawn = refract.drawRefractiveFrameAxes(np.zeros_like(image), *camera, np.array([0.4, -0.5, 0.1]), np.array([0., 0., 600.]),
+                                                60)
+        assert all(drawn[:, :, c].any() for c in range(3))
+
+
+def test_epipolar_distance(rig):
+    moved = rig.pixels2 - (0., 3.)
+    for cameras in ((*rig.lens1, *rig.lens2), (rig.camera1, rig.camera2)):
+        none, status = refract.refractiveEpipolarDistance(rig.pixels1, rig.pixels2, *cameras, rig.R, rig.T)
+        assert none.shape == (40, 1) and np.abs(none).max() < 1e-6 and not status.any()
+        distance, _ = refract.refractiveEpipolarDistance(rig.pixels1, moved, *cameras, rig.R, rig.T)
+        assert (np.abs(distance) > 2).all() and (np.abs(distance) < 3.01).all()
+    _, _, depths, jacobian = refract.refractiveEpipolarDistanceExtended(
+        rig.pixels1, moved, rig.camera1, rig.camera2, rig.R, rig.T, 1, (0., np.inf))
+    assert depths.shape == (40, 1) and jacobian.shape == (40, 10)
+    np.testing.assert_allclose(-3*jacobian[:, 3], distance[:, 0], atol=0.02)
+
+
+def test_spline_weights(rig):
+    intrinsics = np.zeros(4 + 2*9*8)
+    intrinsics[:4] = 600, 600, 320, 240
+    camera = refract.RefractiveCamera.createMrcal("LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=9_Ny=8_fov_x_deg=110", intrinsics,
+                                                  rig.window1)
+    controls, weights, status = refract.refractiveSplineWeights(rig.points, ZERO, ZERO, camera)
+    assert controls.shape == weights.shape == (40, 16) and controls.dtype == np.int32 and not status.any()
+    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-12)
 
 
 def test_points_on_plane(rig):
@@ -107,7 +156,7 @@ def test_triangulate(rig):
 
 
 def test_triangulate_extended(rig):
-    points, status, covariance = refract.triangulateRefractiveExtended(
+    points, status, covariance, errors = refract.triangulateRefractiveExtended(
         rig.camera1, rig.camera2, rig.R, rig.T, rig.pixels1, rig.pixels2, 0, 0.1, None)
     np.testing.assert_allclose(points[:, 0], rig.points, atol=1e-6)
     assert covariance.shape == (40, 9)
@@ -129,7 +178,7 @@ def test_triangulate_by_any_number_of_cameras(rig):
             seen = np.arange(40) != 6
             np.testing.assert_allclose(points[seen, 0], rig.points[seen], atol=1e-6)
             assert not status[seen].any()
-    points, status, covariance = refract.triangulateRefractiveExtended(cameras, Rs, Ts, images, 0, 0.1, None)
+    points, status, covariance, errors = refract.triangulateRefractiveExtended(cameras, Rs, Ts, images, 0, 0.1, None)
     assert covariance.shape == (40, 9) and np.isnan(covariance[6]).all() and (covariance[seen, 8] > 0).all()
     with pytest.raises(refract.error, match="imagePoints has 2 elements; cameras has 3"):
         refract.triangulateRefractive(cameras, Rs, Ts, images[:2])

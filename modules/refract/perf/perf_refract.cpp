@@ -104,6 +104,46 @@ PERF_TEST_P(Refract, triangulate, Scene::all())
     SANITY_CHECK_NOTHING();
 }
 
+PERF_TEST_P(Refract, triangulate_covariance, Scene::all())
+{
+    makePoints(10000);
+    Mat status, covariance;
+    TEST_CYCLE() triangulateRefractive(camera1, camera2, rvec, tvec, pixels1, pixels2, points, status, TRIANGULATE_OPTIMAL, 0.1,
+                                       noArray(), covariance);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, epipolarDistance, Scene::all())
+{
+    makePoints(10000);
+    std::vector<double> distances;
+    TEST_CYCLE() refractiveEpipolarDistance(pixels1, pixels2, camera1, camera2, rvec, tvec, distances);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, splineWeights, Scene::all())
+{
+    makePoints(10000);
+    std::vector<double> intrinsics(4 + 2*9*8);
+    intrinsics[0] = intrinsics[1] = 600;
+    intrinsics[2] = 320;
+    intrinsics[3] = 240;
+    const Ptr<RefractiveCamera> splined = RefractiveCamera::createMrcal(
+        "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=9_Ny=8_fov_x_deg=110", intrinsics, camera1->window());
+    Mat controls, weights;
+    TEST_CYCLE() refractiveSplineWeights(points, Vec3d(), Vec3d(), splined, controls, weights);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, distortPoints, Scene::all())
+{
+    makePoints(100000);
+    std::vector<Point2d> ideal, raw;
+    refractiveUndistortPoints(pixels1, ideal, camera1, 600.);
+    TEST_CYCLE() refractiveDistortPoints(ideal, raw, camera1, 600.);
+    SANITY_CHECK_NOTHING();
+}
+
 PERF_TEST_P(Refract, triangulate_midpoint, Scene::all())
 {
     makePoints(10000);

@@ -86,6 +86,40 @@ TEST(Refract_Camera, by_name)
     EXPECT_REFUSED(RefractiveCamera::createByName("LENSMODEL_CAHVOR", K1(), D1()), "distCoeffs has 4 values");
 }
 
+// A pixel moves by its weight times what a control point moves, times the focal length.
+TEST(Refract_SplineWeights, are_the_derivatives)
+{
+    const String model = "LENSMODEL_SPLINED_STEREOGRAPHIC_order=2_Nx=9_Ny=8_fov_x_deg=110";
+    std::vector<double> intrinsics(4 + 2*9*8);
+    intrinsics[0] = intrinsics[1] = 600;
+    intrinsics[2] = 320;
+    intrinsics[3] = 240;
+    for (size_t i = 4; i < intrinsics.size(); i++)
+        intrinsics[i] = 0.001*(i % 5);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(model, intrinsics, window1());
+    Mat controls, weights, status;
+    refractiveSplineWeights(scenePoints(), Vec3d(), Vec3d(), camera, controls, weights, status);
+    ASSERT_EQ(Size(9, 30), controls.size());
+    ASSERT_EQ(Size(9, 30), weights.size());
+    EXPECT_EQ(0, cv::countNonZero(status));
+    const std::vector<Point2d> before = project(scenePoints(), camera);
+    for (int i = 0; i < 30; i += 10)
+    {
+        double sum = 0;
+        for (int k = 0; k < 9; k++)
+        {
+            const int control = controls.at<int>(i, k);
+            std::vector<double> moved = intrinsics;
+            moved[4 + 2*control] += 1e-4;
+            const std::vector<Point2d> after = project(scenePoints(), RefractiveCamera::createMrcal(model, moved, window1()));
+            EXPECT_NEAR(600*weights.at<double>(i, k), (after[i].x - before[i].x)/1e-4, 1e-4);
+            sum += weights.at<double>(i, k);
+        }
+        EXPECT_NEAR(1, sum, 1e-12);
+    }
+    EXPECT_REFUSED(refractiveSplineWeights(scenePoints(), Vec3d(), Vec3d(), camera1(), controls, weights), "has no control points");
+}
+
 TEST(Refract_Camera, is_written_and_read)
 {
     const String filename = cv::tempfile(".yml");

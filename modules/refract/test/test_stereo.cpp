@@ -55,6 +55,44 @@ TEST(Refract_Epilines, without_partner)
                    "depthRange");
 }
 
+TEST(Refract_EpipolarDistance, is_that_of_the_moved_pixel)
+{
+    const std::vector<Point2d> pixels1 = project(scenePoints(), camera1()),
+                               pixels2 = project(scenePoints(), camera2(), R(), T());
+    std::vector<double> none, up, same;
+    std::vector<Point2d> moved = pixels2;
+    for (Point2d& p : moved)
+        p.y -= 3;
+    Mat status, depths, jacobian;
+    refractiveEpipolarDistance(pixels1, pixels2, camera1(), camera2(), R(), T(), none, status);
+    refractiveEpipolarDistance(pixels1, moved, camera1(), camera2(), R(), T(), up, status, 1, Vec2d(0, INF), depths, jacobian);
+    refractiveEpipolarDistance(pixels1, moved, K1(), D1(), window1(), K2(), D2(), window2(), R(), T(), same);
+    EXPECT_EQ(up, same);
+    EXPECT_EQ(0, cv::countNonZero(status));
+    for (size_t i = 0; i < none.size(); i++)
+    {
+        EXPECT_NEAR(0, none[i], 1e-6);
+        // To first order the distance by v2 times 3 px.
+        EXPECT_NEAR(-3*jacobian.at<double>((int)i, 3), up[i], 0.02);
+        EXPECT_GT(std::abs(up[i]), 2.5);
+        EXPECT_NEAR(scenePoints()[i].z, depths.at<double>((int)i), 10);
+    }
+    EXPECT_REFUSED(refractiveEpipolarDistance(pixels1, moved, camera1(), camera2(), R(), T(), up, noArray(), 3), "whichImage is 3");
+}
+
+TEST(Refract_Triangulate, tells_the_reprojection_errors)
+{
+    std::vector<Point2d> pixels1 = project(scenePoints(), camera1()), pixels2 = project(scenePoints(), camera2(), R(), T());
+    pixels2[4].y += 2;
+    Mat points, status, covariance, errors;
+    triangulateRefractive(camera1(), camera2(), R(), T(), pixels1, pixels2, points, status, TRIANGULATE_OPTIMAL, 0.1, noArray(),
+                          covariance, errors);
+    ASSERT_EQ(Size(2, 30), errors.size());
+    for (int i = 0; i < errors.rows; i++)
+        for (int c = 0; c < 2; c++)
+            EXPECT_EQ(i == 4, errors.at<double>(i, c) > 0.5);
+}
+
 TEST(Refract_Triangulate, finds_the_points)
 {
     const std::vector<Point2d> pixels1 = project(scenePoints(), camera1()),

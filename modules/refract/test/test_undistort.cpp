@@ -47,6 +47,65 @@ TEST(Refract_UndistortPoints, refuses_what_is_no_depth)
     }
 }
 
+TEST(Refract_UndistortPoints, one_depth_serves_four_points)
+{
+    std::vector<Point3d> plane;
+    for (int i = 0; i < 4; i++)
+        plane.push_back(Point3d(40*i - 60, 30 - 20*i, 600));
+    const std::vector<Point2d> raw = project(plane, camera1());
+    std::vector<Point2d> normalized, same;
+    refractiveUndistortPoints(raw, normalized, camera1(), 600.);
+    refractiveUndistortPoints(raw, same, K1(), D1(), window1(), 600.);
+    EXPECT_EQ(normalized, same);
+    for (int i = 0; i < 4; i++)
+        EXPECT_NEAR(0, cv::norm(normalized[i] - Point2d(plane[i].x/600, plane[i].y/600)), 1e-12);
+    EXPECT_REFUSED(refractiveUndistortPoints(raw, normalized, camera1(), Scalar(600)), "for four points");
+    EXPECT_REFUSED(refractiveUndistortPoints(raw, normalized, camera1(), 0.), "depth is 0");
+}
+
+TEST(Refract_DistortPoints, is_the_way_back)
+{
+    const std::vector<Point2d> raw = project(scenePoints(), camera1());
+    std::vector<double> depth;
+    for (const Point3d& X : scenePoints())
+        depth.push_back(X.z);
+    std::vector<Point2d> ideal, back, same;
+    refractiveUndistortPoints(raw, ideal, camera1(), depth, Vec3d(0.1, 0, 0), K2());
+    refractiveDistortPoints(ideal, back, camera1(), depth, Vec3d(0.1, 0, 0), K2());
+    refractiveDistortPoints(ideal, same, K1(), D1(), window1(), depth, Vec3d(0.1, 0, 0), K2());
+    EXPECT_EQ(back, same);
+    for (size_t i = 0; i < raw.size(); i++)
+        EXPECT_NEAR(0, cv::norm(back[i] - raw[i]), 1e-7);
+}
+
+TEST(Refract_UndistortImage, shows_the_plane)
+{
+    const Matx33d newK = getOptimalNewRefractiveCameraMatrix(camera1(), 600., Size(1280, 1024), 1);
+    const std::vector<Point3d> dot(1, Point3d(60, -40, 600));
+    const Point2d raw = project(dot, camera1())[0];
+    Mat image = Mat::zeros(1024, 1280, CV_8U), corrected;
+    image(Rect(cvRound(raw.x) - 3, cvRound(raw.y) - 3, 7, 7)) = Scalar(255);
+    refractiveUndistortImage(image, corrected, camera1(), 600., newK);
+    ASSERT_EQ(image.size(), corrected.size());
+    EXPECT_EQ(255, corrected.at<uchar>(cvRound(newK(1, 1)*dot[0].y/600 + newK(1, 2)), cvRound(newK(0, 0)*dot[0].x/600 + newK(0, 2))));
+}
+
+TEST(Refract_FrameAxes, end_where_the_window_shows_them)
+{
+    Mat image = Mat::zeros(1024, 1280, CV_8UC3);
+    const Vec3d rvec(0.4, -0.5, 0.1), tvec(0, 0, 600);
+    drawRefractiveFrameAxes(image, camera1(), rvec, tvec, 60, 1);
+    for (int axis = 0; axis < 3; axis++)
+    {
+        std::vector<Vec3d> end(1);
+        end[0][axis] = 60;
+        std::vector<Point2d> pixel;
+        refractiveProjectPoints(end, rvec, tvec, camera1(), pixel);
+        EXPECT_EQ(255, (int)image.at<Vec3b>(Point(pixel[0]))[2 - axis]);     // x red, y green, z blue
+    }
+    EXPECT_REFUSED(drawRefractiveFrameAxes(image, camera1(), rvec, tvec, -1), "length is -1");
+}
+
 TEST(Refract_UndistortRectifyMap, is_the_raw_image_of_the_plane)
 {
     const double depth = 600;

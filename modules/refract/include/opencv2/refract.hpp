@@ -7,6 +7,13 @@
 
 #include "opencv2/core.hpp"
 
+#define CV_REFRACT_VERSION_MAJOR 0
+#define CV_REFRACT_VERSION_MINOR 2
+#define CV_REFRACT_VERSION_PATCH 0
+//! As "0.2.0". Standalone packages and the tools have the same number.
+#define CV_REFRACT_VERSION CVAUX_STR(CV_REFRACT_VERSION_MAJOR) "." CVAUX_STR(CV_REFRACT_VERSION_MINOR) "." \
+                           CVAUX_STR(CV_REFRACT_VERSION_PATCH)
+
 /**
 @defgroup refract Cameras that look through a flat window
 
@@ -28,9 +35,12 @@ matches, triangulates and calibrates such cameras, with the calls that calib3d h
   index < 1) throws cv::Exception whose text names the argument and the value. Empty input gives empty output.
 - **Without Ceres**: a build without Ceres has all but calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and
   refractiveBundleAdjust, which then throw with the code Error::StsNotImplemented; the text says what to install.
-- **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, std::vector;
-  float32 or float64; non-continuous views included. Computation is in double. Outputs are Nx1 with channels and
-  have the input's depth unless the caller fixed the type.
+- **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
+  channel (2x2 and 3x3 are a point a row), std::vector; float32 or float64; non-continuous views included, as inputs and
+  as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth unless the caller fixed
+  the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
+  Matx33d, or rotation vectors.
+- **Infinity**: where a far end may be infinite, DBL_MAX and more stands for infinity, too.
 
 ### The model
 
@@ -162,7 +172,7 @@ public:
 
     /** @brief One pane, the camera in air.
     @param normal from the camera to the scene, camera coordinates; it is normalised.
-    @param thickness of the pane, > 0.
+    @param thickness of the pane, >= 0; 0 is a pane without effect.
     @param index of the pane, >= 1.
     @param distance from the centre of projection to the pane, along the normal, >= 0.
     @param outerIndex index of the scene's medium, >= 1 (1.33 water).
@@ -172,19 +182,19 @@ public:
 
     CV_PROP_RW Vec3d normal;                   //!< unit, camera coordinates, normal[2] > 0
     CV_PROP_RW double distance;                //!< centre of projection to the first surface, along the normal
-    CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards
+    CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
-    /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex takes
-    it; an empty one has an index that does not change. Empty: not known. */
+    /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex
+    takes it; an empty one has an index that does not change. Empty: not known. */
     CV_PROP_RW std::vector<String> materials;
 
     /** @brief The same window in light of another colour.
 
-    Each index is multiplied by what its material's changes by from `wavelength` to wavelengthNm, so that one that was measured or
-    estimated keeps its distance from the catalogue's. Where `wavelength` is 0, the indices become the catalogue's.
+    Each index is multiplied by what its material's changes by from `wavelength` to wavelengthNm, so that one that was measured
+    or estimated keeps its distance from the catalogue's. Where `wavelength` is 0, the indices become the catalogue's.
     @param wavelengthNm in air, nm.
     Throws cv::Exception if the window refracts and `materials` is empty, or as refractiveIndex does.
     */
@@ -215,14 +225,14 @@ air's absolute index (1.000272 at 550 nm) they become relative to vacuum. One ab
 | `K9` (`H-K9L`) | @cite CDGM_HK9L | 365-1711 | formula 5e-6 | 0.0005: as delivered |
 | `B270` | fit to @cite Schott_B270 | 435-657 | 1e-4 (its last digit; the fit 4e-5) | 0.001: as delivered |
 | `soda-lime` | @cite Rubin1985, clear window glass | 310-4600 | none stated | 0.005: kinds of float glass |
-| `borosilicate` (`Borofloat`) | the fit of @cite Polyanskiy2024 to @cite Schott_BOROFLOAT33 | 240-1550 | 1e-4 | 0.003: Borofloat, Duran, Pyrex |
+| `borosilicate` (`Borofloat`) | @cite Polyanskiy2024, of @cite Schott_BOROFLOAT33 | 240-1550 | 1e-4 | 0.003: Borofloat, Duran |
 | `fused-silica` | @cite Malitson1965 | 210-3710 | 1e-5 | 0.00003: specimens |
 | `sapphire`, ordinary ray | @cite MalitsonDodge1972 | 200-5000 | 1e-4 | 0.0002 (the extraordinary ray: 0.008 less) |
 | `PMMA` | @cite Beadie2015 | 420-1620 | 5e-4 | 0.002: kinds, 10 C |
 | `polycarbonate` | the fit of @cite Polyanskiy2024 to @cite Sultanova2009 | 437-1052 | 1e-3 | 0.003: kinds, 10 C |
 | `water`: `T` 0-30 C (20) | @cite QuanFry1995 | 400-700 | 1.5e-5 on average | 0.0005: 5 C |
 | `seawater`: `T` 0-30 C (20), `S` 0-35 g/kg (35) | @cite QuanFry1995 | 400-700 | 1.5e-5 on average | 0.0009: 5 C and 2 g/kg |
-| `air`: `T` -40-100 C (20), `P` 1e4-1.4e5 Pa (101325), `RH` 0-100 % (0) | @cite Ciddor1996 | 300-1690 | 5e-8 | 0.00002: 10 C, 3 kPa |
+| `air`: `T` -40-100 C (20), `P` 1e4-1.4e5 Pa (101325), `RH` 0-100 % (0) | @cite Ciddor1996 | 300-1690 | 5e-8 | 2e-5: 10 C |
 
 Glasses at 20 C. Water at atmospheric pressure: 100 m deep its index is 1.4e-4 more. Air warmer or thinner than at 20 C and
 101325 Pa has an index below 1, which GlassWindow refuses: divide all indices of the window by it, as only their ratios count.
@@ -335,8 +345,8 @@ public:
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
     //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
     CV_WRAP virtual std::vector<String> parameterNames() const = 0;
-    //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the jacobian's
-    //! columns, Nx1 CV_64F.
+    //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the
+    //! jacobian's columns, Nx1 CV_64F.
     CV_WRAP virtual Mat lensParameters() const = 0;
     CV_WRAP virtual void setLensParameters(InputArray parameters) = 0;   //!< as many as lensParameters() gives
     CV_WRAP virtual Size imageSize() const = 0;          //!< 0x0 where unknown
@@ -355,8 +365,8 @@ private:
 One camera is at the top level of the file. Several are in the maps `camera1`, `camera2`, ..., as RefractiveCamera::write
 writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on.
 
-A .cameramodel of mrcal is one camera; of a rig, `camera-%d.cameramodel` are the files camera-0.cameramodel (or 1), the next number,
-and so on, whose `extrinsics` place each camera in a frame that all share.
+A .cameramodel of mrcal is one camera; of a rig, `camera-%d.cameramodel` are the files camera-0.cameramodel (or 1), the next
+number, and so on, whose `extrinsics` place each camera in a frame that all share.
 
 @param filename path; of .cameramodel files the number may stand as %d.
 @param cameras one or more.
@@ -383,8 +393,8 @@ CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::
 
 /** @brief Writes a file that readRig() reads: the whole of it or, if that fails (which throws), nothing. A file of that name is
 replaced, with whatever else was in it.
-@param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (of cameras without windows; of several,
-with %d for the number, which begins with 0, each file whole; camera 1 is the reference), else YAML.
+@param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (of cameras without windows; of
+several, with %d for the number, which begins with 0, each file whole; camera 1 is the reference), else YAML.
 @param cameras one or more.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding. May
 be empty for one camera.
@@ -471,7 +481,7 @@ CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray 
 CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, OutputArray directions,
         const Ptr<RefractiveCamera>& camera, OutputArray status = noArray());
 
-/** @brief Where a pinhole camera without window and lens distortion would see the same scene points.
+/** @brief Where a pinhole camera without window and lens distortion would see the same scene points, all at one depth.
 
 As cv::undistortPoints: without P the result is normalised coordinates, with P pixels.
 
@@ -480,10 +490,31 @@ As cv::undistortPoints: without P the result is normalised coordinates, with P p
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z of the scene points, camera frame: one number for all, or N numbers. Infinity is allowed, but must be said: for
-a window between equal media an infinitely far scene needs no correction at all. Python hands a number over as (depth, 0, 0,
-0); for exactly four points, where that could as well be a depth each, it is refused: give an array. It may be empty for a
-camera without window, where it has no effect.
+@param depth z > 0 of the plane that the scene points are on, camera frame. Infinity is allowed, but must be said: for a window
+between equal media an infinitely far scene needs no correction at all. It may be 0 (Python: None) for a camera without window,
+where it has no effect.
+@param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
+@param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, double depth,
+        InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
+        double depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+/** @overload
+@param src N raw pixels.
+@param dst N corrected points, Nx1 2-channel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z of the scene points, camera frame: one number for all, or N numbers. A bad one among N is that point's own
+problem (status). (d, 0, 0, 0) is the number d, as Scalar(d) is; for exactly four points, where that could as well be a depth
+each, it is refused: give a double, or an array of one number. It may be empty for a camera without window, where it has no
+effect.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -494,6 +525,44 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst,
 
 //! @overload
 CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
+        InputArray depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+/** @brief The way back from refractiveUndistortPoints: raw pixels of what a pinhole without window and lens distortion sees.
+@param undistorted N points as refractiveUndistortPoints gives them: normalised coordinates, with P pixels.
+@param distorted N raw pixels, Nx1 2-channel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z > 0 of the plane that the scene points are on, camera frame; may be infinity.
+@param R rotation camera -> rectified camera, as refractiveUndistortPoints was given it; omitted = identity.
+@param P camera matrix 3x3 or projection matrix 3x4 of the undistorted points; omitted = identity.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray distorted,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, double depth,
+        InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray distorted, const Ptr<RefractiveCamera>& camera,
+        double depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+/** @overload
+@param undistorted N points as refractiveUndistortPoints gives them: normalised coordinates, with P pixels.
+@param distorted N raw pixels, Nx1 2-channel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z of the scene points, one number or N, as refractiveUndistortPoints takes it.
+@param R rotation camera -> rectified camera; omitted = identity.
+@param P camera matrix of the undistorted points; omitted = identity.
+@param status Nx1 CV_8U, see RefractiveStatus.
+*/
+CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray distorted,
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, InputArray depth,
+        InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray distorted, const Ptr<RefractiveCamera>& camera,
         InputArray depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
 
 /** @brief Where the refracted rays of pixels meet a plane (@cite Plate2024, section 3.1.3).
@@ -513,12 +582,34 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         const Ptr<RefractiveCamera>& camera, const Vec4d& plane, OutputArray status = noArray());
 
-/** @brief Maps for cv::remap that turn a raw image into the one a pinhole without window would take of a plane.
+/** @brief Maps for cv::remap that turn a raw image into the one a pinhole without window would take of the plane z = depth.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth one number: the plane z = depth (camera frame), infinity allowed; four numbers: the plane (a, b, c, d), of which
-(a, 0, 0, 0), a plane through the camera, stands for the number a, as Python hands it over. Empty as in
+@param depth z > 0 of the plane, camera frame; may be infinity.
+@param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
+@param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
+@param size of the new image.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param map1 first map, right to 1e-6 px before rounding to its type; pixels with no answer map to (-1, -1).
+@param map2 second map; empty for CV_32FC2.
+*/
+CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
+        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        double depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
+        OutputArray map1, OutputArray map2);
+
+//! @overload
+CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera,
+        double depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
+        OutputArray map1, OutputArray map2);
+
+/** @overload
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth one number: the plane z = depth (camera frame), infinity allowed; four numbers: the plane (a, b, c, d): a x + b y +
+c z = d. (a, 0, 0, 0), a plane through the camera, stands for the number a, as Scalar(a) does. Empty as in
 refractiveUndistortPoints.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
@@ -537,6 +628,99 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
         InputArray depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
         OutputArray map1, OutputArray map2);
 
+/** @brief The image that a pinhole without window would take of a plane: cv::undistort through a window.
+@param src raw image.
+@param dst corrected image, of the size and type of src; black where there is no answer or the raw image has no pixel.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z > 0 of the plane, camera frame; may be infinity.
+@param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
+
+initRefractiveUndistortRectifyMap and cv::remap, bilinear. For many images make the maps once.
+*/
+CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
+        const GlassWindow& window, double depth, InputArray newCameraMatrix = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, double depth,
+        InputArray newCameraMatrix = noArray());
+
+/** @overload
+@param src raw image.
+@param dst corrected image, of the size and type of src.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth one number or a plane, as initRefractiveUndistortRectifyMap takes it.
+@param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
+*/
+CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
+        const GlassWindow& window, InputArray depth, InputArray newCameraMatrix = noArray());
+
+//! @overload
+CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
+        InputArray depth, InputArray newCameraMatrix = noArray());
+
+/** @brief The new camera matrix that keeps the view, for the maps of a plane: cv::getOptimalNewCameraMatrix through a window.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth z > 0 of the plane, camera frame; may be infinity.
+@param imageSize of the raw image.
+@param alpha 0: all new pixels are valid, 1: no raw pixel is lost; between them in between.
+@param newImageSize of the new image; Size(): imageSize.
+@param validPixROI rectangle of the new image in which all pixels are valid.
+@param centerPrincipalPoint the principal point is in the middle of the new image.
+@return 3x3 CV_64F. Without window and with OpenCV's lens it is what cv::getOptimalNewCameraMatrix answers.
+
+Throws where a border of the raw image sees nothing that a pinhole could show (a lens too wide).
+*/
+CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        double depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
+        bool centerPrincipalPoint = false);
+
+//! @overload
+CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, double depth, Size imageSize,
+        double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0, bool centerPrincipalPoint = false);
+
+/** @overload
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param depth one number or a plane, as initRefractiveUndistortRectifyMap takes it.
+@param imageSize of the raw image.
+@param alpha as above.
+@param newImageSize of the new image; Size(): imageSize.
+@param validPixROI rectangle of the new image in which all pixels are valid.
+@param centerPrincipalPoint the principal point is in the middle of the new image.
+*/
+CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        InputArray depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
+        bool centerPrincipalPoint = false);
+
+//! @overload
+CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, InputArray depth, Size imageSize,
+        double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0, bool centerPrincipalPoint = false);
+
+/** @brief Draws the axes of an object's frame into a raw image: cv::drawFrameAxes through a window.
+@param image raw image with 1, 3 or 4 channels; x is drawn red, y green, z blue (BGR). Axes are curves; what of them has no
+image is left out.
+@param cameraMatrix 3x3.
+@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
+@param window see GlassWindow.
+@param rvec rotation vector (or 3x3 matrix) object -> camera, as refractiveSolvePnP gives it.
+@param tvec translation object -> camera.
+@param length of the axes, in the unit of tvec, > 0.
+@param thickness of the lines, pixels.
+*/
+CV_EXPORTS_W void drawRefractiveFrameAxes(InputOutputArray image, InputArray cameraMatrix, InputArray distCoeffs,
+        const GlassWindow& window, InputArray rvec, InputArray tvec, float length, int thickness = 3);
+
+//! @overload
+CV_EXPORTS_W void drawRefractiveFrameAxes(InputOutputArray image, const Ptr<RefractiveCamera>& camera, InputArray rvec,
+        InputArray tvec, float length, int thickness = 3);
+
 /** @brief The curve of possible partners of each point in the other raw image (@cite Plate2024, section 3.2).
 @param points N raw pixels of image whichImage.
 @param whichImage 1 or 2.
@@ -552,8 +736,8 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
 @param lines N polylines, each Mx1 2-channel, raw pixels of the other image in order of growing depth. Parts with no
 image are left out; a point without any partner gives an empty Mat.
 @param tolerance largest distance in pixels between polyline and exact curve.
-@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty. REFRACT_NOT_CONVERGED: the tolerance takes more than
-100000 points, as where depthRange begins so near that the curve ends millions of pixels off.
+@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty. REFRACT_NOT_CONVERGED: the tolerance takes more
+than 100000 points, as where depthRange begins so near that the curve ends millions of pixels off.
 */
 CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -572,8 +756,8 @@ partners (computeRefractiveEpilines), to filter matches by.
 
 The curve is that of a pixel's ray from depthRange's near end, or where it leaves the window, to its far end. A pixel beyond an
 end of the curve has its distance from the end, so that a small distance always tells of a match whose point is there. Exact to
-1e-6 px near the curve; of a pixel hundreds of pixels off it is seldom (one in some hundred) that from a stretch of the curve which
-is not quite the nearest, and of one thousands off it is exact to some percent.
+1e-6 px near the curve; of a pixel hundreds of pixels off it is seldom (one in some hundred) that from a stretch of the curve
+which is not quite the nearest, and of one thousands off it is exact to some percent.
 
 @param points1 N raw pixels of camera 1.
 @param points2 N raw pixels of camera 2, the supposed partners.
@@ -665,12 +849,15 @@ CV_EXPORTS_W void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, co
 @param pixelSigma standard deviation of each pixel coordinate.
 @param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
+@param reprojectionErrors Nx2 CV_64F, pixels: how far each point's image is from the pixel that was given, in each camera; NaN
+where there is no point.
 */
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputArray R, InputArray T, InputArray points1, InputArray points2,
         OutputArray points3D, OutputArray status, int flags,
-        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
+        OutputArray reprojectionErrors = noArray());
 
 /** @brief Triangulates points seen by any number of cameras, each behind its own window, several behind one, or none.
 @param cameras lens and window of each.
@@ -698,15 +885,18 @@ CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> 
 @param status Nx1 CV_8U, see RefractiveStatus.
 @param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
 @param pixelSigma standard deviation of each pixel coordinate.
-@param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras, then
-rvec and T of each but the first; it is carried to the points.
+@param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras,
+then rvec and T of each but the first; it is carried to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
+@param reprojectionErrors N x cameras CV_64F, pixels: how far each point's image is from the pixel that was given; NaN where
+there is no point, or the camera did not see it.
 */
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const std::vector<Ptr<RefractiveCamera> >& cameras,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
         OutputArray points3D, OutputArray status, int flags,
-        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance);
+        double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
+        OutputArray reprojectionErrors = noArray());
 
 //! @}
 
@@ -717,9 +907,9 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
 
 Each camera is replaced by a pinhole at its *virtual centre*, a point of the axis through its centre of projection along the
 window's normal, that is chosen so that over depthRange the rows of both new images differ least; on one plane in the middle
-of it, z = 2/(1/near + 1/far) in the rectified frame, they agree exactly. With maps for that plane any matcher finds most of the scene; with maps for
-the depths that it found (refractiveRectifiedDepth) rows agree everywhere. refractiveReprojectImageTo3D is exact whatever the
-rows do.
+of it, z = 2/(1/near + 1/far) in the rectified frame, they agree exactly. With maps for that plane any matcher finds most of the
+scene; with maps for the depths that it found (refractiveRectifiedDepth) rows agree everywhere. refractiveReprojectImageTo3D is
+exact whatever the rows do.
 
 The *rectified frame* is that of camera 1 turned by R1; P1 and P2 project points of it, so that their last columns hold the
 virtual centres (and, as calib3d has it, in P2 the base line).
@@ -737,11 +927,11 @@ virtual centres (and, as calib3d has it, in P2 the base line).
 @param Q 4x4, (x, y, disparity, 1) -> rectified frame, for cv::reprojectImageTo3D: nearly right on maps for a plane, right on
 maps for a depth per pixel.
 @param flags RECTIFY_ZERO_DISPARITY or 0.
-@param alpha as cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative: neither is
-asked for.
+@param alpha as cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative:
+neither is asked for.
 @param newImageSize of the new images; Size(): imageSize.
-@param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty behind a lens so wide
-that a border of the raw image has no place in the new one.
+@param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty behind a lens so
+wide that a border of the raw image has no place in the new one.
 @param validPixROI2 the same of the new image 2.
 @return RMS and largest difference of rows (columns, if the cameras stand one above the other) over the common view and
 depthRange with maps for the plane, in pixels.
@@ -763,17 +953,36 @@ CV_EXPORTS_W Vec2d refractiveStereoRectify(InputArray cameraMatrix1, InputArray 
         int flags = RECTIFY_ZERO_DISPARITY, double alpha = -1, Size newImageSize = Size(),
         CV_OUT Rect* validPixROI1 = 0, CV_OUT Rect* validPixROI2 = 0);
 
-/** @brief Maps for cv::remap that turn a raw image into one of a rectified pair.
+/** @brief Maps for cv::remap that turn a raw image into one of a rectified pair, which shows the plane z = depth.
 @param camera lens and window.
-@param depth what the new image shows: one number, the plane z = depth; four, the plane (a, b, c, d); or an array of the new
-image's size, CV_32F or CV_64F, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and empty as
-in initRefractiveUndistortRectifyMap.
+@param depth z of the plane, rectified frame; may be infinity.
 @param R R1 or R2 of refractiveStereoRectify.
 @param P P1 or P2.
 @param T translation camera 1 -> camera for camera 2; empty for camera 1. P knows where the pinhole is, only T where the camera
-is: left out for camera 2, it gives a map that is wrong by the base line.
+is. The pinhole must be on the axis of the camera's window (without window: at its centre of projection), as
+refractiveStereoRectify has it; else T, P and the camera do not belong together, which throws.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param map1 first map; pixels with no answer map to (-1, -1).
+@param map2 second map; empty for CV_32FC2.
+*/
+CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, double depth,
+        InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
+
+//! @overload
+CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+        double depth, InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
+
+/** @overload
+@param camera lens and window.
+@param depth what the new image shows: one number, the plane z = depth; four, the plane (a, b, c, d); or an array of the new
+image's size, of any type, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and empty as in
+initRefractiveUndistortRectifyMap.
+@param R R1 or R2 of refractiveStereoRectify.
+@param P P1 or P2.
+@param T as above.
+@param size of the new image.
+@param m1type as above.
 @param map1 first map; pixels with no answer, as those whose depth is NaN, map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
@@ -846,10 +1055,10 @@ asked, so that the error is along its line of sight. NaN: unknown, and so is the
 @param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
 @param covariance 9 channels CV_64F: the 3x3 covariance of each point row by row, rectified frame.
 */
-CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImageTo3D(InputArray disparity, OutputArray _3dImage,
-        const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T,
-        InputArray R1, InputArray R2, InputArray P1, InputArray P2, InputArray depth1, InputArray depth2,
-        bool handleMissingValues, int ddepth, OutputArray status,
+CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImageTo3D(
+        InputArray disparity, OutputArray _3dImage, const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+        InputArray R, InputArray T, InputArray R1, InputArray R2, InputArray P1, InputArray P2,
+        InputArray depth1, InputArray depth2, bool handleMissingValues, int ddepth, OutputArray status,
         InputArray disparitySigma, InputArray calibrationCovariance, OutputArray covariance);
 
 //! @}
@@ -906,7 +1115,8 @@ start of the normal comes from the data. Out: the estimate.
 Throws where the data cannot determine what is free; the text names the direction that is undetermined (sealed cameras: see
 GlassCalibrationFlags). What is returned is a minimum: its step to the least squares is below 1e-3 standard deviations. A
 sealed camera's is looked for from many starts, so that its focal length need be known to some 10 %, its window's distance to
-a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the result so far is returned.
+a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the
+result so far is returned.
 Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
 same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
 Throws Error::StsNotImplemented in a build without Ceres, as do the other forms of it.
@@ -1122,8 +1332,8 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
-The short form, for a rig that stands still: a wand that is waved, particles that drift. Cameras, windows, Rs and Ts are start and
-result; which of them move say the flags.
+The short form, for a rig that stands still: a wand that is waved, particles that drift. Cameras, windows, Rs and Ts are start
+and result; which of them move say the flags.
 @param imagePoints one array of Mx2 pixels per camera; a NaN point was not seen.
 @param cameras as above.
 @param windowOfCamera as above.

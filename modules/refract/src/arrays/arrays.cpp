@@ -5,6 +5,7 @@
 #include "arrays/arrays.hpp"
 #include "arrays/array_kernels.hpp"
 #include "math/rotation.hpp"
+#include <cstring>
 
 namespace cv { namespace refract {
 
@@ -49,9 +50,14 @@ static Mat pointsOf(InputArray a, int channels, const char* name, int& size)
     if (m.depth() != CV_32F && m.depth() != CV_64F)
         CV_Error_(Error::StsUnsupportedFormat, ("%s is %s; it must be float32 or float64", name, describe(m).c_str()));
     size = m.checkVector(channels, -1, false);
+    if (size < 0 && m.dims == 2 && m.channels() == 1 && m.rows == channels)     // a point a column
+    {
+        m = m.t();
+        size = m.rows;
+    }
     if (size < 0)
-        CV_Error_(Error::StsBadSize, ("%s is %s; it must be Nx1 or 1xN with %d channels, or Nx%d with one",
-                                      name, describe(m).c_str(), channels, channels));
+        CV_Error_(Error::StsBadSize, ("%s is %s; it must be Nx1 or 1xN with %d channels, or Nx%d or %dxN with one",
+                                      name, describe(m).c_str(), channels, channels, channels));
     return m.isContinuous() ? m : m.clone();
 }
 
@@ -85,8 +91,6 @@ PointWriter::PointWriter(OutputArray points, int size, int channels, int depth)
                                                 "to hold NaN", typeToString(points.type()).c_str()));
     points.create(size, 1, CV_MAKETYPE(depth, channels), -1, true);
     points_ = points.getMat();
-    if (size && !points_.isContinuous())
-        CV_Error(Error::StsBadArg, "an output array is not continuous; pass an empty one");
 }
 
 template<typename T>
@@ -101,24 +105,26 @@ void PointWriter::store(int begin, int n, const double* x, const double* y, cons
 {
     if (points_.empty())
         return;
-    const bool isFloat = points_.depth() == CV_32F;
+    const bool isFloat = points_.depth() == CV_32F, isContinuous = points_.isContinuous();
     const int channels = z ? 3 : 2;
-    uchar* points = points_.data + (size_t)channels*begin*points_.elemSize1();
+    const size_t itemSize = points_.elemSize();
+    double row[3*BLOCK];
+    uchar* const points = isContinuous ? points_.data + begin*itemSize : (uchar*)row;
     arrayKernels().store(points, isFloat, n, x, y, z);
     uchar reasons = 0;
     for (int i = 0; i < n; i++)
         reasons |= status[i];
-    if (reasons == REFRACT_OK)
-        return;
-    if (isFloat)
+    if (reasons != REFRACT_OK && isFloat)
         setNaN((float*)points, channels, n, status);
-    else
+    else if (reasons != REFRACT_OK)
         setNaN((double*)points, channels, n, status);
+    for (int i = 0; i < n && !isContinuous; i++)
+        std::memcpy(points_.ptr(begin + i), points + i*itemSize, itemSize);
 }
 
 void PointWriter::prepare(int begin, int n) const
 {
-    if (!points_.empty())
+    if (!points_.empty() && points_.isContinuous())
         prefetch(points_.data + begin*points_.elemSize(), n*points_.elemSize());
 }
 
@@ -132,8 +138,13 @@ StatusWriter::StatusWriter(OutputArray status, int size)
 
 void StatusWriter::store(int begin, int n, const uchar* status)
 {
-    if (!status_.empty())
+    if (status_.empty())
+        return;
+    if (status_.isContinuous())
         std::copy(status, status + n, status_.ptr<uchar>() + begin);
+    else
+        for (int i = 0; i < n; i++)
+            *status_.ptr<uchar>(begin + i) = status[i];
 }
 
 static void checkFloat(const Mat& m, const char* name)
@@ -210,7 +221,8 @@ DepthReader::DepthReader(InputArray depth, const char* name, int points, bool is
         CV_Error_(Error::StsBadArg, ("%s is empty; it must say how far the scene is, as the window's effect depends on it "
                                      "(infinity, where that is meant)", name));
     depths_ = depth.getMat();
-    checkFloat(depths_, name);
+    if (depths_.depth() != CV_32F && depths_.depth() != CV_64F)     // millimetres as whole numbers, as depth cameras have them
+        depths_.convertTo(depths_, CV_64F);
     if (!depths_.isContinuous())
         depths_ = depths_.clone();
     size_ = (int)depths_.total()*depths_.channels();
@@ -224,7 +236,19 @@ DepthReader::DepthReader(InputArray depth, const char* name, int points, bool is
         size_ = 1;
     }
     one_ = at(0);
-    if (size_ == 1 && !(one_ > 0))
+    if (size_ == 1)
+        checkOne(name);
+}
+
+DepthReader::DepthReader(double depth, const char* name, bool isNeeded)
+    : size_(1), one_(depth != 0 || isNeeded ? depth : std::numeric_limits<double>::infinity())
+{
+    checkOne(name);
+}
+
+void DepthReader::checkOne(const char* name) const
+{
+    if (!(one_ > 0))
         CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be positive", name, one_));
 }
 
@@ -278,6 +302,14 @@ Vec3d readVec3(InputArray a, const char* name)
     if (readSmall(a, 3, v.val, name) != 3)
         wrongShape(a, name, "a vector of 3");
     return v;
+}
+
+Vec2d readDepthRange(const Vec2d& range, bool mayBeZero)
+{
+    if (!(range[0] > 0 || (mayBeZero && range[0] == 0)) || !(range[1] > range[0]) || !std::isfinite(range[0]))
+        CV_Error_(Error::StsOutOfRange, ("depthRange is (%g, %g); it must be 0 %s near < far", range[0], range[1],
+                                         mayBeZero ? "<=" : "<"));
+    return Vec2d(range[0], range[1] < DBL_MAX ? range[1] : std::numeric_limits<double>::infinity());
 }
 
 Matx33d readProjection(InputArray a, const char* name)

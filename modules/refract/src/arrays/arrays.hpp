@@ -39,7 +39,7 @@ public:
     void prepare(int begin, int n) const;
     void store(int begin, int n, const double* x, const double* y, const double* z, const uchar* status);
 private:
-    Mat points_;
+    Mat points_;        //!< perhaps a column of a wider matrix
 };
 
 //! The status array, or nothing if the caller does not want it.
@@ -59,38 +59,48 @@ class DepthReader
 public:
     //! Empty = infinity, if it is not needed or there are no points.
     DepthReader(InputArray depth, const char* name, int points, bool isNeeded);
+    //! One number for all; 0 = infinity, if it is not needed: Python hands None over as 0 where a double is wanted.
+    DepthReader(double depth, const char* name, bool isNeeded);
     int size() const { return size_; }
     double at(int i) const;
     void load(int begin, int n, double* depth) const;
 private:
+    void checkOne(const char* name) const;
     Mat depths_;
     int size_;
     double one_;
 };
 
-//! How many points are worth another thread: some 50 us of the cheapest kernels.
-const int GRAIN = 8192;
+//! What a point costs about, ns, through one lens and one window.
+const double POINT_COST = 6;
 
-//! Calls body(begin, n) over [0, size) in blocks of at most BLOCK, in parallel.
+/** Calls body(begin, n) over [0, size) in blocks of at most BLOCK, in parallel.
+@param cost of a point, ns: some 50 us are worth another thread */
 template<typename Body>
-void forEachBlock(int size, const Body& body)
+void forEachBlock(int size, double cost, const Body& body)
 {
+    const double grain = 5e4/cost;
     const auto run = [&](const Range& range)
     {
         for (int b = range.start; b < range.end; b++)
             body(b*BLOCK, std::min(BLOCK, size - b*BLOCK));
     };
     const Range blocks(0, (size + BLOCK - 1)/BLOCK);
-    if (size < 2*GRAIN)     // a few points are done before a second thread has woken up
+    if (size < 2*grain)     // a few points are done before a second thread has woken up
         run(blocks);
     else
-        parallel_for_(blocks, run, (double)size/GRAIN);
+        parallel_for_(blocks, run, size/grain);
 }
+template<typename Body>
+void forEachBlock(int size, const Body& body) { forEachBlock(size, POINT_COST, body); }
 
 // Small arguments. Each throws with the argument's name and value.
 Matx33d readCameraMatrix(InputArray m, const char* name);
 Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector; empty = identity
 Vec3d readVec3(InputArray v, const char* name);
+/** A range of depths with a finite near end; the far one is infinity from DBL_MAX on, which is what a default argument can say.
+@param mayBeZero so may near */
+Vec2d readDepthRange(const Vec2d& range, bool mayBeZero);
 Matx33d readProjection(InputArray p, const char* name);                 //!< 3x3 or 3x4; empty = identity
 std::vector<double> readNumbers(InputArray a, const char* name);        //!< any shape, one channel or a Vec; empty = none
 //! A vector of points (N x 3 or N x 2 coordinates) as plain structures; NaN allowed.

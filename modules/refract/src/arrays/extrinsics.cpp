@@ -48,16 +48,23 @@ std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfAr
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts)
 {
     const int count = (int)extrinsics.size();
-    if (Rs.needed() && !Rs.isMatVector())
-        CV_Error(Error::StsBadArg, "Rs must be a std::vector<Mat>");
-    if (Rs.needed())
+    const bool isFixed = Rs.needed() && !Rs.isMatVector();     // std::vector<Matx33d>, which OutputArray cannot resize
+    if (isFixed && (Rs.type() != CV_64FC(9) || (int)Rs.total() != count))
+        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> of %d", count));
+    if (Rs.needed() && !isFixed)
         Rs.create(count, 1, CV_64F);
+    Mat fixed = isFixed ? Rs.getMat() : Mat();
     std::vector<Vec3d> T;
     for (int c = 0; c < count; c++)
     {
         T.push_back(extrinsics[c].T);
         if (!Rs.needed())
             continue;
+        if (isFixed)
+        {
+            fixed.ptr<Matx33d>()[c] = extrinsics[c].R;
+            continue;
+        }
         Rs.create(3, 3, CV_64F, c, true);
         Mat(extrinsics[c].R).copyTo(Rs.getMat(c));
     }

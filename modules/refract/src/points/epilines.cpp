@@ -243,8 +243,7 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
 
     if (whichImage != 1 && whichImage != 2)
         CV_Error_(Error::StsBadArg, ("whichImage is %d; it must be 1 or 2", whichImage));
-    if (!(depthRange[0] > 0) || !(depthRange[1] > depthRange[0]))
-        CV_Error_(Error::StsOutOfRange, ("depthRange is (%g, %g); it must be 0 < near < far", depthRange[0], depthRange[1]));
+    const Vec2d range = readDepthRange(depthRange, false);
     if (!(tolerance > 0) || !std::isfinite(tolerance))
         CV_Error_(Error::StsOutOfRange, ("tolerance is %g; it must be positive", tolerance));
     const bool first = whichImage == 1;
@@ -260,7 +259,7 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
     const double atMiddle = to.lens().isSmooth() ? tolerance : 0.5*tolerance;
     std::vector<Polylines> blocks((in.size() + BLOCK - 1)/BLOCK);
     StatusWriter outStatus(status, in.size());
-    forEachBlock(in.size(), [&](int begin, int n)
+    forEachBlock(in.size(), 150*POINT_COST, [&](int begin, int n)
     {
         double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
         uchar st[BLOCK];
@@ -274,7 +273,7 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
             const Vec3d d(dx[i], dy[i], dz[i]);
             double muNear, muFar;
             if (st[i] == REFRACT_OK)
-                st[i] = depthToMu(from, tau[i], d, depthRange, muNear, muFar);
+                st[i] = depthToMu(from, tau[i], d, range, muNear, muFar);
             if (st[i] != REFRACT_OK)
                 continue;
             const EpipolarCurve curve(R, T, from.layers().normal(), tau[i], d);

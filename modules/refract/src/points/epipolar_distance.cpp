@@ -261,20 +261,14 @@ void EpipolarDistance::differentiate(Matches& block, const Search& search, int n
                     out.at(0, c)[i] = NaN;
 }
 
-static DepthRange checkedRange(const Vec2d& range)
-{
-    if (!(range[0] >= 0) || !(range[1] > range[0]))
-        CV_Error_(Error::StsOutOfRange, ("depthRange is (%g, %g); it must be 0 <= near < far", range[0], range[1]));
-    return { range[0], range[1] };
-}
-
 static void distances(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
                       const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T, OutputArray distances_,
                       OutputArray status, int whichImage, const Vec2d& depthRange, Mat* depths, Mat* jacobian)
 {
     if (whichImage != 1 && whichImage != 2)
         CV_Error_(Error::StsBadArg, ("whichImage is %d; it must be 1 or 2", whichImage));
-    const DepthRange range = checkedRange(depthRange);
+    const Vec2d ends = readDepthRange(depthRange, true);
+    const DepthRange range = { ends[0], ends[1] };
     const EpipolarDistance distance(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), readRotation(R, "R"),
                                     readVec3(T, "T"), whichImage, range);
     const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
@@ -288,7 +282,7 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
         jacobian->create(count, 10, CV_64F);
     const PointReader &ofCurve = whichImage == 1 ? in1 : in2, &other = whichImage == 1 ? in2 : in1;
     StatusWriter outStatus(status, count);
-    forEachBlock(count, [&](int begin, int n)
+    forEachBlock(count, 15*POINT_COST, [&](int begin, int n)
     {
         Matches block;
         uchar otherStatus[BLOCK];
@@ -313,7 +307,8 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
         outStatus.store(begin, n, block.status);
     });
     const int depth = distances_.fixedType() ? CV_MAT_DEPTH(distances_.type()) : std::max(in1.depth(), in2.depth());
-    found.convertTo(distances_, depth);
+    if (distances_.needed())
+        found.convertTo(distances_, depth);
 }
 
 void refractiveEpipolarDistance(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
@@ -346,8 +341,10 @@ void refractiveEpipolarDistance(InputArray points1, InputArray points2, const Pt
 
     Mat depths, jacobian;
     distances(points1, points2, camera1, camera2, R, T, distances_, status, whichImage, depthRange, &depths, &jacobian);
-    depths.copyTo(depths_);
-    jacobian.copyTo(jacobian_);
+    if (depths_.needed())
+        depths.copyTo(depths_);
+    if (jacobian_.needed())
+        jacobian.copyTo(jacobian_);
 }
 
 }} // namespace

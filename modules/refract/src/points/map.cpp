@@ -345,11 +345,33 @@ Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name)
     return plane[3] == -infinity ? -plane : plane;
 }
 
+Vec4d scenePlane(double depth, bool isNeeded, const char* name)
+{
+    return planeOfDepth(DepthReader(depth, name, isNeeded).at(0), name);
+}
+
 Matx33d inverseCameraMatrix(const Matx33d& K, const char* name)
 {
     if (determinant(K) == 0)
         CV_Error_(Error::StsBadArg, ("%s is singular", name));
     return K.inv();
+}
+
+//! The pinhole at the camera's centre of projection.
+static PinholeView centralView(const Camera& cam, const Vec4d& plane, InputArray R, InputArray newCameraMatrix)
+{
+    const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
+                                              : readProjection(newCameraMatrix, "newCameraMatrix");
+    return { cam, readRotation(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
+}
+
+void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, double depth, InputArray R,
+                                       InputArray newCameraMatrix, Size size, int m1type, OutputArray map1, OutputArray map2)
+{
+    CV_INSTRUMENT_REGION();
+
+    const Camera& cam = cameraOf(camera);
+    mapPlane(centralView(cam, scenePlane(depth, cam.refracts(), "depth"), R, newCameraMatrix), size, m1type, map1, map2);
 }
 
 void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R,
@@ -358,11 +380,15 @@ void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, Inpu
     CV_INSTRUMENT_REGION();
 
     const Camera& cam = cameraOf(camera);
-    const Vec4d plane = scenePlane(depth, cam.refracts(), "depth");
-    const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
-                                              : readProjection(newCameraMatrix, "newCameraMatrix");
-    const PinholeView view = { cam, readRotation(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
-    mapPlane(view, size, m1type, map1, map2);
+    mapPlane(centralView(cam, scenePlane(depth, cam.refracts(), "depth"), R, newCameraMatrix), size, m1type, map1, map2);
+}
+
+void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+                                       double depth, InputArray R, InputArray newCameraMatrix, Size size,
+                                       int m1type, OutputArray map1, OutputArray map2)
+{
+    initRefractiveUndistortRectifyMap(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, R,
+                                      newCameraMatrix, size, m1type, map1, map2);
 }
 
 void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,

@@ -44,15 +44,18 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
 }
 
 //! The columns of a block's jacobian, computed side by side, as the rows u, v of each point; NaN where there is no answer.
-static void storeRows(const Columns& columns, int n, const uchar* status, double* rows)
+static void storeRows(const Columns& columns, int n, const uchar* status, int begin, Mat& J)
 {
     for (int i = 0; i < n; i++)
-        for (int r = 0; r < 2; r++, rows += columns.perRow)
+        for (int r = 0; r < 2; r++)
+        {
+            double* const rows = J.ptr<double>(2*(begin + i) + r);
             if (status[i] == REFRACT_OK)
                 for (int c = 0; c < columns.perRow; c++)
                     rows[c] = columns.at(r, c)[i];
             else
                 std::fill(rows, rows + columns.perRow, std::numeric_limits<double>::quiet_NaN());
+        }
 }
 
 void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
@@ -76,7 +79,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
         J = jacobian.getMat();
     }
     const int SMALL = 32;       // so many points' derivatives stay in the first-level cache
-    forEachBlock(in.size(), [&](int blockBegin, int blockSize)
+    forEachBlock(in.size(), 10*POINT_COST, [&](int blockBegin, int blockSize)
     {
         AutoBuffer<double, 2*64*SMALL> buffer(2*count*SMALL);
         const Columns columns = { buffer.data(), count, SMALL }, byPoint = columns.from(3);
@@ -92,7 +95,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
             for (int k = 0; k < 3; k++)
                 pointKernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
             if (!J.empty())
-                storeRows(columns, n, st, J.ptr<double>(2*begin));
+                storeRows(columns, n, st, begin, J);
             out.store(begin, n, u, v, NULL, st);
             outStatus.store(begin, n, st);
         }

@@ -149,6 +149,25 @@ private:
 
 } // namespace
 
+void reprojectionErrors(const PlacedCameras& cameras, const PixelBlock& block, int n, double* errors)
+{
+    const int count = (int)cameras.size();
+    for (int c = 0; c < count; c++)
+    {
+        const double *u = block.pixel(2*c), *v = block.pixel(2*c + 1);
+        double x[BLOCK], y[BLOCK], z[BLOCK], predictedU[BLOCK], predictedV[BLOCK];
+        uchar status[BLOCK];
+        std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
+        for (int i = 0; i < n; i++)         // a point that the camera does not see counts as failed already
+            status[i] = block.isSeen(c, i) ? block.status[i] : (uchar)REFRACT_TOO_FEW_VIEWS;
+        pointKernels().transform(cameras[c].place.R.val, cameras[c].place.T.val, n, x, y, z);
+        cameras[c].camera->project(n, x, y, z, NULL, predictedU, predictedV, status);
+        for (int i = 0; i < n; i++)
+            errors[i*count + c] = status[i] == REFRACT_OK ? std::hypot(predictedU[i] - u[i], predictedV[i] - v[i])
+                                                          : std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
 void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, double off, double enough)
 {
     uchar arrived[BLOCK];

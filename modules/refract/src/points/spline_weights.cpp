@@ -26,7 +26,7 @@ void refractiveSplineWeights(InputArray objectPoints, InputArray rvec, InputArra
     weights.create(in.size(), count, CV_64F);
     Mat which = controls.getMat(), weight = weights.getMat();
     StatusWriter outStatus(status, in.size());
-    forEachBlock(in.size(), [&](int begin, int n)
+    forEachBlock(in.size(), 4*POINT_COST, [&](int begin, int n)
     {
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
         uchar st[BLOCK];

@@ -143,19 +143,48 @@ private:
     std::vector<String> names_;
 };
 
-/** @param mayMiss NaN: not seen, rather than no number
-@param pointCovariance may be null, else its results go into covariance, one row a point */
-void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool mayMiss, OutputArray points3D,
-                 OutputArray status, int flags, const PointCovariance* pointCovariance, double sigma, Mat& covariance)
+//! What the Extended forms tell of each point.
+struct PointQuality
 {
+    PointQuality(const PlacedCameras& cameras, double pixelSigma, InputArray calibrationCovariance)
+        : variance(pixelSigma*pixelSigma), pointCovariance(cameras, calibrationCovariance) { checkSigma(pixelSigma, "pixelSigma"); }
+    void create(int points, int cameras)
+    {
+        covariance.create(points, 9, CV_64F);
+        errors.create(points, cameras, CV_64F);
+    }
+    void evaluate(const PlacedCameras& cameras, const PixelBlock& block, int begin, int n)
+    {
+        const Columns none = { NULL, 0, 0 };
+        pointCovariance.evaluate(block, n, variance, none, (Matx33d*)covariance.ptr<double>(begin));
+        reprojectionErrors(cameras, block, n, errors.ptr<double>(begin));
+    }
+    void copyTo(OutputArray covariance_, OutputArray errors_) const
+    {
+        if (covariance_.needed())
+            covariance.copyTo(covariance_);
+        if (errors_.needed())
+            errors.copyTo(errors_);
+    }
+private:
+    double variance;
+    PointCovariance pointCovariance;
+    Mat covariance, errors;         //!< one row a point
+};
+
+/** @param mayMiss NaN: not seen, rather than no number
+@param quality may be null */
+void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool mayMiss, OutputArray points3D,
+                 OutputArray status, int flags, PointQuality* quality)
+{
+    const double cost = (quality ? 25 : 8)*POINT_COST;
     if (flags != TRIANGULATE_OPTIMAL && flags != TRIANGULATE_MIDPOINT)
         CV_Error_(Error::StsBadFlag, ("flags is %d; it must be TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT", flags));
-    if (pointCovariance)
-        covariance.create(images.size(), 9, CV_64F);
-    const Columns none = { NULL, 0, 0 };
+    if (quality)
+        quality->create(images.size(), images.cameras());
     PointWriter out(points3D, images.size(), 3, images.depth());
     StatusWriter outStatus(status, images.size());
-    forEachBlock(images.size(), [&](int begin, int n)
+    forEachBlock(images.size(), cost, [&](int begin, int n)
     {
         PixelBlock block(images.cameras());
         if (mayMiss)
@@ -164,8 +193,8 @@ void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool m
             images.load(begin, n, block);
         out.prepare(begin, n);
         triangulateBlock(cameras, block, n, flags);
-        if (pointCovariance)
-            pointCovariance->evaluate(block, n, sigma*sigma, none, (Matx33d*)covariance.ptr<double>(begin));
+        if (quality)
+            quality->evaluate(cameras, block, begin, n);
         out.store(begin, n, block.x, block.y, block.z, block.status);
         outStatus.store(begin, n, block.status);
     });
@@ -212,8 +241,7 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = StereoPair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T).cameras();
-    Mat none;
-    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, NULL, 0, none);
+    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, NULL);
 }
 
 void triangulateRefractive(InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -229,17 +257,15 @@ void triangulateRefractive(InputArray cameraMatrix1, InputArray distCoeffs1, con
 void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
                            InputArray R, InputArray T, InputArray points1, InputArray points2,
                            OutputArray points3D, OutputArray status, int flags,
-                           double pixelSigma, InputArray calibrationCovariance, OutputArray covariance)
+                           double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
+                           OutputArray reprojectionErrors)
 {
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = StereoPair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T).cameras();
-    checkSigma(pixelSigma, "pixelSigma");
-    const PointCovariance pointCovariance(cameras, calibrationCovariance);
-    Mat C;
-    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, &pointCovariance, pixelSigma, C);
-    if (covariance.needed())
-        C.copyTo(covariance);
+    PointQuality quality(cameras, pixelSigma, calibrationCovariance);
+    triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, &quality);
+    quality.copyTo(covariance, reprojectionErrors);
 }
 
 void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
@@ -248,24 +274,20 @@ void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, I
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = readCameras(handles, Rs, Ts);
-    Mat none;
-    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, NULL, 0, none);
+    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, NULL);
 }
 
 void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
                            InputArrayOfArrays imagePoints, OutputArray points3D, OutputArray status, int flags,
-                           double pixelSigma, InputArray calibrationCovariance, OutputArray covariance)
+                           double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
+                           OutputArray reprojectionErrors)
 {
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = readCameras(handles, Rs, Ts);
-    checkSigma(pixelSigma, "pixelSigma");
-    const PointCovariance pointCovariance(cameras, calibrationCovariance);
-    Mat C;
-    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, &pointCovariance,
-                pixelSigma, C);
-    if (covariance.needed())
-        C.copyTo(covariance);
+    PointQuality quality(cameras, pixelSigma, calibrationCovariance);
+    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, &quality);
+    quality.copyTo(covariance, reprojectionErrors);
 }
 
 }} // namespace

@@ -60,6 +60,10 @@ private:
     std::vector<std::vector<double> > covariance_;      //!< of each pair of cameras (a, b <= a), see carryCovariance; empty: exact
 };
 
+/** How far the images of the points are from the pixels that were given, row by row of each point, a column a camera; NaN where
+there is no point, or the camera does not see it. */
+void reprojectionErrors(const PlacedCameras& cameras, const PixelBlock& block, int n, double* errors);
+
 //! Throws unless it is finite and not negative.
 void checkSigma(double sigma, const char* name);
 

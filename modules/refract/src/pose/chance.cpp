@@ -6,7 +6,18 @@
 
 namespace cv { namespace refract {
 
-static double logBinomial(int n, int k) { return std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.); }
+//! log n! by Stirling's series; std::lgamma would write to a variable that all threads share.
+static double logFactorial(double n)
+{
+    const double SMALL = 16, LOG_ROOT_2PI = 0.91893853320467274178;     // from SMALL on the series is good to 3e-12
+    double below = 0;
+    for (; n < SMALL; n++)
+        below += std::log(n + 1);
+    const double inverse = 1/n, square = inverse*inverse;
+    return (n + 0.5)*std::log(n) - n + LOG_ROOT_2PI + inverse*(1/12. - square*(1/360. - square/1260)) - below;
+}
+
+static double logBinomial(int n, int k) { return logFactorial(n) - logFactorial(k) - logFactorial(n - k); }
 
 bool isExplainedByChance(int count, int inliers, const Sampling& s)
 {

@@ -140,8 +140,14 @@ void refractiveRectifiedDepth(InputArray disparity_, InputArray P1, InputArray P
     const Disparity disparity(disparity_, handleMissingValues);
     const Size coarse = disparity.size();
     const Geometry geometry(P1, P2);
-    if (coarse.empty() || size.width < coarse.width || size.height < coarse.height)
-        CV_Error_(Error::StsBadSize, ("disparity is %dx%d; it must not be empty, nor larger than size %dx%d", coarse.width,
+    if (coarse.empty())
+    {
+        depth1.release();
+        depth2.release();
+        return;
+    }
+    if (size.width < coarse.width || size.height < coarse.height)
+        CV_Error_(Error::StsBadSize, ("disparity is %dx%d; it must not be larger than size %dx%d", coarse.width,
                                       coarse.height, size.width, size.height));
     const double scale = (double)coarse.width/size.width;
     if (std::abs(scale*size.height - coarse.height) >= 1)

@@ -10,27 +10,58 @@ namespace cv { namespace refract {
 static Vec4d planeOf(InputArray depth, Size size, bool isNeeded, const char* name)
 {
     if (depth.total() > 4)
-        CV_Error_(Error::StsBadSize, ("%s is %dx%d %s; it must be one number (z), four (a plane), or CV_32F or CV_64F of the "
+        CV_Error_(Error::StsBadSize, ("%s is %dx%d %s; it must be one number (z), four (a plane), or one channel of the "
                                       "rectified image's size %dx%d", name, depth.cols(), depth.rows(),
                                       typeToString(depth.type()).c_str(), size.width, size.height));
     return scenePlane(depth, isNeeded, name);
 }
 
+/* A pinhole is on the axis of the camera's window, or at the centre of projection if there is none: refractiveStereoRectify puts it
+nowhere else. P of one camera with the T of another is off by about the base line. */
+static void checkPinhole(const Camera& camera, const Vec3d& centre, const Vec3d& T, const char* name)
+{
+    const double PRINTED = 1e-4, ROUNDING = 1e-9;       // relative; in any unit
+    const Vec3d normal = camera.layers().normal();
+    const double off = norm(camera.refracts() ? centre - centre.dot(normal)*normal : centre);
+    if (off > PRINTED*(norm(T) + (camera.refracts() ? norm(centre) : 0)) + ROUNDING)
+        CV_Error_(Error::StsBadArg, ("%s and T (%g, %g, %g) do not belong together: the pinhole is %g beside the axis on which this "
+                                     "camera's must be. T is that of camera 1 -> this camera, and empty for camera 1", name, T[0],
+                                     T[1], T[2], off));
+}
+
+RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, const Names& names)
+    : R_(readRotation(R, names.R)), projection_(P, names.P), T_(T.empty() ? Vec3d() : readVec3(T, "T")), shift_(0),
+      pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
+{
+    pinhole_.newToCamera = R_.t()*projection_.inverseK;
+    pinhole_.centre = R_.t()*projection_.centre + T_;
+    checkPinhole(camera, pinhole_.centre, T_, names.P);
+}
+
+void RectifiedView::see(const Vec4d& plane)
+{
+    const Vec3d normal = R_.t()*Vec3d(plane[0], plane[1], plane[2]);
+    shift_ = normal.dot(T_);
+    pinhole_.plane = Vec4d(normal[0], normal[1], normal[2], plane[3] + shift_);
+}
+
+RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, double depth, const Names& names)
+    : RectifiedView(camera, R, P, T, names)
+{
+    see(scenePlane(depth, camera.refracts(), names.depth));
+}
+
 RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
                              const Names& names)
-    : R_(readRotation(R, names.R)), projection_(P, names.P), pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
+    : RectifiedView(camera, R, P, T, names)
 {
-    const Vec3d t = T.empty() ? Vec3d() : readVec3(T, "T");
-    pinhole_.newToCamera = R_.t()*projection_.inverseK;
-    pinhole_.centre = R_.t()*projection_.centre + t;
-    Vec4d plane(0, 0, 1, 0);
-    if (!depth.empty() && depth.size() == size && (depth.type() == CV_32F || depth.type() == CV_64F) && size.area() > 1)
-        depths_ = depth.getMat();
-    else
-        plane = planeOf(depth, size, camera.refracts(), names.depth);
-    const Vec3d normal = R_.t()*Vec3d(plane[0], plane[1], plane[2]);
-    shift_ = normal.dot(t);
-    pinhole_.plane = Vec4d(normal[0], normal[1], normal[2], plane[3] + shift_);
+    const bool isImage = !depth.empty() && depth.size() == size && depth.channels() == 1 && size.area() > 1;
+    see(isImage ? Vec4d(0, 0, 1, 0) : planeOf(depth, size, camera.refracts(), names.depth));
+    if (!isImage)
+        return;
+    depths_ = depth.getMat();
+    if (depths_.depth() != CV_32F && depths_.depth() != CV_64F)
+        depths_.convertTo(depths_, CV_64F);
 }
 
 void RectifiedView::load(int row, int column, int n, double* planeD) const
@@ -74,6 +105,22 @@ void checkRectification(const Matx33d& R1, const Matx33d& R2, const Matx33d& R)
     const double difference = norm(R2*R - R1, NORM_INF);
     if (difference > 1e-6)
         CV_Error_(Error::StsBadArg, ("R1, R2 and R do not belong together: R2*R differs from R1 by %g", difference));
+}
+
+void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, double depth, InputArray R, InputArray P,
+                                    InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2)
+{
+    CV_INSTRUMENT_REGION();
+
+    mapPlane(RectifiedView(cameraOf(camera), R, P, T, depth, { "R", "P", "depth" }).pinhole(), size, m1type, map1, map2);
+}
+
+void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
+                                    double depth, InputArray R, InputArray P, InputArray T, Size size, int m1type,
+                                    OutputArray map1, OutputArray map2)
+{
+    initRefractiveStereoRectifyMap(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, R, P, T, size, m1type,
+                                   map1, map2);
 }
 
 void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R, InputArray P,

@@ -27,6 +27,8 @@ public:
     @param depth z, a plane (a, b, c, d) of the rectified frame, or z of each pixel
     @param size of the rectified image */
     RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size, const Names& names);
+    //! The same of the plane z = depth.
+    RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, double depth, const Names& names);
 
     const PinholeView& pinhole() const { return pinhole_; }
     //! Each pixel has a depth of its own; else pinhole().plane is what it shows.
@@ -40,8 +42,12 @@ public:
     const RectifiedProjection& projection() const { return projection_; }
 
 private:
+    RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, const Names& names);
+    void see(const Vec4d& plane);       //!< of the rectified frame
+
     Matx33d R_;
     RectifiedProjection projection_;
+    Vec3d T_;
     Mat depths_;
     double shift_;          //!< depth -> d of the plane z = depth in the frame of the camera
     PinholeView pinhole_;

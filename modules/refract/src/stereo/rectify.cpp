@@ -201,19 +201,11 @@ Mat disparityToPoint(const NewCameras& n, const VirtualPair& v)
     return Q;
 }
 
-bool isPlainOpenCV(const Camera& camera) { return !camera.refracts() && camera.lensModel() == "opencv"; }
-
 Size checkedSize(Size size, const char* name)
 {
     if (size.width < 1 || size.height < 1)
         CV_Error_(Error::StsBadSize, ("%s is %dx%d; it must not be empty", name, size.width, size.height));
     return size;
-}
-
-void checkRange(const Vec2d& range)
-{
-    if (!(range[0] > 0 && range[1] > range[0] && std::isfinite(range[0])))
-        CV_Error_(Error::StsOutOfRange, ("depthRange is (%g, %g); near must be positive and far beyond it", range[0], range[1]));
 }
 
 //! RMS and the largest, in pixels.
@@ -242,14 +234,14 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
 
     const StereoPair pair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T);
     checkedSize(imageSize, "imageSize");
-    checkRange(depthRange);
+    const Vec2d range = readDepthRange(depthRange, false);
     if (flags & ~RECTIFY_ZERO_DISPARITY)
         CV_Error_(Error::StsBadFlag, ("flags is %d; it must be RECTIFY_ZERO_DISPARITY or 0", flags));
     if (std::isnan(alpha))
         CV_Error(Error::StsBadArg, "alpha is nan; it must be a number");
     const Wishes wishes = { imageSize, newImageSize == Size() ? imageSize : checkedSize(newImageSize, "newImageSize"), flags, alpha };
-    const RowSamples samples(pair, imageSize, depthRange);
-    const double depth = 2/(1/depthRange[0] + 1/depthRange[1]);     // the middle of the disparities
+    const RowSamples samples(pair, imageSize, range);
+    const double depth = 2/(1/range[0] + 1/range[1]);     // the middle of the disparities
     const VirtualPair v(pair, bestVirtualCentres(pair, samples, depth));
     double focal;
     if (isPlainOpenCV(pair.camera1) && isPlainOpenCV(pair.camera2))

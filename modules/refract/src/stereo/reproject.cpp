@@ -215,9 +215,9 @@ void reproject(InputArray disparity_, OutputArray _3dImage, const Ptr<Refractive
     if (ddepth != CV_32F && ddepth != CV_64F)
         CV_Error_(Error::StsUnsupportedFormat, ("ddepth is %s; it must be CV_32F or CV_64F", depthToString(ddepth)));
     const StereoPair pair(cam1, cam2, R, T);
+    checkRectification(readRotation(R1, "R1"), readRotation(R2, "R2"), pair.R);
     RectifiedPair rectified = { pair, pair.cameras(), RectifiedView(cam1, R1, P1, noArray(), depth1, size, { "R1", "P1", "depth1" }),
                                 RectifiedView(cam2, R2, P2, T, depth2, size, { "R2", "P2", "depth2" }), 0, 0 };
-    checkRectification(rectified.first.R(), rectified.second.R(), rectified.pair.R);
     rectified.axis = axisOf(rectified.first.projection(), rectified.second.projection());
     rectified.enough = ddepth == CV_32F ? 1e-2 : 0;     // of which a thousandth is left, below the rounding of what is stored
     const PointCovariance pointCovariance(rectified.cameras, calibrationCovariance);

@@ -204,6 +204,61 @@ class refract_test(NewOpenCVTests):
         self.assertClose(expected*2438 + (644, 500), pixels, 1e-9)
         self.assertEqual(30, len(cv.refract.refractiveUndistortPoints(self.pixels1, K, D, make_window(), depth)[0]))
 
+    def test_one_depth_for_four_points(self):
+        points = np.array([[-60., 30, 600], [-20, 10, 600], [20, -10, 600], [60, -30, 600]])
+        pixels = cv.refract.refractiveProjectPoints(points, self.zero, self.zero, self.camera1)[0]
+        for depth in (600., 600, np.float64(600), np.array([600.]), np.full(4, 600.), np.full(4, 600, np.uint16)):
+            for args in ((self.camera1,), (K, D, make_window())):
+                ideal = cv.refract.refractiveUndistortPoints(pixels, *args, depth)[0]
+                self.assertClose(points[:, :2]/600, ideal, 1e-10)
+                raw, status = cv.refract.refractiveDistortPoints(ideal, *args, depth)
+                self.assertClose(pixels, raw, 1e-7)
+                self.assertFalse(status.any())
+        with self.assertRaisesRegex(cv.error, 'depth is'):
+            cv.refract.refractiveUndistortPoints(pixels, self.camera1, None)
+        bare = cv.refract.RefractiveCamera.create(K, D)
+        self.assertClose(cv.refract.refractiveUndistortPoints(pixels, bare, None)[0],
+                         cv.refract.refractiveUndistortPoints(pixels, bare, 700)[0], 0)
+
+    def test_images(self):
+        image = np.zeros((1024, 1280, 3), np.uint8)
+        for args in ((self.camera1,), (K, D, make_window())):
+            for depth in (600., np.array([0., 0, 1, 600])):
+                new, roi = cv.refract.getOptimalNewRefractiveCameraMatrix(*args, depth, (1280, 1024), 0)
+                self.assertEqual(((3, 3), (0, 0, 1280, 1024)), (new.shape, tuple(roi)))
+                undistorted = cv.refract.refractiveUndistortImage(image + 99, *args, depth, newCameraMatrix=new)
+                self.assertEqual(99, undistorted.min())
+            drawn = cv.refract.drawRefractiveFrameAxes(image.copy(), *args, np.array([0.4, -0.5, 0.1]), np.array([0., 0, 600]), 60)
+            self.assertEqual([True]*3, [bool(drawn[:, :, c].any()) for c in range(3)])
+
+    def test_epipolar_distance(self):
+        moved = self.pixels2 - (0, 3)
+        for args in ((self.camera1, self.camera2), (K, D, make_window(), K, D, make_window(0.18))):
+            none, status = cv.refract.refractiveEpipolarDistance(self.pixels1, self.pixels2, *args, R, T)
+            self.assertEqual(((30, 1), False), (none.shape, bool(status.any())))
+            self.assertClose(np.zeros(30), none, 1e-6)
+            distance = cv.refract.refractiveEpipolarDistance(self.pixels1, moved, *args, R, T)[0]
+            self.assertTrue((np.abs(distance) > 2.5).all() and (np.abs(distance) < 3.01).all())
+        _, _, depths, jacobian = cv.refract.refractiveEpipolarDistanceExtended(
+            self.pixels1, moved, self.camera1, self.camera2, R, T, 1, (0, math.inf))
+        self.assertEqual(((30, 1), (30, 10)), (depths.shape, jacobian.shape))
+        self.assertClose(-3*jacobian[:, 3], distance, 0.02)
+
+    def test_spline_weights(self):
+        intrinsics = np.zeros(4 + 2*9*8)
+        intrinsics[:4] = 600, 600, 320, 240
+        model = 'LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=9_Ny=8_fov_x_deg=110'
+        camera = cv.refract.RefractiveCamera.createMrcal(model, intrinsics, make_window())
+        controls, weights, status = cv.refract.refractiveSplineWeights(self.points, self.zero, self.zero, camera)
+        self.assertEqual(((30, 16), (30, 16), np.int32), (controls.shape, weights.shape, controls.dtype))
+        self.assertFalse(status.any())
+        self.assertClose(np.ones(30), weights.sum(axis=1), 1e-12)
+        before = cv.refract.refractiveProjectPoints(self.points, self.zero, self.zero, camera)[0]
+        intrinsics[4 + 2*controls[7, 5]] += 1e-4
+        camera = cv.refract.RefractiveCamera.createMrcal(model, intrinsics, make_window())
+        after = cv.refract.refractiveProjectPoints(self.points, self.zero, self.zero, camera)[0]
+        self.assertClose(600*weights[7, 5], (after - before)[7, 0, 0]/1e-4, 1e-4)
+
     def test_map(self):
         new = np.array([[120., 0, 32], [0, 120, 24], [0, 0, 1]])
         for args in ((self.camera1,), (K, D, make_window())):
@@ -242,9 +297,10 @@ class refract_test(NewOpenCVTests):
             K, D, make_window(), K, D, make_window(0.18), R, T, self.pixels1, self.pixels2,
             flags=cv.refract.TRIANGULATE_MIDPOINT)
         self.assertClose(self.points, points, 1e-6)
-        points, status, covariance = cv.refract.triangulateRefractiveExtended(
+        points, status, covariance, errors = cv.refract.triangulateRefractiveExtended(
             self.camera1, self.camera2, R, T, self.pixels1, self.pixels2, cv.refract.TRIANGULATE_OPTIMAL, 0.1, None)
-        self.assertEqual((30, 9), covariance.shape)
+        self.assertEqual(((30, 9), (30, 2)), (covariance.shape, errors.shape))
+        self.assertLess(errors.max(), 1e-6)
         self.assertTrue((covariance[:, [0, 4, 8]] > 0).all())
 
     def test_calibrate_normal(self):
