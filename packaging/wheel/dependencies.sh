@@ -117,19 +117,6 @@ libpng() {
   cp LICENSE "$licences/libpng"
 }
 
-libexif() {
-  debian_source libexif
-  cd source
-  touch config.h
-  echo '#include <stdint.h>' >libexif/_stdint.h
-  defines='-DGETTEXT_PACKAGE="libexif-12"'
-  static_library exif libexif/*.c libexif/*/*.c
-  mkdir -p "$prefix/include/libexif"
-  cp libexif/*.h "$prefix/include/libexif"
-  pkg_config_file libexif "-I$prefix/include" "-lexif -lm"
-  cp COPYING "$licences/libexif"
-}
-
 pixman() {
   debian_source pixman
   cd source
@@ -150,7 +137,7 @@ cairo() {       # PDF and SVG with cairo's own letters
   compile -C src install
   cp src/*.pc "$prefix/lib/pkgconfig"
   sed -i 's/^Requires.private:/Requires:/' "$prefix/lib/pkgconfig/cairo.pc"      # static: what it uses is linked, too
-  cp COPYING "$licences/cairo"
+  cat COPYING COPYING-MPL-1.1 >"$licences/cairo"      # of LGPL 2.1 or MPL 1.1 the latter, as it is linked statically
 }
 
 gnuplot() {     # draws SVG; a program of its own
@@ -162,7 +149,8 @@ gnuplot() {     # draws SVG; a program of its own
     --without-lua --without-cairo --without-gd --with-qt=no --disable-wxwidgets --without-tektronix --without-caca
   compile -C src gnuplot
   strip -o "$prefix/bin/gnuplot" src/gnuplot
-  cp Copyright "$licences/gnuplot"
+  # Its licence asks for the changes to the released source beside the program.
+  cat Copyright debian/patches/*.patch debian/patches/*.diff >"$licences/gnuplot" 2>/dev/null || cp Copyright "$licences/gnuplot"
 }
 
 assimp() {

@@ -30,10 +30,11 @@ double upperTailNoncentralF2(double v, double lambda, double x)
 {
     // A Poisson mixture of central ones; from where it is largest, terms fall off fast to both sides.
     const int last = (int)(0.5*lambda + 10.*std::sqrt(0.5*lambda) + 30.);
-    double sum = 0.;
+    double sum = 0., logFactorial = 0.;         // std::lgamma would write to a variable that all threads share
     for (int j = 0; j <= last; j++)
     {
-        const double logWeight = (lambda > 0 ? j*std::log(0.5*lambda) : j ? -HUGE_VAL : 0.) - 0.5*lambda - std::lgamma(j + 1.);
+        logFactorial += std::log(std::max(j, 1));
+        const double logWeight = (lambda > 0 ? j*std::log(0.5*lambda) : j ? -HUGE_VAL : 0.) - 0.5*lambda - logFactorial;
         sum += std::exp(logWeight)*upperTailF(1 + j, v, x/(1 + j));
     }
     return std::min(1., sum);

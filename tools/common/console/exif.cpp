@@ -4,68 +4,30 @@
 #include "console/exif.hpp"
 #include "console/numbers.hpp"
 
-#include <libexif/exif-data.h>
+#include <opencv2/imgcodecs.hpp>
 #include <algorithm>
-#include <cstring>
-#include <memory>
 #include <mutex>
 
 namespace tools {
 
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-
-const unsigned char HEADER[] = {'E', 'x', 'i', 'f', 0, 0};
-
-//! What a PNG's chunk eXIf holds, as libexif wants it; empty: there is none. A chunk: length, name, data, checksum.
-Bytes exifOfPng(const Bytes& bytes)
-{
-    size_t at = 8;
-    while (at + 12 <= bytes.size())
-    {
-        const unsigned char* chunk = &bytes[at];
-        const size_t length = (size_t)chunk[0] << 24 | chunk[1] << 16 | chunk[2] << 8 | chunk[3];
-        if (length > bytes.size() - at - 12)
-            break;
-        if (std::memcmp(chunk + 4, "eXIf", 4) == 0)
-        {
-            Bytes exif(HEADER, HEADER + sizeof(HEADER));
-            exif.insert(exif.end(), chunk + 8, chunk + 8 + length);
-            return exif;
-        }
-        at += 12 + length;
-    }
-    return {};
-}
-
-bool startsWith(const Bytes& bytes, const char* magic)
-{
-    const size_t length = std::strlen(magic);
-    return bytes.size() >= length && std::memcmp(bytes.data(), magic, length) == 0;
-}
-
 std::mutex turnedMutex;             // images are read by several threads
 std::vector<std::string> turned;
 
 } // namespace
 
-int exifOrientation(const Bytes& bytes)
+bool asksForTurn(const std::vector<unsigned char>& bytes)
 {
-    const bool isPng = startsWith(bytes, "\x89PNG\r\n\x1a\n");
-    if (!isPng && !startsWith(bytes, "\xff\xd8"))
-        return 1;
-    const Bytes ofPng = isPng ? exifOfPng(bytes) : Bytes();
-    const Bytes& exif = isPng ? ofPng : bytes;
-    if (exif.empty())
-        return 1;
-    const std::unique_ptr<ExifData, void (*)(ExifData*)> data(exif_data_new_from_data(exif.data(), (unsigned)exif.size()),
-                                                             exif_data_unref);
-    const ExifEntry* entry = data ? exif_content_get_entry(data->ifd[EXIF_IFD_0], EXIF_TAG_ORIENTATION) : nullptr;
-    if (!entry || entry->format != EXIF_FORMAT_SHORT || entry->components != 1)
-        return 1;
-    const int orientation = exif_get_short(entry->data, exif_data_get_byte_order(data.get()));
-    return orientation >= 1 && orientation <= 8 ? orientation : 1;
+    const size_t EARLY = 1 << 20;       // bytes; EXIF data are before the picture, but may hold a small one of their own
+    const auto end = bytes.begin() + (long)std::min(bytes.size(), EARLY);
+    const auto has = [&](const std::string& mark) { return std::search(bytes.begin(), end, mark.begin(), mark.end()) != end; };
+    if (!has("Exif") && !has("eXIf"))   // hardly ever is a picture read twice for nothing
+        return false;
+    // Only the small picture of an eighth is made.
+    const cv::Mat turned = cv::imdecode(bytes, cv::IMREAD_REDUCED_GRAYSCALE_8);
+    const cv::Mat stored = cv::imdecode(bytes, cv::IMREAD_REDUCED_GRAYSCALE_8 | cv::IMREAD_IGNORE_ORIENTATION);
+    return turned.size() != stored.size() || (!stored.empty() && cv::norm(turned, stored, cv::NORM_INF) > 0);
 }
 
 void noteTurnedImage(const std::string& path)

@@ -11,8 +11,9 @@
 used as they are stored, and users are told. */
 namespace tools {
 
-//! 1 to 8 as EXIF counts, of a JPEG or PNG file's bytes; 1 (as stored): also where nothing is said.
-int exifOrientation(const std::vector<unsigned char>& bytes);
+/** Whether the EXIF data of a JPEG or PNG file ask for another picture than the stored one: OpenCV's own reader says so, by what it
+makes of the file with and without them. (A picture that looks the same when turned does not ask.) */
+bool asksForTurn(const std::vector<unsigned char>& bytes);
 
 //! The file is read as stored; one warning at the end of the tool names all such files.
 void noteTurnedImage(const std::string& path);

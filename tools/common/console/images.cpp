@@ -82,7 +82,7 @@ cv::Mat decode(const std::string& path, int flags)
     if (image.empty())
         throw Failure("'" + path + "' is not an image of a kind that can be read (PNG, JPEG, TIFF, BMP, PGM, PPM are), or is cut "
                       "short: turn it into one of these, or take or copy it again");
-    if (exifOrientation(bytes) != 1)
+    if (asksForTurn(bytes))
         noteTurnedImage(path);
     requireOnePage(path, bytes);
     return image;
