@@ -34,7 +34,7 @@ private:
 TEST_CASE("Successful calls raise no error inside", "[error_callback]")
 {
     const std::vector<double> D = { -0.28, 0.09, 7e-4, -4e-4 };
-    const Ptr<RefractiveCamera> one = RefractiveCamera::create(PLAIN_K, D, paperPane());
+    const Ptr<RefractiveCamera> one = RefractiveCamera::create(PLAIN_K, D, paper::pane());
     const Ptr<RefractiveCamera> two = RefractiveCamera::create(PLAIN_K, D, GlassWindow(Vec3d(0.1, 0, 1), 12, 1.5, 40, 1.333));
     const Vec3d R(0, 0.2, 0), T(-120, 0, 20);
     const Size size(1280, 960);
@@ -52,8 +52,8 @@ TEST_CASE("Successful calls raise no error inside", "[error_callback]")
     refractiveProjectPoints(points, Vec3d(), Vec3d(), one, pixels1, status);
     refractiveProjectPoints(points, R, T, two, pixels2, status, a);
     refractiveUnprojectPoints(pixels1, found, directions, one, status);
-    refractiveUndistortPoints(pixels1, out, PLAIN_K, D, paperPane(), 600., noArray(), noArray(), status);
-    refractiveDistortPoints(out, pixels2, PLAIN_K, D, paperPane(), 600., noArray(), noArray(), status);
+    refractiveUndistortPoints(pixels1, out, PLAIN_K, D, paper::pane(), 600., noArray(), noArray(), status);
+    refractiveDistortPoints(out, pixels2, PLAIN_K, D, paper::pane(), 600., noArray(), noArray(), status);
     refractiveProjectPoints(points, R, T, two, pixels2, status);
     refractivePointsOnPlane(pixels1, found, one, Vec4d(0, 0, 1, 600), status);
     computeRefractiveEpilines(pixels1, 1, one, two, R, T, Vec2d(300, INF), lines, 0.01, status);

@@ -17,7 +17,7 @@ namespace {
 const std::vector<double> D = { -0.28, 0.09, 7e-4, -4e-4 };
 const Matx33d K(500, 0, 320, 0, 500, 240, 0, 0, 1);
 
-Ptr<RefractiveCamera> camera() { return RefractiveCamera::create(K, D, paperPane()); }
+Ptr<RefractiveCamera> camera() { return RefractiveCamera::create(K, D, paper::pane()); }
 
 } // namespace
 
@@ -61,13 +61,13 @@ TEST_CASE("An undistorted image: types, overloads, in place, without window cv::
         if (type == CV_8UC1)
             extractChannel(image, image, 0);
         remap(image, expected, map1, map2, INTER_LINEAR, BORDER_CONSTANT);
-        refractiveUndistortImage(image, corrected, K, D, paperPane(), 600.);
+        refractiveUndistortImage(image, corrected, K, D, paper::pane(), 600.);
         CAPTURE(type);
         CHECK(corrected.type() == image.type());
         CHECK(norm(corrected, expected, NORM_INF) == 0);
         refractiveUndistortImage(image, plane, c, Vec4d(0, 0, 1, 600), K);
         CHECK(norm(plane, expected, NORM_INF) == 0);
-        refractiveUndistortImage(image, plane, K, D, paperPane(), std::vector<double>(1, 600.));
+        refractiveUndistortImage(image, plane, K, D, paper::pane(), std::vector<double>(1, 600.));
         CHECK(norm(plane, expected, NORM_INF) == 0);
         refractiveUndistortImage(image, image, c, 600.);
         CHECK(norm(image, expected, NORM_INF) == 0);
@@ -90,7 +90,7 @@ TEST_CASE("Axes are drawn where the window shows them", "[frame_axes]")
     projectPoints(ends, rvec, tvec, K, D, bare);
     Mat image = Mat::zeros(480, 640, CV_8UC3), same = image.clone();
     drawRefractiveFrameAxes(image, c, rvec, tvec, 100, 1);
-    drawRefractiveFrameAxes(same, K, D, paperPane(), rvec, tvec, 100, 1);
+    drawRefractiveFrameAxes(same, K, D, paper::pane(), rvec, tvec, 100, 1);
     CHECK(norm(image, same, NORM_INF) == 0);
     const Vec3b red(0, 0, 255), green(0, 255, 0), blue(255, 0, 0);
     const Vec3b expected[] = { red, green, blue, red };

@@ -19,9 +19,9 @@ const double BOW = 0.05;        // px: what a border may bow between the places 
 std::vector<Ptr<RefractiveCamera> > someCameras()
 {
     const std::vector<double> D = { -0.28, 0.09, 7e-4, -4e-4 };
-    return { RefractiveCamera::create(PLAIN_K, D, paperPane()),
+    return { RefractiveCamera::create(PLAIN_K, D, paper::pane()),
              RefractiveCamera::create(PLAIN_K, D, GlassWindow(Vec3d(0.1, -0.05, 1), 12, 1.5, 40, 1.333)),
-             RefractiveCamera::createFisheye(PLAIN_K, std::vector<double>{ 0.02, -0.01, 0, 0 }, paperPane()) };
+             RefractiveCamera::createFisheye(PLAIN_K, std::vector<double>{ 0.02, -0.01, 0, 0 }, paper::pane()) };
 }
 
 bool isInside(const Vec2d& p, Size size)
@@ -109,14 +109,14 @@ TEST_CASE("alpha 0 leaves no invalid pixel of a plane's image, alpha 1 loses no 
 TEST_CASE("The new camera matrix: overloads, planes, and cv::getOptimalNewCameraMatrix without window", "[new_camera_matrix]")
 {
     const std::vector<double> D = { -0.28, 0.09, 7e-4, -4e-4 };
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, D, paperPane());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, D, paper::pane());
     Rect a, b;
     const Mat K = getOptimalNewRefractiveCameraMatrix(camera, 600., SIZE, 0.3, Size(), &a);
     const std::vector<double> number(1, 600.);
-    for (const Mat& same : { getOptimalNewRefractiveCameraMatrix(PLAIN_K, D, paperPane(), 600., SIZE, 0.3, SIZE, &b),
+    for (const Mat& same : { getOptimalNewRefractiveCameraMatrix(PLAIN_K, D, paper::pane(), 600., SIZE, 0.3, SIZE, &b),
                              getOptimalNewRefractiveCameraMatrix(camera, number, SIZE, 0.3),
                              getOptimalNewRefractiveCameraMatrix(camera, Vec4d(0, 0, 2, 1200), SIZE, 0.3),
-                             getOptimalNewRefractiveCameraMatrix(PLAIN_K, D, paperPane(), number, SIZE, 0.3) })
+                             getOptimalNewRefractiveCameraMatrix(PLAIN_K, D, paper::pane(), number, SIZE, 0.3) })
         CHECK(norm(K, same, NORM_INF) < 1e-9);
     CHECK(a == b);
     CHECK(norm(K, getOptimalNewRefractiveCameraMatrix(camera, 300., SIZE, 0.3), NORM_INF) > 1);     // the depth counts

@@ -169,17 +169,17 @@ TEST_CASE("A number as Python hands it over is no guess for four points; without
 TEST_CASE("A depth that is a number is one, for four points too", "[undistort]")
 {
     const Ptr<RefractiveCamera> bare = RefractiveCamera::create(PLAIN_K, noArray());
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray(), paperPane());
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray(), paper::pane());
     const std::vector<Vec2d> pixels = { { 640, 480 }, { 100, 200 }, { 1200, 900 }, { 30, 10 } };
     const std::vector<double> each(4, 600.);
     Mat number, many, map1, map2, none;
     refractiveUndistortPoints(pixels, many, camera, each);
     refractiveUndistortPoints(pixels, number, camera, 600.);
     CHECK(largestDifference(number, many) == 0);
-    refractiveUndistortPoints(pixels, number, PLAIN_K, noArray(), paperPane(), 600);       // an int is a number, too
+    refractiveUndistortPoints(pixels, number, PLAIN_K, noArray(), paper::pane(), 600);       // an int is a number, too
     CHECK(largestDifference(number, many) == 0);
     initRefractiveUndistortRectifyMap(camera, 600., noArray(), noArray(), Size(64, 48), CV_32FC2, map1, none);
-    initRefractiveUndistortRectifyMap(PLAIN_K, noArray(), paperPane(), std::vector<double>(1, 600.), noArray(), noArray(),
+    initRefractiveUndistortRectifyMap(PLAIN_K, noArray(), paper::pane(), std::vector<double>(1, 600.), noArray(), noArray(),
                                       Size(64, 48), CV_32FC2, map2, none);
     CHECK(norm(map1, map2, NORM_INF) == 0);
 
