@@ -128,7 +128,8 @@ TEST_CASE("With noise the optimal point has the least reprojection error", "[tri
 {
     CAPTURE(seed());
     Random random;
-    Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("5 coefficients"), makeWindow(PANE_IN_AIR, random), makeWindow(AIR_GLASS_WATER, random), 150, random);
+    Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("5 coefficients"), makeWindow(PANE_IN_AIR, random),
+                        makeWindow(AIR_GLASS_WATER, random), 150, random);
     addNoise(s, 0.5, random);
     std::vector<Vec3d> optimal, midpoint;
     std::vector<uchar> status;
@@ -255,7 +256,8 @@ TEST_CASE("The calibration's covariance is carried to the point", "[triangulate]
 {
     CAPTURE(seed());
     Random random;
-    const Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("0 coefficients"), makeWindow(PANE_IN_AIR, random), makeWindow(LAMINATE, random), 1, random);
+    const Scene s = makeScene(lensNamed("4 coefficients"), lensNamed("0 coefficients"), makeWindow(PANE_IN_AIR, random),
+                              makeWindow(LAMINATE, random), 1, random);
     // One uncertain parameter at a time: the predicted standard deviation is that of the point moved by one sigma.
     const auto moved = [&](int which, int parameter, double step)
     {
