@@ -294,12 +294,12 @@ def test_swapped_pairs_are_refused(rig, board):
         refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
 
 
-def test_a_number_for_four_points_is_no_guess(rig):
-    with pytest.raises(refract.error, match="four points"):
-        refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, 600.)
+def test_a_number_for_four_points_is_their_depth(rig):
+    four, _ = refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, 600.)
     one, _ = refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, np.array([600.]))
     five, _ = refract.refractiveUndistortPoints(rig.pixels1[:5], rig.camera1, 600.)
     np.testing.assert_array_equal(one, five[:4])
+    np.testing.assert_array_equal(four, five[:4])
     with pytest.raises(refract.error, match="depth is empty"):
         refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, None)
 
@@ -341,7 +341,7 @@ def test_relative_pose_among_wrong_matches(rig):
         np.testing.assert_allclose(T.ravel()/np.linalg.norm(T), rig.T/np.linalg.norm(rig.T), atol=1e-3)
     count, R, T, mask, covariance, interval = refract.refractiveRecoverPoseExtended(
         rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.)
-    assert covariance.shape == (6, 6) and interval[0] <= np.linalg.norm(T)
+    assert covariance.shape == (6, 6) and interval[0] <= np.linalg.norm(T)*(1 + 1e-9)   # perfect matches: rounding
     inexact = [np.diag(np.full(len(camera.parameterNames()), 1e-6)) for camera in (rig.camera1, rig.camera2)]
     wider = refract.refractiveRecoverPoseExtended(rig.pixels1, off, rig.camera1, rig.camera2, 0.999, 1.,
                                                   cameraCovariances=inexact)[4]
