@@ -19,6 +19,7 @@ elsewhere, and where two ends are as likely there is no answer. */
 #include "math/least_squares.hpp"
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
+#include "window/parameters.hpp"
 #include <array>
 #include <map>
 #include <numeric>
@@ -322,6 +323,16 @@ PixelMatches matchesOf(const Camera& camera1, const Camera& camera2, const Match
     return matches;
 }
 
+//! What a camera's parameter must not fall below: no index is below 1, no distance below 0.
+double leastValue(const Camera& camera, int parameter)
+{
+    const int ofWindow = parameter - camera.lensCount();
+    if (ofWindow < 0)
+        return -std::numeric_limits<double>::infinity();
+    const WindowLayout layout = windowLayout((int)camera.window().thickness.size());
+    return lowerBound(kindOf(layout, ofWindow), camera.parameters()[parameter]);
+}
+
 /** How the estimate moves with one camera's parameters, those that vary: by differences of the errors.
 @param which camera, 1 or 2 */
 Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, const RigidMotion& motion,
@@ -348,10 +359,12 @@ Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPi
         if (deviation == 0)
             continue;
         std::vector<double> errors[2];
+        double at[2];
         for (int side = 0; side < 2; side++)
         {
             std::vector<double> parameters = camera.parameters();
-            parameters[k] += (side ? STEP : -STEP)*deviation;
+            at[side] = std::max(parameters[k] + (side ? STEP : -STEP)*deviation, leastValue(camera, k));
+            parameters[k] = at[side];
             Camera changed = camera;
             changed.setParameters(parameters);
             errors[side] = which == 1 ? errorsAt(changed, camera2, nullptr) : errorsAt(camera1, changed, nullptr);
@@ -359,7 +372,7 @@ Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPi
         Vec6d gradient;
         for (size_t i = 0; i < byPose.size(); i++)
         {
-            const double change = (errors[1][i] - errors[0][i])/(2*STEP*deviation);
+            const double change = (errors[1][i] - errors[0][i])/(at[1] - at[0]);
             for (int r = 0; r < 6 && !std::isnan(change); r++)
                 gradient[r] += byPose[i](r)*change;
         }
