@@ -110,16 +110,17 @@ void print(const String& what, const Tally& t)
               << "), stated/that of the plain fit " << t.statedOverPlain() << std::endl;
 }
 
-/** A chance of 1e-4 for each observation; where three see a point, all of them go with one. Three times the scatter is
-allowed. */
+/** A chance of 1e-4 for each observation; where three cameras see a wand, all six observations of its ends go with one. Three
+times the scatter is allowed. Where some went, the errors of few sets differ by chance. */
 void checkClean(const Tally& t)
 {
     CAPTURE(t.leftOut, t.observations);
     CHECK(t.refused == 0);
     const double expected = 3e-4*t.observations;
-    CHECK(t.leftOut <= expected + 3*std::sqrt(3*expected) + 3);
+    CHECK(t.leftOut <= expected + 3*std::sqrt(6*expected) + 6);
     CHECK(t.statedOverPlain() == Approx(1).margin(0.05));
-    CHECK(t.errorOverStated() == Approx(t.plainErrorOverStated()).margin(0.05));
+    if (t.leftOut == 0 || t.sets >= 20)
+        CHECK(t.errorOverStated() == Approx(t.plainErrorOverStated()).margin(0.05));
 }
 
 void checkCleanData(int sets)

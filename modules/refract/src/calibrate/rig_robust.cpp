@@ -71,6 +71,12 @@ struct ImageRows
     }
 };
 
+//! Those of one point; of a matrix without columns, too, of which Eigen makes no block.
+MatrixXd rowsOf(const MatrixXd& matrix, int point)
+{
+    return matrix.cols() == 0 ? MatrixXd(2, 0) : MatrixXd(matrix.middleRows(2*point, 2));
+}
+
 //! The covariance of what one view predicts.
 class ViewPredictions
 {
@@ -84,7 +90,7 @@ public:
             {
                 if (!image.isUsed[row])
                     continue;
-                const MatrixXd K = image.K.middleRows(2*row, 2), KF = K.transpose()*image.F.middleRows(2*row, 2);
+                const MatrixXd K = image.K.middleRows(2*row, 2), KF = K.transpose()*rowsOf(image.F, (int)row);
                 P += K.transpose()*K;
                 for (size_t j = 0; j < image.columns.size(); j++)
                     B.col(image.columns[j]) += KF.col(j);
@@ -97,7 +103,7 @@ public:
 
     Matx22d operator()(const ImageRows& image, int row) const
     {
-        const MatrixXd K = image.K.middleRows(2*row, 2), F = image.F.middleRows(2*row, 2);
+        const MatrixXd K = image.K.middleRows(2*row, 2), F = rowsOf(image.F, row);
         const int count = (int)image.columns.size();
         MatrixXd S(count, count), QS(6, count);
         for (int j = 0; j < count; j++)

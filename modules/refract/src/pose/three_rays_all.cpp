@@ -116,10 +116,12 @@ std::vector<RigidMotion> allPosesOfThreeRays(const SceneRay (&rays)[3], const Ve
     }
     fitPolynomial(DEGREE + 1, nodes, product.data());
 
-    // Two roots that rounding has merged or parted are at a root of the derivative; Newton's method tells.
+    // Two roots that rounding has merged or parted are at a root of the derivative. Newton's method finds them from both sides:
+    // between them its matrix is singular.
     std::vector<double> starts = rootsBetween(product, -1, 1);
     for (double extremum : rootsBetween(derivativeOf(product), -1, 1))
-        starts.push_back(extremum);
+        for (double aside : { 0., 1e-7, -1e-7, 1e-6, -1e-6, 1e-5, -1e-5 })     // rounding moves two roots that are one by 1e-6
+            starts.push_back(extremum + aside);
     std::vector<Vec3d> found;
     for (double start : starts)
         for (int branch = 0; branch < 4; branch++)
