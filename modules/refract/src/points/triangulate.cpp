@@ -143,33 +143,40 @@ private:
     std::vector<String> names_;
 };
 
-//! What the Extended forms tell of each point.
+//! What the Extended forms tell of each point; what nobody asks for is not computed.
 struct PointQuality
 {
-    PointQuality(const PlacedCameras& cameras, double pixelSigma, InputArray calibrationCovariance)
-        : variance(pixelSigma*pixelSigma), pointCovariance(cameras, calibrationCovariance) { checkSigma(pixelSigma, "pixelSigma"); }
+    PointQuality(const PlacedCameras& cameras, double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
+                 OutputArray errors)
+        : variance_(pixelSigma*pixelSigma), pointCovariance_(cameras, calibrationCovariance), covarianceOut_(covariance),
+          errorsOut_(errors) { checkSigma(pixelSigma, "pixelSigma"); }
     void create(int points, int cameras)
     {
-        covariance.create(points, 9, CV_64F);
-        errors.create(points, cameras, CV_64F);
+        if (covarianceOut_.needed())
+            covariance_.create(points, 9, CV_64F);
+        if (errorsOut_.needed())
+            errors_.create(points, cameras, CV_64F);
     }
     void evaluate(const PlacedCameras& cameras, const PixelBlock& block, int begin, int n)
     {
         const Columns none = { NULL, 0, 0 };
-        pointCovariance.evaluate(block, n, variance, none, (Matx33d*)covariance.ptr<double>(begin));
-        reprojectionErrors(cameras, block, n, errors.ptr<double>(begin));
+        if (!covariance_.empty())
+            pointCovariance_.evaluate(block, n, variance_, none, (Matx33d*)covariance_.ptr<double>(begin));
+        if (!errors_.empty())
+            reprojectionErrors(cameras, block, n, errors_.ptr<double>(begin));
     }
-    void copyTo(OutputArray covariance_, OutputArray errors_) const
+    void store() const
     {
-        if (covariance_.needed())
-            covariance.copyTo(covariance_);
-        if (errors_.needed())
-            errors.copyTo(errors_);
+        if (covarianceOut_.needed())
+            covariance_.copyTo(covarianceOut_);
+        if (errorsOut_.needed())
+            errors_.copyTo(errorsOut_);
     }
 private:
-    double variance;
-    PointCovariance pointCovariance;
-    Mat covariance, errors;         //!< one row a point
+    double variance_;
+    PointCovariance pointCovariance_;
+    OutputArray covarianceOut_, errorsOut_;
+    Mat covariance_, errors_;       //!< one row a point
 };
 
 /** @param mayMiss NaN: not seen, rather than no number
@@ -263,9 +270,9 @@ void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, const Ptr<Refra
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = StereoPair(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), R, T).cameras();
-    PointQuality quality(cameras, pixelSigma, calibrationCovariance);
+    PointQuality quality(cameras, pixelSigma, calibrationCovariance, covariance, reprojectionErrors);
     triangulate(cameras, readPair(points1, points2), false, points3D, status, flags, &quality);
-    quality.copyTo(covariance, reprojectionErrors);
+    quality.store();
 }
 
 void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
@@ -285,9 +292,9 @@ void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, I
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = readCameras(handles, Rs, Ts);
-    PointQuality quality(cameras, pixelSigma, calibrationCovariance);
+    PointQuality quality(cameras, pixelSigma, calibrationCovariance, covariance, reprojectionErrors);
     triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, &quality);
-    quality.copyTo(covariance, reprojectionErrors);
+    quality.store();
 }
 
 }} // namespace
