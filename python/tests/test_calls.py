@@ -294,14 +294,14 @@ def test_swapped_pairs_are_refused(rig, board):
         refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
 
 
-def test_a_number_for_four_points_is_their_depth(rig):
-    four, _ = refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, 600.)
-    one, _ = refract.refractiveUndistortPoints(rig.pixels1[:4], rig.camera1, np.array([600.]))
-    five, _ = refract.refractiveUndistortPoints(rig.pixels1[:5], rig.camera1, 600.)
-    np.testing.assert_array_equal(one, five[:4])
-    np.testing.assert_array_equal(four, five[:4])
-    with pytest.raises(refract.error, match="depth is"):
-        refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, None)
+def test_four_points_take_a_number_but_no_guess(rig):
+    pixels = rig.pixels1[:4]
+    number, _ = refract.refractiveUndistortPoints(pixels, rig.camera1, 600.)
+    each, _ = refract.refractiveUndistortPoints(pixels, rig.camera1, np.full(4, 600.))
+    np.testing.assert_array_equal(number, each)
+    for depth in (np.array([600., 0, 0, 0]), (600., 0., 0., 0.)):      # a number as cv::Scalar, or a depth each
+        with pytest.raises(refract.error, match="four points"):
+            refract.refractiveUndistortPoints(pixels, rig.camera1, depth)
 
 
 def test_both_poses_of_a_board(rig, board):
