@@ -60,7 +60,7 @@ TEST(Refract_UndistortPoints, one_depth_serves_four_points)
     for (int i = 0; i < 4; i++)
         EXPECT_NEAR(0, cv::norm(normalized[i] - Point2d(plane[i].x/600, plane[i].y/600)), 1e-12);
     EXPECT_REFUSED(refractiveUndistortPoints(raw, normalized, camera1(), Scalar(600)), "for four points");
-    EXPECT_REFUSED(refractiveUndistortPoints(raw, normalized, camera1(), 0.), "depth is 0");
+    EXPECT_REFUSED(refractiveUndistortPoints(raw, normalized, camera1(), 0.), "depth is 0 (Python: None)");
 }
 
 TEST(Refract_DistortPoints, is_the_way_back)

@@ -243,6 +243,9 @@ DepthReader::DepthReader(InputArray depth, const char* name, int points, bool is
 DepthReader::DepthReader(double depth, const char* name, bool isNeeded)
     : size_(1), one_(depth != 0 || isNeeded ? depth : std::numeric_limits<double>::infinity())
 {
+    if (one_ == 0)
+        CV_Error_(Error::StsOutOfRange, ("%s is 0 (Python: None); it must say how far the scene is, as the window's effect depends on "
+                                         "it (infinity, where that is meant)", name));
     checkOne(name);
 }
 
