@@ -1116,9 +1116,8 @@ Throws where the data cannot determine what is free; the text names the directio
 GlassCalibrationFlags). What is returned is a minimum: its step to the least squares is below 1e-3 standard deviations. A
 sealed camera's is looked for from many starts, so that its focal length need be known to some 10 %, its window's distance to
 a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the
-result so far is returned.
-Throws if pairs contradict the model far beyond what corners can have: direct and refracted points swapped, or not of the
-same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
+result so far is returned. Throws if pairs contradict the model far beyond what corners can have: direct and refracted points
+swapped, or not of the same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
 Throws Error::StsNotImplemented in a build without Ceres, as do the other forms of it.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
@@ -1367,8 +1366,7 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 @param useExtrinsicGuess rvec, tvec are the start.
 @param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as cv::solvePnPGeneric has it.
 @return false if there is no pose, as there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a
-line, or no pose
-gives all of them an image; rvec and tvec are then left as they were, reprojectionError is empty.
+line, or no pose gives all of them an image; rvec and tvec are then left as they were, reprojectionError is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1392,9 +1390,8 @@ CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePo
 residuals are left (three points).
 @param sigma standard deviation of a pixel's coordinate, in pixels; 0: estimated from the residuals.
 @param cameraCovariance what is not exact of the camera: an LxL covariance of its L lens parameters, or a PxP one of its P
-parameters
-in the order of RefractiveCamera::parameterNames(). It enlarges covariance; the pose stays as it is. noArray(): the camera is
-exact.
+parameters in the order of RefractiveCamera::parameterNames(). It enlarges covariance; the pose stays as it is. noArray(): the
+camera is exact.
 @return as above; covariance is empty where there is no pose.
 */
 CV_EXPORTS_AS(refractiveSolvePnPExtended) bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
@@ -1461,8 +1458,7 @@ There are up to four without a window and up to eight with one, as its rays do n
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param rvecs object -> camera rotation vector of each pose, 3x1 CV_64F. With a fourth point the poses are sorted by its error,
-the
-smallest first, and those that give it no image are left out.
+the smallest first, and those that give it no image are left out.
 @param tvecs object -> camera translation of each pose, 3x1 CV_64F.
 @return the number of poses; 0 if there is none, as the first three points lie on a line or one of them was not seen.
 */
@@ -1494,9 +1490,8 @@ for w = 0.3 and p = 0.99.
 @param confidence chance of a sample without wrong points, after which the search ends; less than 1.
 @param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
 @return false if there is no pose with which at least 4 different points agree, not on a line, and more than poses of random
-samples
-would find among pixels strewn over the image (or all that were seen); rvec and tvec are then left as they were, inliers is
-empty.
+samples would find among uniformly random pixels (or all that were seen); rvec and tvec are then left as they were,
+inliers is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1536,16 +1531,14 @@ also gives the distance between the cameras, as well as refraction tells it.
 A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
 in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
 refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the
-direction
-of T are determined, if less well than a pinhole pair's, as the length is estimated with them. Where the cameras hardly
-move apart (T shorter than the windows are deep) R is good to some hundredths of a degree and T to a part of a unit, as is
-stated,
+direction of T are determined, if less well than a pinhole pair's, as the length is estimated with them. Where the cameras
+hardly move apart (T shorter than the windows are deep) R is good to some hundredths of a degree and T to a part of a unit, as
+is stated,
 if the windows turn with the cameras by some degrees.
 
 The matches of a flat scene agree with two poses, as cv::decomposeHomographyMat's; refraction, or a point that would be behind a
 camera, mostly tells which is right. A match that alone tells something of the pose, as the only one off the plane, is left out
-of
-the estimate: nothing would show that it is wrong.
+of the estimate: nothing would show that it is wrong.
 
 @param points1 N >= 6 raw pixels of camera 1, or none (0 inliers); NaN points are left out.
 @param points2 N raw pixels of camera 2.
@@ -1557,15 +1550,14 @@ the estimate: nothing would show that it is wrong.
 @param window2 of camera 2.
 @param R 3x3 CV_64F, camera 1 -> camera 2.
 @param T 3x1 CV_64F, camera 1 -> camera 2; of length 1 where no scale shows at all (no window refracts), of the least length
-that
-is likely (scaleInterval's low end) where the most likely one is infinite.
+that is likely (scaleInterval's low end) where the most likely one is infinite.
 @param prob chance of a sample without wrong matches, after which the search ends; less than 1.
 @param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
 images.
 @param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
 @return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6 different
-ones, and
-with more than poses of random samples would find among strewn pixels (or all), or if two poses are as likely.
+ones, and with more than poses of random samples would find among uniformly random pixels (or all), or if two poses are as
+likely.
 */
 CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -1588,11 +1580,9 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
 @param threshold as above.
 @param mask as above.
 @param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. Where scaleInterval has no upper
-end it
-is that of R and the direction alone, for the length that T has (its rank is 5).
+end it is that of R and the direction alone, for the length that T has (its rank is 5).
 @param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile:
-where
-refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
+where refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
 @param cameraCovariances of both cameras what is not exact: an LxL covariance of its L lens parameters, or a PxP one of its P
 parameters in the order of RefractiveCamera::parameterNames(), or an empty one: exact. It enlarges covariance and scaleInterval;
 R and T stay as they are. noArray(): both are exact.
