@@ -5,8 +5,10 @@
 #ifndef REFRACT_TEST_PROBLEM_SCENES_HPP
 #define REFRACT_TEST_PROBLEM_SCENES_HPP
 
+#include "bundle_scenes.hpp"
 #include "rig_scenes.hpp"
-#include "calibrate/rig_problem.hpp"
+#include "adjust/covariance.hpp"
+#include "calibrate/failure.hpp"
 
 namespace scenes {
 
@@ -20,7 +22,7 @@ inline cv::refract::Pose poseOf(const cv::Vec3d& rvec, const cv::Vec3d& tvec)
 }
 
 //! @param paired with the direct images too
-inline std::unique_ptr<cv::refract::RigProblem> problemAt(const RigTruth& truth, const RigScene& scene, bool paired, int flags)
+inline std::unique_ptr<cv::refract::Problem> problemAt(const RigTruth& truth, const RigScene& scene, bool paired, int flags)
 {
     using namespace cv::refract;
     Rig rig;
@@ -38,7 +40,42 @@ inline std::unique_ptr<cv::refract::RigProblem> problemAt(const RigTruth& truth,
     std::vector<Pose> poses;
     for (size_t view = 0; view < scene.object.size(); view++)
         poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
-    return std::unique_ptr<RigProblem>(new RigProblem(rig, views, poses, {}, {}, flags));
+    return std::unique_ptr<Problem>(new Problem(rig, views, poses, {}, {}, flags));
+}
+
+//! The joint problem of a scene at the truth.
+inline std::unique_ptr<cv::refract::Problem> bundleAt(const RigTruth& truth, const BundleScene& scene, double sigma, int flags)
+{
+    using namespace cv::refract;
+    Rig rig;
+    std::vector<Pose> poses;
+    for (size_t c = 0; c < truth.cameras.size(); c++)
+    {
+        cv::Vec3d rvec;
+        cv::Rodrigues(truth.Rs[c], rvec);
+        rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
+        rig.owner.push_back((int)c);
+        rig.extrinsics.push_back(poseOf(rvec, truth.Ts[c]));
+    }
+    for (size_t view = 0; view < scene.rvecs.size(); view++)
+        poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
+    std::vector<PosePrior> priors(poses.size());
+    priors[0].kind = PosePrior::EXACT;
+    std::vector<KnownLength> knownLengths;
+    for (const cv::Vec4d& l : scene.lengths)
+        knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
+    std::unique_ptr<Problem> bundle(new Problem(rig, scene.pixels, (int)scene.points.size(), knownLengths, poses, priors, flags));
+    bundle->setPixelSigma(sigma);
+    bundle->setPoints(scene.points, {});
+    return bundle;
+}
+
+//! Of the public parameters; throws what a calibration does.
+inline Eigen::MatrixXd covarianceOf(const cv::refract::Problem& problem, double variance, int required = cv::refract::REQUIRE_ALL)
+{
+    cv::refract::Covariance covariance;
+    cv::refract::throwUnlessConverged(covariance.compute(problem, variance, required), cv::refract::FitKind::CALIBRATION);
+    return covariance.ofParameters;
 }
 
 } // namespace scenes

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle_scenes.hpp"
-#include "calibrate/bundle_information.hpp"
-#include "calibrate/covariance.hpp"
+#include "problem_scenes.hpp"
 #include <opencv2/core/eigen.hpp>
 
 using namespace cv;
@@ -36,41 +35,6 @@ double largestPointError(const BundleCall& call, const BundleScene& scene)
     for (size_t i = 0; i < scene.points.size(); i++)
         largest = std::max(largest, norm(call.points[i] - scene.points[i]));
     return largest;
-}
-
-//! The inner problem at the truth, evaluated.
-std::unique_ptr<BundleProblem> bundleAt(const RigTruth& truth, const BundleScene& scene, double sigma, int flags)
-{
-    Rig rig;
-    std::vector<Pose> poses;
-    const auto poseOf = [](const Vec3d& rvec, const Vec3d& tvec)
-    {
-        Pose pose;
-        pose.rvec = rvec;
-        pose.tvec = tvec;
-        return pose;
-    };
-    for (size_t c = 0; c < truth.cameras.size(); c++)
-    {
-        Vec3d rvec;
-        Rodrigues(truth.Rs[c], rvec);
-        rig.cameras.push_back(static_cast<const Camera&>(*truth.cameras[c]));
-        rig.owner.push_back((int)c);
-        rig.extrinsics.push_back(poseOf(rvec, truth.Ts[c]));
-    }
-    for (size_t view = 0; view < scene.rvecs.size(); view++)
-        poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
-    std::vector<PoseKnowledge> known(poses.size());
-    known[0].kind = PoseKnowledge::EXACT;
-    std::vector<KnownLength> knownLengths;
-    for (const Vec4d& l : scene.lengths)
-        knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
-    std::unique_ptr<BundleProblem> bundle(new BundleProblem(rig, scene.pixels, (int)scene.points.size(), poses, known,
-                                                            knownLengths, flags));
-    bundle->rig().setPixelSigma(sigma);
-    bundle->setPoints(scene.points, {});
-    REQUIRE(bundle->evaluate(true));
-    return bundle;
 }
 
 } // namespace
@@ -273,12 +237,12 @@ TEST_CASE("The reduced normal equations are the inverse of the whole bound", "[b
         REQUIRE(!scene.lengths.empty());
         const BundleBound bound(truth, scene, BundleBound::NORMAL | BundleBound::DISTANCE | BundleBound::EXTRINSICS, sigma);
 
-        const std::unique_ptr<BundleProblem> at = bundleAt(truth, scene, sigma, GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
-        BundleProblem& bundle = *at;
-        const ReducedBundle reduced(bundle, true);
-        CHECK(reduced.stepLeft() < 1e-6);
+        const std::unique_ptr<Problem> bundle = bundleAt(truth, scene, sigma, GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+        CHECK(newtonDecrement(informationOf(*bundle)) < 1e-6);
+        Covariance covariance;
+        REQUIRE(covariance.compute(*bundle, sigma*sigma, 0).converged());
         Mat stated;
-        eigen2cv(publicCovariance(bundle.rig(), halfCovariance(bundle.rig(), reduced.information()), sigma*sigma), stated);
+        eigen2cv(covariance.ofParameters, stated);
         for (int c = 0; c < 2; c++)
         {
             const int first = 16*c + 8;         // 8 of the lens
@@ -306,11 +270,11 @@ TEST_CASE("What is hardly known is as uncertain in points as in cameras", "[bund
                 length[3] = lengthSigma;
             keepWhatAllSee(scene);
             REQUIRE(!scene.lengths.empty());
-            const std::unique_ptr<BundleProblem> bundle = bundleAt(truth, scene, sigma, GLASS_FREE_EXTRINSICS);
-            const ReducedBundle reduced(*bundle, true);
-            const Eigen::MatrixXd half = halfCovariance(bundle->rig(), reduced.information());
-            const Eigen::MatrixXd stated = publicCovariance(bundle->rig(), half, sigma*sigma);
-            const Mat_<double> ofPoints = reduced.pointDeviations(half, sigma*sigma);
+            const std::unique_ptr<Problem> bundle = bundleAt(truth, scene, sigma, GLASS_FREE_EXTRINSICS);
+            Covariance covariance;
+            REQUIRE(covariance.compute(*bundle, sigma*sigma, 0).converged());
+            const Eigen::MatrixXd& stated = covariance.ofParameters;
+            const Mat_<double> ofPoints = covariance.ofPoints();
             const BundleBound bound(truth, scene, BundleBound::NORMAL | BundleBound::EXTRINSICS, sigma);
             const int T = (int)stated.rows() - 3;
             for (int i = 0; i < 3; i++)

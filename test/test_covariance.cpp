@@ -3,7 +3,6 @@
 
 // What a problem's data can and cannot tell.
 #include "problem_scenes.hpp"
-#include "calibrate/covariance.hpp"
 #include <Eigen/LU>
 
 using namespace cv;
@@ -81,8 +80,8 @@ TEST_CASE("The covariance is the inverse of the normal equations with every pose
         const RigTruth truth = one(paper::pane(50, paper::NORMAL1, c.outerIndex));
         const RigScene scene = makeRigScene(truth, 8, random, 0);
         const double variance = 0.04;
-        const std::unique_ptr<RigProblem> problem = problemAt(truth, scene, false, c.flags);
-        const MatrixXd C = rigCovariance(*problem, variance), expected = expectedCovariance(truth, scene, c.free, variance);
+        const std::unique_ptr<Problem> problem = problemAt(truth, scene, false, c.flags);
+        const MatrixXd C = covarianceOf(*problem, variance), expected = expectedCovariance(truth, scene, c.free, variance);
         REQUIRE(C.rows() == expected.rows());
         CAPTURE(c.outerIndex, c.flags);
         for (int i = 0; i < C.rows(); i++)
@@ -92,8 +91,8 @@ TEST_CASE("The covariance is the inverse of the normal equations with every pose
                 const double size = std::sqrt(expected(i, i)*expected(j, j));
                 CHECK(std::abs(C(i, j) - expected(i, j)) <= 1e-6*size);      // 0 where one of them is fixed
             }
-        CHECK((rigCovariance(*problem, 4*variance) - 4*C).norm() <= 1e-12*C.norm());
-        CHECK(rigCovariance(*problem, 0).norm() == 0);
+        CHECK((covarianceOf(*problem, 4*variance) - 4*C).norm() <= 1e-12*C.norm());
+        CHECK(covarianceOf(*problem, 0).norm() == 0);
     }
 }
 
@@ -103,7 +102,7 @@ TEST_CASE("What a second camera sees of a shared window is as uncertain as what 
     CAPTURE(seed());
     const RigTruth truth = makeRig(2, { 0, 0 }, 1);
     const RigScene scene = makeRigScene(truth, 6, random, 0);
-    const MatrixXd C = rigCovariance(*problemAt(truth, scene, true, 0), 0.04);
+    const MatrixXd C = covarianceOf(*problemAt(truth, scene, true, 0), 0.04);
     const std::vector<String> names = truth.cameras[0]->parameterNames();
     const int at = (int)(std::find(names.begin(), names.end(), "normal[0]") - names.begin()), all = (int)names.size();
     MatrixXd R(3, 3);
@@ -121,9 +120,9 @@ TEST_CASE("What has no effect at all is refused by its name", "[covariance]")
     CAPTURE(seed());
     const RigTruth truth = one(paper::pane());          // with air on both sides the distance is not seen
     const RigScene scene = makeRigScene(truth, 6, random, 0);
-    CHECK_THROWS_WITH(rigCovariance(*problemAt(truth, scene, true, GLASS_FREE_DISTANCE), 0.04),
+    CHECK_THROWS_WITH(covarianceOf(*problemAt(truth, scene, true, GLASS_FREE_DISTANCE), 0.04),
                       Catch::Contains("do not determine distance") && !Catch::Contains("normal"));
-    CHECK_NOTHROW(rigCovariance(*problemAt(truth, scene, true, 0), 0.04));
+    CHECK_NOTHROW(covarianceOf(*problemAt(truth, scene, true, 0), 0.04));
 }
 
 TEST_CASE("Thickness and index that only show together are refused together, also without noise", "[covariance]")
@@ -135,7 +134,7 @@ TEST_CASE("Thickness and index that only show together are refused together, als
     for (const double variance : { 0.04, 0. })          // data without noise would seem to determine anything
     {
         CAPTURE(variance);
-        CHECK_THROWS_WITH(rigCovariance(*problemAt(truth, scene, true, GLASS_FREE_THICKNESS | GLASS_FREE_INDEX), variance),
+        CHECK_THROWS_WITH(covarianceOf(*problemAt(truth, scene, true, GLASS_FREE_THICKNESS | GLASS_FREE_INDEX), variance),
                           Catch::Contains("thickness[0] = 20") && Catch::Contains("index[0] = 1.544")
                           && Catch::Contains("only thickness (1 - outerIndex/index) = 7.044"));
     }
@@ -150,8 +149,8 @@ TEST_CASE("What is not required is told, however uncertain it is", "[covariance]
     const auto problem = problemAt(truth, scene, true, 0);
     const double tame = 0.04, wild = 1e8;       // squared pixels: the second know next to nothing
     for (const int required : { REQUIRE_ALL, (int)GLASS_REQUIRE_WINDOW })
-        CHECK_THROWS_WITH(rigCovariance(*problem, wild, required), Catch::Contains("do not determine normal"));
-    const MatrixXd expected = wild/tame*rigCovariance(*problem, tame);
+        CHECK_THROWS_WITH(covarianceOf(*problem, wild, required), Catch::Contains("do not determine normal"));
+    const MatrixXd expected = wild/tame*covarianceOf(*problem, tame);
     for (const int required : { 0, GLASS_REQUIRE_INTRINSICS | GLASS_REQUIRE_EXTRINSICS })
-        CHECK((rigCovariance(*problem, wild, required) - expected).norm() <= 1e-12*expected.norm());
+        CHECK((covarianceOf(*problem, wild, required) - expected).norm() <= 1e-12*expected.norm());
 }

@@ -3,7 +3,7 @@
 
 // A target that was moved between the images of a view.
 #include "problem_scenes.hpp"
-#include "calibrate/moved_images.hpp"
+#include "adjust/moved_images.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -38,12 +38,12 @@ void shift(const RigTruth& truth, RigScene& scene, int camera, int view, bool re
 }
 
 //! "camera 1 view 3 direct" of each image that was found to be moved.
-std::vector<std::string> movedImages(RigProblem& problem)
+std::vector<std::string> movedImages(Problem& problem)
 {
     std::vector<std::string> names;
     for (const int i : findMovedImages(problem, SIGMA))
     {
-        const RigImage& image = problem.images()[i];
+        const Image& image = problem.images()[i];
         names.push_back(format("camera %d view %d %s", image.camera + 1, image.view, image.refracted ? "glass" : "direct"));
     }
     return names;
@@ -73,7 +73,7 @@ TEST_CASE("Of a pair that was moved the image through the window stays, and the 
     RigScene scene = makeRigScene(truth, 5, random, SIGMA);
     const Vec3d by(2, -1, 0);
     shift(truth, scene, 0, 3, true, by, random);
-    const std::unique_ptr<RigProblem> problem = problemAt(truth, scene, true, 0);
+    const std::unique_ptr<Problem> problem = problemAt(truth, scene, true, 0);
     CHECK(movedImages(*problem) == Names{ "camera 1 view 3 direct" });
     CHECK(norm(problem->pose(3).tvec - (scene.tvecs[3] + by)) < 1);
     CHECK(problem->pose(2).tvec == scene.tvecs[2]);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibration_scenes.hpp"
-#include "calibrate/residual.hpp"
+#include "adjust/residual.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -23,7 +23,7 @@ std::vector<double*> pointers(Blocks& blocks)
 //! Where a camera's window comes from.
 enum WindowOwner { ITSELF, CAMERA_1, CAMERA_3 };
 
-//! One image's cost with all its parameter blocks.
+//! One image's residuals with all its parameter blocks.
 struct Image
 {
     Image(const Camera& prototype, const ImagePoints& points, const std::vector<double>& rootWeights, bool isCamera1,
@@ -41,7 +41,7 @@ struct Image
             for (int i = 0; i < (owner == CAMERA_3 ? 3 : 2); i++)
                 blocks.push_back(window_[i]);
         setCamera();
-        cost.reset(ImageResidual::Create(camera, points, rootWeights, { refracted, isCamera1, owner == CAMERA_1 }));
+        residual.reset(new ImageResidual(camera, points, rootWeights, { refracted, isCamera1, owner == CAMERA_1 }));
     }
 
     //! The camera holds what the blocks say.
@@ -58,13 +58,13 @@ struct Image
     bool evaluate(std::vector<double>& residuals, double** jacobians)
     {
         setCamera();
-        residuals.resize(cost->num_residuals());
-        return cost->Evaluate(pointers(blocks).data(), residuals.data(), jacobians);
+        residuals.resize(residual->count());
+        return residual->evaluate(blocks[0].data(), residuals.data(), jacobians);
     }
 
     RigCamera camera;
     Blocks blocks;
-    std::unique_ptr<ceres::CostFunction> cost;
+    std::unique_ptr<ImageResidual> residual;
 
 private:
     bool isCamera1_, refracted_;
@@ -75,7 +75,7 @@ private:
 //! Largest difference between the jacobian of one coordinate and central differences, relative to its size.
 double jacobianError(Image& image, int block, int coordinate, double step)
 {
-    const int rows = image.cost->num_residuals();
+    const int rows = image.residual->count();
     Blocks jacobians;
     for (const std::vector<double>& b : image.blocks)
         jacobians.push_back(std::vector<double>(rows*b.size()));

@@ -32,9 +32,11 @@ function(refract_choose_sources module_dir)
   if(REFRACT_HAS_CERES)
     return()
   endif()
-  file(GLOB calibrators CONFIGURE_DEPENDS ${module_dir}/src/calibrate/*.cpp)
+  file(GLOB calibrators CONFIGURE_DEPENDS ${module_dir}/src/adjust/*.cpp ${module_dir}/src/start/*.cpp
+       ${module_dir}/src/calibrate/*.cpp)
   set(without ${module_dir}/src/calibrate/without_ceres.cpp ${module_dir}/test/test_without_ceres.cpp)
-  list(REMOVE_ITEM calibrators ${without} ${module_dir}/src/calibrate/calibrate_normal.cpp)
+  list(REMOVE_ITEM calibrators ${without} ${module_dir}/src/calibrate/calibrate_normal.cpp
+       ${module_dir}/src/start/normal_from_pairs.cpp)
   set_source_files_properties(${calibrators} ${module_dir}/test/test_calibration.cpp PROPERTIES HEADER_FILE_ONLY ON)
   set_source_files_properties(${without} PROPERTIES COMPILE_DEFINITIONS REFRACT_WITHOUT_CERES)
 endfunction()

@@ -6,6 +6,7 @@
 
 #include "calibrate/bundle_fit.hpp"
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/failure.hpp"
 #include "arrays/arrays.hpp"
 
 namespace cv { namespace refract {
@@ -76,11 +77,11 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
     task.poses = isGiven ? readPoses(rvecs, tvecs, count) : std::vector<Pose>(1);
     if (task.flags & GLASS_USE_POSES)
     {
-        task.knowledge = readKnowledge(covariances, count);
+        task.posePriors = readPosePriors(covariances, count);
         return;
     }
-    task.knowledge.resize(count);
-    task.knowledge[0].kind = PoseKnowledge::EXACT;
+    task.posePriors.resize(count);
+    task.posePriors[0].kind = PosePrior::EXACT;
 }
 
 //! What tells the scale.
@@ -151,7 +152,8 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
         views.cameras.push_back({ PixelViews(), ofCamera });
     checkWindows(rig, views, flags, ofImages);
 
-    const BundleFit fit = fitBundle(rig, task);
+    BundleFit fit;
+    throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
     setCameras(rig, cameras);
     if (flags & GLASS_FREE_EXTRINSICS)
         writeExtrinsicPoses(rig, Rs, Ts);

@@ -5,7 +5,6 @@
 #ifndef OPENCV_REFRACT_BUNDLE_FIT_HPP
 #define OPENCV_REFRACT_BUNDLE_FIT_HPP
 
-#include "calibrate/bundle_problem.hpp"
 #include "calibrate/rig_fit.hpp"
 
 namespace cv { namespace refract {
@@ -16,7 +15,7 @@ struct BundleTask
     std::vector<PixelViews> pixels;             //!< per camera, per view
     std::vector<Point3d> points;                //!< NaN: not known
     std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
-    std::vector<PoseKnowledge> knowledge;       //!< of the same
+    std::vector<PosePrior> posePriors;      //!< of the same
     std::vector<KnownLength> lengths;
     int flags;
     TermCriteria criteria;
@@ -31,8 +30,8 @@ struct BundleFit : RigFit
     Mat pointDeviations;                        //!< if wanted
 };
 
-//! Starts of points, fit, and what it tells. rig is start and result.
-BundleFit fitBundle(Rig& rig, const BundleTask& task);
+//! Starts of points, fit, and what it tells, as fitRig().
+FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit);
 
 }} // namespace
 

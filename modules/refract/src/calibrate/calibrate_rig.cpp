@@ -5,7 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
-#include "calibrate/staged_start.hpp"
+#include "start/rig_task.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
 
@@ -135,21 +135,21 @@ static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const cha
     return vectors;
 }
 
-static PoseKnowledge readKnowledge(InputArray covariance, const String& name)
+static PosePrior readPosePrior(InputArray covariance, const String& name)
 {
-    PoseKnowledge knowledge;
-    knowledge.kind = PoseKnowledge::EXACT;
+    PosePrior prior;
+    prior.kind = PosePrior::EXACT;
     const std::vector<double> c = readNumbers(covariance, name.c_str());
     if (c.empty())
-        return knowledge;
+        return prior;
     if (c.size() != 36)
         CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 6x6, or empty", name.c_str(), (int)c.size()));
     const Eigen::LLT<Matrix6> root(Eigen::Map<const Matrix6>(c.data()));
     if (root.info() != Eigen::Success)
         CV_Error_(Error::StsBadArg, ("%s is not positive definite", name.c_str()));
-    knowledge.kind = PoseKnowledge::UNCERTAIN;
-    knowledge.inverseRoot = root.matrixL().solve(Matrix6::Identity());
-    return knowledge;
+    prior.kind = PosePrior::UNCERTAIN;
+    prior.sqrtInformation = root.matrixL().solve(Matrix6::Identity());
+    return prior;
 }
 
 std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count)
@@ -165,19 +165,19 @@ std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, 
     return poses;
 }
 
-std::vector<PoseKnowledge> readKnowledge(InputArrayOfArrays covariances, int count)
+std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count)
 {
     const int given = covariances.empty() ? 0 : (int)covariances.total();
     if (given != 0 && given != count)
         CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, but there are %d views", given, count));
-    std::vector<PoseKnowledge> knowledge;
+    std::vector<PosePrior> priors;
     for (int view = 0; view < count; view++)
-        knowledge.push_back(readKnowledge(given ? covariances.getMat(view) : Mat(), numbered("poseCovariances", view)));
-    return knowledge;
+        priors.push_back(readPosePrior(given ? covariances.getMat(view) : Mat(), numbered("poseCovariances", view)));
+    return priors;
 }
 
 //! LxL or PxP of each camera, or nothing.
-static void readCameraKnowledge(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
+static void readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
 {
     if (covariances.empty())
         return;
@@ -191,16 +191,16 @@ static void readCameraKnowledge(InputArrayOfArrays covariances, const std::vecto
         if (!all[c].empty() && (all[c].channels() != 1 || all[c].cols != side || (side != lens && side != both)))
             CV_Error_(Error::StsBadSize, ("%s is %dx%d with %d channels; it must be %dx%d (lens), %dx%d (lens and window) or "
                                           "empty", name.c_str(), side, all[c].cols, all[c].channels(), lens, lens, both, both));
-        CameraKnowledge knowledge;
+        CameraPrior prior;
         Mat_<double> numbers;
         all[c].convertTo(numbers, CV_64F);
         if (!numbers.empty())
-            knowledge.covariance = Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), side, side);
-        for (int i = 0; i < knowledge.covariance.rows(); i++)
-            if (knowledge.covariance(i, i) < 0)
+            prior.covariance = Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), side, side);
+        for (int i = 0; i < prior.covariance.rows(); i++)
+            if (prior.covariance(i, i) < 0)
                 CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
-                                             knowledge.covariance(i, i), i));
-        task.cameras.push_back(knowledge);
+                                             prior.covariance(i, i), i));
+        task.cameraPriors.push_back(prior);
     }
 }
 
@@ -261,12 +261,12 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     if (flags & GLASS_USE_POSES)
     {
         task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
-        task.knowledge = readKnowledge(poseCovariances, task.views.count());
+        task.posePriors = readPosePriors(poseCovariances, task.views.count());
     }
-    readCameraKnowledge(cameraCovariances, rig.cameras, task);
+    readCameraPriors(cameraCovariances, rig.cameras, task);
     task.flags = flags;
     task.criteria = criteria;
-    const bool placesFollow = isStaged(task) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
+    const bool placesFollow = task.isIncremental() && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);

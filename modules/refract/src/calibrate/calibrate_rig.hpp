@@ -38,7 +38,7 @@ std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays T
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
 std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
 //! Poses that are known: exactly, or with a covariance.
-std::vector<PoseKnowledge> readKnowledge(InputArrayOfArrays covariances, int count);
+std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count);
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);
 
 }} // namespace

@@ -18,6 +18,7 @@ is: one with the images exchanged, and one with the window's constants free. If 
 a grossly wrong thickness or index is the caller's to see in the residuals. */
 
 #include "calibrate/pair_check.hpp"
+#include "calibrate/failure.hpp"
 #include "arrays/views.hpp"
 #include <numeric>
 
@@ -145,18 +146,14 @@ double residualApart(const std::vector<Pair>& pairs, const RigViews& views, cons
 //! Of a fit that explains most pairs; infinite if there is none.
 double plausibleRms(Rig rig, const RigTask& task)
 {
-    try
-    {
-        const RigFit fit = fitRig(rig, task);
-        const std::vector<Pair> pairs = pairsOf(task.views), used = usedOf(pairs, fit);
-        const bool isPlausible = 2*used.size() >= pairs.size() && residualOf(used, task.views, fit) <
-                                 LARGEST_CONTRADICTION*displacementOf(used, task.views, fit);
-        return isPlausible ? fit.rms : std::numeric_limits<double>::infinity();
-    }
-    catch (const cv::Exception&)
-    {
-        return std::numeric_limits<double>::infinity();
-    }
+    const double infinity = std::numeric_limits<double>::infinity();
+    RigFit fit;
+    if (!fitRig(rig, task, fit).converged())
+        return infinity;
+    const std::vector<Pair> pairs = pairsOf(task.views), used = usedOf(pairs, fit);
+    const bool isPlausible = 2*used.size() >= pairs.size() && residualOf(used, task.views, fit) <
+                             LARGEST_CONTRADICTION*displacementOf(used, task.views, fit);
+    return isPlausible ? fit.rms : infinity;
 }
 
 //! With direct and refracted images exchanged.
@@ -235,15 +232,8 @@ void explainRefusal(const Rig& start, RigTask task)
     task.flags &= ~(GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX);
     Rig fitted = start;
     RigFit fit;
-    try
-    {
-        fit = fitRig(fitted, task);
-    }
-    catch (const cv::Exception&)
-    {
-        return;
-    }
-    checkPairs(start, fitted, task, fit);
+    if (fitRig(fitted, task, fit).converged())
+        checkPairs(start, fitted, task, fit);
 }
 
 } // namespace
@@ -252,15 +242,10 @@ RigFit fitCheckingPairs(Rig& rig, const RigTask& task)
 {
     const Rig start = rig;
     RigFit fit;
-    try
-    {
-        fit = fitRig(rig, task);
-    }
-    catch (const cv::Exception&)
-    {
+    const FitOutcome outcome = fitRig(rig, task, fit);
+    if (!outcome.converged())
         explainRefusal(start, task);
-        throw;
-    }
+    throwUnlessConverged(outcome, FitKind::CALIBRATION);
     checkPairs(start, rig, task, fit);
     return fit;
 }

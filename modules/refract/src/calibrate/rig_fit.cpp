@@ -3,13 +3,12 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "calibrate/rig_fit.hpp"
+#include "adjust/covariance.hpp"
+#include "adjust/robust_fit.hpp"
 #include "arrays/arrays.hpp"
-#include "calibrate/covariance.hpp"
-#include "calibrate/information.hpp"
-#include "calibrate/rig_robust.hpp"
-#include "calibrate/sealed_start.hpp"
-#include "calibrate/rig_start.hpp"
-#include "calibrate/staged_start.hpp"
+#include "start/pose_start.hpp"
+#include "start/sealed_start.hpp"
+#include "start/staged_start.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
@@ -31,34 +30,29 @@ TermCriteria checkedCriteria(TermCriteria criteria)
 
 namespace {
 
-void checkFreedom(const RigProblem& rig)
+FitOutcome checkFreedom(const Problem& problem)
 {
-    if (rig.freedom() <= 0)
-        CV_Error_(Error::StsBadArg, ("%d points were observed, which give %d equations for %d unknowns; take more views",
-                                     rig.pointCount(), rig.equationCount(), rig.freeCount() + 6*rig.poseCount()));
+    FitOutcome outcome(problem.freedom() > 0 ? FitOutcome::CONVERGED : FitOutcome::TOO_FEW_EQUATIONS);
+    outcome.count = problem.equationCount();
+    outcome.expected = problem.unknownCount() + 1;
+    return outcome;
 }
 
-void describeImages(const RigProblem& rig, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
+void describeImages(const Problem& problem, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
 {
-    const int columns = 2*rig.cameraCount();
-    fit.perViewErrors = Mat(rig.viewCount(), columns, CV_64F, Scalar(NaN));
-    fit.imageStatus = Mat(rig.viewCount(), columns, CV_8U, Scalar(GLASS_IMAGE_ABSENT));
-    fit.inliers.assign(rig.viewCount()*columns, Mat());
+    const int columns = 2*problem.cameraCount();
+    fit.perViewErrors = Mat(problem.viewCount(), columns, CV_64F, Scalar(NaN));
+    fit.imageStatus = Mat(problem.viewCount(), columns, CV_8U, Scalar(GLASS_IMAGE_ABSENT));
+    fit.inliers.assign(problem.viewCount()*columns, Mat());
     double sum = 0;
-    for (size_t i = 0; i < rig.images().size(); i++)
+    for (size_t i = 0; i < problem.images().size(); i++)
     {
-        const RigImage& image = rig.images()[i];
-        const int column = 2*image.camera + (image.refracted ? 1 : 0), used = image.usedCount();
-        const double squares = rig.residuals(image).squaredNorm();
-        sum += squares;
-        fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
+        const Image& image = problem.images()[i];
+        const int column = 2*image.camera + (image.refracted ? 1 : 0);
         fit.imageStatus.at<uchar>(image.view, column) = status[i];
-        Mat mask((int)task.views.object[image.view].size(), 1, CV_8U, Scalar(0));
-        for (size_t k = 0; k < image.points.index.size(); k++)
-            mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
-        fit.inliers[image.view*columns + column] = mask;
+        sum += describeImage(problem, image, column, (int)task.views.object[image.view].size(), fit);
     }
-    fit.rms = std::sqrt(sum/rig.pointCount());
+    fit.rms = std::sqrt(sum/problem.pointCount());
 }
 
 //! Images that gave no pose to start from.
@@ -78,15 +72,15 @@ void markUnusable(const RigTask& task, RigFit& fit)
 }
 
 //! Takes images that no pose agrees with out of the task.
-void dropUnusable(const RigViews& agreeing, const std::vector<Pose>& poses, RigTask& task)
+void dropUnusable(const RigViews& inliers, const std::vector<Pose>& poses, RigTask& task)
 {
-    for (int c = 0; c < (int)agreeing.cameras.size(); c++)
-        for (int view = 0; view < agreeing.count(); view++)
+    for (int c = 0; c < (int)inliers.cameras.size(); c++)
+        for (int view = 0; view < inliers.count(); view++)
         {
             CameraViews& seen = task.views.cameras[c];
-            if (agreeing.cameras[c].direct[view].empty() || !poses[view].found)
+            if (inliers.cameras[c].direct[view].empty() || !poses[view].found)
                 seen.direct[view].clear();
-            if (agreeing.cameras[c].refracted[view].empty() || !poses[view].found)
+            if (inliers.cameras[c].refracted[view].empty() || !poses[view].found)
                 seen.refracted[view].clear();
         }
 }
@@ -106,41 +100,38 @@ Mat toMat(const std::vector<OtherMinimum>& minima)
 //! A sealed rig exchanges its parameters for each other: asked of it is only what the caller names.
 int requiredOf(const RigTask& task)
 {
-    return isSealed(task) ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
+    return task.isSealed() ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
-RigStart findStart(const Rig& rig, RigTask& task, RigFit& fit)
+FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
-    if (isStaged(task))
+    if (task.isIncremental())
     {
-        std::vector<OtherMinimum> minima(rig.count());
-        const RigStart start = stagedStart(rig, task.views, task.flags, minima);
-        checkPoses(task.views, start.poses);
-        fit.otherMinima = toMat(minima);
-        return start;
+        minima.assign(rig.count(), OtherMinimum());
+        start = stagedStart(rig, task.views, task.flags, minima);
+        return checkPoses(task.views, start.poses);
     }
-    const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
-    const RigViews views = isRobust ? agreeingViews(rig, task.views) : task.views;
-    RigStart start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
-    std::vector<OtherMinimum> minima = startWindows(start.rig, views, start.poses, task.flags);
+    const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
+    start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+    FitOutcome outcome = startWindows(start.rig, views, start.poses, task.flags, minima);
     addPosesThroughWindow(start.rig, views, start.poses);
-    keepGivenNormals(rig, views, start.poses, start.rig);
-    if (isSealed(task) && !isRobust)
+    if (outcome.converged())
+        outcome = keepGivenNormals(rig, views, start.poses, start.rig);
+    if (!outcome.converged())
+        return outcome;
+    if (task.isSealed() && !task.isRobust())
         addPosesIgnoringWindow(start.rig, views, start.poses);
-    if (isRobust)
+    if (task.isRobust())
         dropUnusable(views, start.poses, task);
     else
-        checkPoses(views, start.poses);
-    if (isSealed(task))
-        start = bestSealedStart(start, views, task, minima);
-    fit.otherMinima = toMat(minima);
-    return start;
+        outcome = checkPoses(views, start.poses);
+    if (outcome.converged() && task.isSealed())
+        start = bestSealedStart(start, views, task.flags, minima);
+    return outcome;
 }
 
-} // namespace
-
-static int seenCount(const RigViews& views)
+int seenCount(const RigViews& views)
 {
     int count = 0;
     for (const CameraViews& camera : views.cameras)
@@ -149,34 +140,60 @@ static int seenCount(const RigViews& views)
     return count;
 }
 
-RigFit fitRig(Rig& rig, const RigTask& task_)
+} // namespace
+
+double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)
 {
-    const TermCriteria criteria = checkedCriteria(task_.criteria);
-    RigFit fit;
-    RigTask task = task_;
-    const RigStart start = findStart(rig, task, fit);
-    RigProblem problem(start.rig, task.views, start.poses, task.knowledge, task.cameras, task.flags);
-    if (!(task.flags & GLASS_ROBUST))
-        checkFreedom(problem);
-    RigFitProblem fitProblem(problem);
-    const FitOutcome outcome = Fit(fitProblem, (task.flags & GLASS_ROBUST) != 0, seenCount(task_.views), criteria).run();
-    checkFreedom(problem);
+    const double squares = problem.squaredPixelError(image);
+    const int used = image.usedCount();
+    fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
+    Mat mask(pointCount, 1, CV_8U, Scalar(0));
+    for (size_t k = 0; k < image.points.index.size(); k++)
+        mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
+    fit.inliers[image.view*fit.perViewErrors.cols + column] = mask;
+    return squares;
+}
+
+FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
+{
+    const TermCriteria criteria = checkedCriteria(given.criteria);
+    RigTask task = given;
+    RigStart start;
+    std::vector<OtherMinimum> minima;
+    FitOutcome outcome = findStart(rig, task, start, minima);
+    if (!outcome.converged())
+        return outcome;
+    fit.otherMinima = toMat(minima);
+    Problem problem(start.rig, task.views, start.poses, task.posePriors, task.cameraPriors, task.flags);
+    TargetOutliers outliers(problem);
+    if (!task.isRobust())
+        outcome = checkFreedom(problem);
+    if (outcome.converged())
+        outcome = RobustFit(problem, outliers, task.isRobust(), seenCount(given.views), criteria).run();
+    if (outcome.isUsable())
+    {
+        const FitOutcome left = checkFreedom(problem);
+        outcome = left.converged() ? outcome : left;
+    }
+    if (!outcome.isUsable())
+        return outcome;
 
     // First, as what is undetermined is also what does not converge.
     const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
-    eigen2cv(rigCovariance(problem, variance, requiredOf(task)), fit.covariance);
-    if (!outcome.converged)
-        CV_Error_(Error::StsNoConv, ("the calibration did not converge in %d iterations; raise criteria.maxCount, or fix "
-                                     "what the views hardly determine", criteria.maxCount));
+    Covariance covariance;
+    const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
+    if (!determined.converged() || !outcome.converged())
+        return determined.converged() ? outcome : determined;
+    eigen2cv(covariance.ofParameters, fit.covariance);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
-    describeImages(problem, task, fitProblem.imageStatus(), fit);
-    markUnusable(task_, fit);
+    describeImages(problem, task, outliers.imageStatus(), fit);
+    markUnusable(given, fit);
     if (task.wantsJacobian)
-        eigen2cv(rigJacobian(problem), fit.jacobian);
+        eigen2cv(publicJacobian(problem), fit.jacobian);
     for (int view = 0; view < problem.viewCount(); view++)
         fit.poses.push_back(problem.pose(view));
     rig = problem.rig();
-    return fit;
+    return outcome;
 }
 
 static void writeVectors(const std::vector<Pose>& poses, Vec3d Pose::*member, OutputArrayOfArrays out)

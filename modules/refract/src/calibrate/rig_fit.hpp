@@ -5,21 +5,9 @@
 #ifndef OPENCV_REFRACT_RIG_FIT_HPP
 #define OPENCV_REFRACT_RIG_FIT_HPP
 
-#include "calibrate/rig_problem.hpp"
+#include "start/rig_task.hpp"
 
 namespace cv { namespace refract {
-
-//! What the calibrators are given beside the cameras.
-struct RigTask
-{
-    RigViews views;
-    std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
-    std::vector<PoseKnowledge> knowledge;       //!< of the same
-    std::vector<CameraKnowledge> cameras;       //!< one per camera, or empty
-    int flags;
-    TermCriteria criteria;
-    bool wantsJacobian = false;
-};
 
 //! What the joint fit finds beside the cameras.
 struct RigFit
@@ -37,8 +25,11 @@ struct RigFit
 //! Both limits in force: what the caller left open is generous.
 TermCriteria checkedCriteria(TermCriteria criteria);
 
-//! Starts, fit, and what it tells. rig is start and result.
-RigFit fitRig(Rig& rig, const RigTask& task);
+//! Starts, fit, and what it tells. rig is start and result; it and fit mean nothing unless the outcome is CONVERGED.
+FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit);
+
+//! What a calibration and a bundle adjustment tell of one image: its RMS, and which points are inliers. Returns its squares.
+double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit);
 
 //! What all calibrators return; copies what is wanted.
 void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,

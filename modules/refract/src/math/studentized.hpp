@@ -14,6 +14,7 @@ part of H is its leverage: the residual of an observation that was used has the 
 I + H. Both give the square of its deletion residual (@cite Cook1982), chi^2 where the observation is no outlier. */
 struct DeletionResidual
 {
+    DeletionResidual() : square(0), dimensions(0), isUsed(false) {}
     //! @param prediction covariance of the predicted pixel: H
     DeletionResidual(const Vec2d& residual, const Matx22d& prediction, bool isUsed);
 

@@ -175,7 +175,7 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
     if (view.object.size() < 4 || scatterRank(view.object) < 2)
         return chosen;
     const double focalLength = camera.lens().parameters()[0];
-    const double least = std::max(4., LEAST_AGREEING*(double)points.pixel.size());
+    const double least = std::max(4., LEAST_INLIER_RATIO*(double)points.pixel.size());
     std::vector<int> inliers;
     for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
     {

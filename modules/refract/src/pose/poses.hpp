@@ -55,10 +55,10 @@ Pose readPose(InputArray rvec, InputArray tvec);
 void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
 
 //! The part of an image's points that must agree with one pose, else the image is of no use.
-const double LEAST_AGREEING = 1./3;
+const double LEAST_INLIER_RATIO = 1./3;
 
 /** The image points that one pose agrees with to a few pixels, found by random samples (the same ones every time); the
-others NaN. Empty if they are fewer than LEAST_AGREEING, or fewer than 4. */
+others NaN. Empty if they are fewer than LEAST_INLIER_RATIO, or fewer than 4. */
 std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
                                      const std::vector<Point2d>& imagePoints);
 

@@ -103,4 +103,10 @@ double lowerBound(WindowParameter kind, double start)
     }
 }
 
+double upperBound(WindowParameter kind)
+{
+    const bool isLength = kind == WindowParameter::DISTANCE || kind == WindowParameter::THICKNESS;
+    return kind == WindowParameter::NORMAL ? std::numeric_limits<double>::infinity() : isLength ? MAX_LENGTH : MAX_INDEX;
+}
+
 }} // namespace

@@ -12,6 +12,9 @@
 
 namespace cv { namespace refract {
 
+// Beyond what there is, and small enough that no product of them overflows.
+const double MAX_LENGTH = 1e100, MAX_INDEX = 1e6;
+
 enum class WindowParameter { NORMAL, DISTANCE, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX };
 
 WindowLayout windowLayout(int layers);
@@ -28,6 +31,8 @@ GlassWindow withParameters(GlassWindow window, const double* parameters);
 std::vector<bool> freeWindowParameters(int layers, int flags);
 //! What no parameter falls below while it is estimated, by where it starts.
 double lowerBound(WindowParameter kind, double start);
+//! What GlassWindow::check() refuses beyond.
+double upperBound(WindowParameter kind);
 
 }} // namespace
 

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "precomp.hpp"
+#include "window/parameters.hpp"
 
 namespace cv { namespace refract {
 
@@ -31,9 +32,6 @@ GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_,
     : normal(checkedNormal(normal_, thickness_, index_, distance_, outerIndex_)), distance(distance_), thickness(1, thickness_),
       index(1, index_), innerIndex(1), outerIndex(outerIndex_), wavelength(0) {}
 
-// Beyond what there is, and small enough that no product of them overflows.
-static const double MOST_LENGTH = 1e100, MOST_INDEX = 1e6;
-
 //! layer >= 0: the name's element. Nothing is formatted unless it is wrong: cameras may be made by the call.
 static void checkBetween(const char* name, double value, double least, double most, int layer = -1)
 {
@@ -55,18 +53,18 @@ void GlassWindow::check() const
     if (!(normal[2] > 0))
         CV_Error_(Error::StsBadArg, ("window.normal is (%g, %g, %g); it must point from the camera to the scene, "
                                      "normal[2] > 0", normal[0], normal[1], normal[2]));
-    checkBetween("window.distance", distance, 0, MOST_LENGTH);
-    checkBetween("window.innerIndex", innerIndex, 1, MOST_INDEX);
-    checkBetween("window.outerIndex", outerIndex, 1, MOST_INDEX);
+    checkBetween("window.distance", distance, 0, MAX_LENGTH);
+    checkBetween("window.innerIndex", innerIndex, 1, MAX_INDEX);
+    checkBetween("window.outerIndex", outerIndex, 1, MAX_INDEX);
     if (thickness.size() != index.size())
         CV_Error_(Error::StsUnmatchedSizes, ("window.thickness has %d layers, window.index %d; they must agree",
                                              (int)thickness.size(), (int)index.size()));
     for (size_t i = 0; i < thickness.size(); i++)
     {
-        checkBetween("window.thickness", thickness[i], 0, MOST_LENGTH, (int)i);
-        checkBetween("window.index", index[i], 1, MOST_INDEX, (int)i);
+        checkBetween("window.thickness", thickness[i], 0, MAX_LENGTH, (int)i);
+        checkBetween("window.index", index[i], 1, MAX_INDEX, (int)i);
     }
-    checkBetween("window.wavelength", wavelength, 0, MOST_LENGTH);
+    checkBetween("window.wavelength", wavelength, 0, MAX_LENGTH);
     if (!materials.empty() && materials.size() != index.size() + 2)
         CV_Error_(Error::StsUnmatchedSizes, ("window.materials has %d names; it must be empty or have %d: inner medium, layers, "
                                              "outer medium", (int)materials.size(), (int)index.size() + 2));
@@ -75,7 +73,7 @@ void GlassWindow::check() const
 GlassWindow GlassWindow::atWavelength(double wavelengthNm) const
 {
     check();
-    if (!(wavelengthNm > 0 && wavelengthNm <= MOST_LENGTH))
+    if (!(wavelengthNm > 0 && wavelengthNm <= MAX_LENGTH))
         CV_Error_(Error::StsOutOfRange, ("wavelengthNm is %g; it must be finite and more than 0", wavelengthNm));
     const bool refracts = !index.empty() || innerIndex != outerIndex;
     if (refracts && materials.empty())

@@ -1,0 +1,220 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Covariance = s^2 A^-1 of the free parameters; s^2: variance of a pixel coordinate, A = R^T R: eliminate.hpp.
+
+Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters that are
+required and whose standard deviation is so large that the value is no answer. */
+
+#include "adjust/covariance.hpp"
+#include <Eigen/SVD>
+
+namespace cv { namespace refract {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Nobody finds points better than this: without it, noise-free data would seem to determine anything.
+const double LEAST_SIGMA = 0.01;
+
+struct FreeParameter
+{
+    const ParameterBlock* block;
+    int coordinate;
+    String name;
+    double maxSigma;        //!< a standard deviation beyond this is no answer
+
+    double value() const { return block->values[coordinate]; }
+    bool isThickness() const
+    { return block->kind == ParameterBlock::MEDIA && block->windowParameter(coordinate) == WindowParameter::THICKNESS; }
+    bool isNumber() const { return block->kind == ParameterBlock::LENS || block->kind == ParameterBlock::MEDIA; }
+};
+
+double meanRange(const Problem& problem)
+{
+    double sum = 0;
+    int count = 0;
+    for (int view = 0; view < problem.viewCount(); view++)
+        if (problem.pose(view).found)
+        {
+            sum += norm(problem.pose(view).tvec);
+            count++;
+        }
+    return sum/count;
+}
+
+//! The GLASS_REQUIRE_... flag of a block.
+int requirementOf(ParameterBlock::Kind kind)
+{
+    return kind == ParameterBlock::LENS ? GLASS_REQUIRE_INTRINSICS : kind == ParameterBlock::EXTRINSICS ? GLASS_REQUIRE_EXTRINSICS :
+           GLASS_REQUIRE_WINDOW;
+}
+
+std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
+{
+    const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(problem);
+    std::vector<FreeParameter> parameters;
+    for (const ParameterBlock& block : problem.blocks())
+        for (int i = 0; i < (int)block.values.size(); i++)
+        {
+            const bool isThird = block.kind == ParameterBlock::NORMAL && i == 2;     // a normal has two
+            if (block.kind == ParameterBlock::POSE || !block.isFree[i] || isThird)
+                continue;
+            FreeParameter p;
+            p.name = block.kind == ParameterBlock::NORMAL ? "normal" : block.names[i];
+            if (problem.cameraCount() > (block.kind == ParameterBlock::EXTRINSICS ? 2 : 1))
+                p.name += format(" of camera %d", block.index + 1);
+            p.block = &block;
+            p.coordinate = i;
+            const bool isAngle = block.kind == ParameterBlock::NORMAL || (block.kind == ParameterBlock::EXTRINSICS && i < 3);
+            const bool isLength = block.kind == ParameterBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
+                                  block.kind == ParameterBlock::EXTRINSICS && i >= 3;
+            p.maxSigma = !(required & requirementOf(block.kind)) ? infinity : isAngle ? CV_PI/4 : isLength ? range :
+                block.kind == ParameterBlock::MEDIA || i < 2 ? p.value() : infinity;
+            parameters.push_back(p);
+        }
+    return parameters;
+}
+
+/** Names the parameters that take part in what is undetermined.
+@param part of each parameter
+@param dimension of what is undetermined
+@param sigma standard deviations; may be empty */
+FitOutcome undetermined(const std::vector<FreeParameter>& parameters, const VectorXd& part, int dimension, const VectorXd& sigma)
+{
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    FitOutcome outcome(FitOutcome::UNDETERMINED);
+    outcome.dimension = dimension;
+    for (int i = 0; i < (int)parameters.size(); i++)
+    {
+        const FreeParameter& p = parameters[i];
+        const auto takesPart = [&](int j) { return part[j] >= 0.2*part.maxCoeff(); };
+        if (!takesPart(i))
+            continue;
+        outcome.parameters.push_back({ p.name, p.isNumber() ? p.value() : NaN,
+                                       p.isNumber() && sigma.size() > 0 ? sigma[i] : NaN });
+        const WindowLayout& at = p.block->at;
+        for (int j = i + 1; j < (int)parameters.size(); j++)
+            if (p.isThickness() && parameters[j].block == p.block && takesPart(j) &&
+                parameters[j].coordinate - p.coordinate == at.index - at.thickness)
+                outcome.opticalThickness = p.value()*(1 - p.block->values[at.outerIndex - at.media]/parameters[j].value());
+    }
+    return outcome;
+}
+
+//! 1 for every parameter that is beyond its limit or tied to the worst one, else 0.
+VectorXd excessivePart(const MatrixXd& half, const VectorXd& excess, int worst)
+{
+    const double TIED = 0.9;        // correlation
+    const MatrixXd unit = half.rowwise().normalized();
+    VectorXd part = VectorXd::Zero(excess.size());
+    for (int i = 0; i < excess.size(); i++)
+        if (excess[i] > 1 || std::abs(unit.row(i).dot(unit.row(worst))) > TIED)
+            part[i] = 1;
+    return part;
+}
+
+//! H, H H^T = covariance of the cameras' parameters for unit pixel noise; not if a direction is lost.
+FitOutcome setHalf(const std::vector<FreeParameter>& parameters, const Information& information, MatrixXd& half)
+{
+    const int count = (int)parameters.size();
+    half.resize(count, 0);
+    if (count == 0)
+        return FitOutcome();
+    for (int i = 0; i < count; i++)
+        if (!(information.effect[i] > 0))
+            return undetermined(parameters, VectorXd::Unit(count, i), 1, VectorXd());
+    const VectorXd scale = information.effect.cwiseInverse();
+    const Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeFullV);
+    // The rows may be fewer than the parameters.
+    VectorXd values = VectorXd::Zero(count);
+    values.head(svd.singularValues().size()) = svd.singularValues();
+    const int lost = (int)(values.array() < information.rounding).count();
+    if (lost > 0)
+        return undetermined(parameters, svd.matrixV().rightCols(lost).rowwise().norm(), lost, VectorXd());
+    half = scale.asDiagonal()*svd.matrixV()*values.cwiseInverse().asDiagonal();
+    return FitOutcome();
+}
+
+//! Whether some standard deviation is no answer.
+FitOutcome checkSigmas(const std::vector<FreeParameter>& parameters, const MatrixXd& half, double variance)
+{
+    const double floor = std::max(variance, LEAST_SIGMA*LEAST_SIGMA);
+    const VectorXd sigma = half.rowwise().norm()*std::sqrt(floor);
+    VectorXd excess(parameters.size());
+    for (int i = 0; i < (int)parameters.size(); i++)
+        excess[i] = sigma[i]/parameters[i].maxSigma;
+    int worst;
+    if (excess.size() > 0 && excess.maxCoeff(&worst) > 1)
+        return undetermined(parameters, excessivePart(half, excess, worst), 1, sigma);
+    return FitOutcome();
+}
+
+} // namespace
+
+FitOutcome Covariance::compute(const Problem& problem, double variance, int required)
+{
+    problem_ = &problem;
+    variance_ = variance;
+    information_ = informationOf(problem);
+    const std::vector<FreeParameter> parameters = freeParameters(problem, required);
+    InnerBlock poses;           // of a scene
+    int lost;
+    const Information ofCameras = eliminateLast(information_, (int)parameters.size(), poses, lost);
+    if (lost >= 0)
+    {
+        FitOutcome outcome(FitOutcome::POSE_UNDETERMINED);
+        const FreeSpace space(problem);
+        for (int block = 0; block < problem.outerCount(); block++)
+            if (space.first[block] <= lost)
+                outcome.view = problem.blocks()[block].index;
+        return outcome;
+    }
+    MatrixXd half;
+    FitOutcome outcome = setHalf(parameters, ofCameras, half);
+    if (outcome.converged())
+        outcome = checkSigmas(parameters, half, variance);
+    if (!outcome.converged())
+        return outcome;
+    const MatrixXd all = problem.publicBasis()*half;
+    ofParameters = variance*all*all.transpose();
+
+    // What the cameras' covariance says of a weak direction so holds for poses and points.
+    const int count = (int)half.rows(), others = (int)poses.byOuter.rows();
+    half_ = MatrixXd::Zero(count + others, half.cols() + poses.half.cols());
+    half_.topLeftCorner(count, half.cols()) = half;
+    if (others > 0)
+    {
+        half_.bottomLeftCorner(others, half.cols()) = poses.byOuter*half;
+        half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
+    }
+    return outcome;
+}
+
+Mat Covariance::ofPoints() const
+{
+    const std::vector<Cluster>& clusters = problem_->scene().clusters();
+    Mat_<double> deviations(problem_->scene().pointCount(), 3, std::numeric_limits<double>::quiet_NaN());
+    parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+        {
+            const InnerBlock& block = information_.inner[i];
+            MatrixXd outer(block.columns.size(), half_.cols());
+            for (size_t k = 0; k < block.columns.size(); k++)
+                outer.row(k) = half_.row(block.columns[k]);
+            VectorXd variances = block.half.rowwise().squaredNorm();
+            if (outer.size() > 0)
+                variances += (block.byOuter*outer).rowwise().squaredNorm();
+            for (int k = 0; k < clusters[i].size(); k++)
+                deviations(clusters[i].points[k/3], k % 3) = block.isDetermined ? std::sqrt(variance_*variances[k])
+                                                                                : std::numeric_limits<double>::infinity();
+        }
+    });
+    return deviations;
+}
+
+}} // namespace

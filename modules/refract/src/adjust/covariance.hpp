@@ -1,0 +1,34 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_COVARIANCE_HPP
+#define OPENCV_REFRACT_COVARIANCE_HPP
+
+#include "adjust/eliminate.hpp"
+
+namespace cv { namespace refract {
+
+const int REQUIRE_ALL = GLASS_REQUIRE_WINDOW | GLASS_REQUIRE_INTRINSICS | GLASS_REQUIRE_EXTRINSICS;
+
+//! What the data can and cannot tell of a solved problem.
+struct Covariance
+{
+    /** UNDETERMINED, with the parameters' names, if the data do not determine what is free; POSE_UNDETERMINED.
+    @param variance of a pixel coordinate
+    @param required what must be determined by itself, GLASS_REQUIRE_...; of the rest it is enough that combinations are */
+    FitOutcome compute(const Problem& problem, double variance, int required);
+
+    Eigen::MatrixXd ofParameters;       //!< of the public parameters, P x P; 0 where fixed
+    Mat ofPoints() const;               //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
+
+private:
+    const Problem* problem_ = nullptr;
+    double variance_ = 0;
+    Information information_;
+    Eigen::MatrixXd half_;              //!< H, H H^T = covariance of all outer parameters for unit pixel noise
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_COVARIANCE_HPP

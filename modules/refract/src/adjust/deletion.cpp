@@ -1,0 +1,129 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* With an observation's derivatives F by the outer parameters and E by its inner block, which follows them by D (InnerBlock), and
+S the covariance of the outer ones, its predicted pixel has the covariance
+
+    [F E] C [F E]^T,     C = [ S  S D^T; D S  H H^T + D S D^T ]  */
+
+#include "adjust/deletion.hpp"
+#include "adjust/eliminate.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+using Eigen::MatrixXd;
+
+MatrixXd rowsOf(const MatrixXd& matrix, const std::vector<int>& rows)
+{
+    MatrixXd picked(rows.size(), matrix.cols());
+    for (size_t i = 0; i < rows.size(); i++)
+        picked.row(i) = matrix.row(rows[i]);
+    return picked;
+}
+
+MatrixXd columnsOf(const MatrixXd& matrix, const std::vector<int>& columns)
+{
+    MatrixXd picked(matrix.rows(), columns.size());
+    for (size_t i = 0; i < columns.size(); i++)
+        picked.col(i) = matrix.col(columns[i]);
+    return picked;
+}
+
+//! What one inner block's observations are predicted from.
+class InnerPrediction
+{
+public:
+    InnerPrediction(const InnerBlock& block, const MatrixXd& S) : S_(S)
+    {
+        cross_ = block.byOuter*rowsOf(S, block.columns);
+        ofInner_ = block.half*block.half.transpose() + columnsOf(cross_, block.columns)*block.byOuter.transpose();
+    }
+
+    //! @param at the first of the block's values that image.inner has the derivatives by
+    Matx22d operator()(const ImageRows& image, int row, int at) const
+    {
+        const int size = (int)image.inner.cols(), count = (int)image.columns.size();
+        const MatrixXd E = image.inner.middleRows(2*row, 2);
+        Eigen::Matrix2d H = E*ofInner_.block(at, at, size, size)*E.transpose();
+        if (count > 0)
+        {
+            const MatrixXd F = image.outer.middleRows(2*row, 2);
+            const Eigen::Matrix2d both = E*columnsOf(cross_.middleRows(at, size), image.columns)*F.transpose();
+            H += both + both.transpose() + F*columnsOf(rowsOf(S_, image.columns), image.columns)*F.transpose();
+        }
+        return Matx22d(H(0, 0), H(0, 1), H(1, 0), H(1, 1));
+    }
+
+private:
+    const MatrixXd& S_;
+    MatrixXd cross_, ofInner_;
+};
+
+//! Which observations are asked for and have an image: they get derivatives as if their weight were one.
+std::vector<std::vector<double> > weightsOfAsked(const Problem& problem, const Masks& isAsked)
+{
+    std::vector<std::vector<double> > weights;
+    for (size_t i = 0; i < problem.images().size(); i++)
+    {
+        weights.push_back(std::vector<double>());
+        for (double error : problem.pixelErrors(problem.images()[i]))
+            weights[i].push_back(std::isfinite(error) && isAsked[i][weights[i].size()] ? 1 : 0);
+    }
+    return weights;
+}
+
+//! Of one inner block.
+std::vector<Observation> observationsOf(const Problem& problem, int inner)
+{
+    if (problem.hasScene())
+        return problem.observationsOf(inner);
+    std::vector<Observation> observations;
+    for (int i : problem.imagesOf(inner))
+        for (int row = 0; row < (int)problem.images()[i].points.pixel.size(); row++)
+            observations.push_back({ i, row });
+    return observations;
+}
+
+} // namespace
+
+std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& problem, const Masks& isInlier, const Masks& isAsked)
+{
+    const Information information = informationOf(problem, false);
+    const MatrixXd S = pseudoCovariance(information);
+    const FreeSpace space(problem, false);
+    const std::vector<std::vector<double> > weights = weightsOfAsked(problem, isAsked);
+    const int count = (int)problem.images().size();
+    std::vector<std::unique_ptr<ImageRows> > images(count);
+    std::vector<std::vector<DeletionResidual> > all(count);
+    parallel_for_(Range(0, count), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+        {
+            images[i].reset(new ImageRows(problem, space, i, weights[i]));
+            all[i].resize(weights[i].size());
+        }
+    });
+    parallel_for_(Range(0, (int)information.inner.size()), [&](const Range& range)
+    {
+        for (int inner = range.start; inner < range.end; inner++)
+        {
+            const InnerPrediction prediction(information.inner[inner], S);
+            for (const Observation& o : observationsOf(problem, inner))
+            {
+                if (weights[o.image][o.row] == 0)
+                    continue;
+                const ImageRows& image = *images[o.image];
+                const int at = problem.hasScene() ?
+                    3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]) : 0;
+                all[o.image][o.row] = DeletionResidual(Vec2d(image.residuals[2*o.row], image.residuals[2*o.row + 1]),
+                                                       prediction(image, o.row, at), isInlier[o.image][o.row] != 0);
+            }
+        }
+    });
+    return all;
+}
+
+}} // namespace

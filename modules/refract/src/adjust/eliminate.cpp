@@ -1,0 +1,93 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/eliminate.hpp"
+#include <Eigen/QR>
+
+namespace cv { namespace refract {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Information informationOf(const Problem& problem, bool withHeld)
+{
+    const FreeSpace space(problem, withHeld);
+    const std::vector<ImageRows> images = linearize(problem, space);
+    return problem.hasScene() ? eliminatePoints(problem, space, images) : eliminatePoses(problem, space, images);
+}
+
+//! Columns scaled to their effect: the parameters' sizes differ by orders.
+static VectorXd scaleOf(const Information& information)
+{
+    return (information.effect.array() > 0).select(information.effect.cwiseInverse(), 0.);
+}
+
+void setInner(const Eigen::ColPivHouseholderQR<MatrixXd>& qr, const VectorXd& scale, const MatrixXd& rotated, InnerBlock& block)
+{
+    const int size = (int)scale.size(), rank = (int)qr.rank(), count = (int)rotated.cols() - 1;
+    const auto triangle = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+    MatrixXd best = MatrixXd::Zero(size, count + 1), half = MatrixXd::Zero(size, rank);
+    best.topRows(rank) = -triangle.solve(rotated.topRows(rank));
+    half.topRows(rank) = triangle.solve(MatrixXd::Identity(rank, rank));
+    best = scale.asDiagonal()*(qr.colsPermutation()*best);
+    block.half = scale.asDiagonal()*(qr.colsPermutation()*half);
+    block.byOuter = best.leftCols(count);
+    block.step = best.col(count);
+    block.isDetermined = rank == size;
+}
+
+Information eliminateLast(const Information& information, int first, InnerBlock& last, int& lost)
+{
+    const int others = (int)information.root.cols() - first, rows = (int)information.root.rows();
+    Information left;
+    left.effect = information.effect.head(first);
+    left.rounding = information.rounding;
+    MatrixXd rotated(rows, first + 1);
+    rotated << information.root.leftCols(first), information.residual;
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows, others);
+    int rank = 0;
+    lost = -1;
+    if (others > 0)
+    {
+        const VectorXd scale = scaleOf(information).tail(others);
+        qr.setThreshold(information.rounding);
+        qr.compute(information.root.rightCols(others)*scale.asDiagonal());
+        rank = (int)qr.rank();
+        if (rank < others)
+            lost = first + (int)qr.colsPermutation().indices()[rank];
+        rotated = MatrixXd(qr.householderQ().adjoint()*rotated);
+        setInner(qr, scale, rotated, last);
+    }
+    for (int i = 0; i < first; i++)
+        last.columns.push_back(i);
+    left.root = rotated.bottomRows(rows - rank).leftCols(first);
+    left.residual = rotated.bottomRows(rows - rank).rightCols<1>();
+    left.ofInner = information.ofInner + rotated.topRows(rank).rightCols<1>().squaredNorm();
+    return left;
+}
+
+double newtonDecrement(const Information& information)
+{
+    if (information.root.cols() == 0)
+        return std::sqrt(information.ofInner);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr;
+    qr.setThreshold(information.rounding);      // what no data determine has no least squares
+    qr.compute(information.root*scaleOf(information).asDiagonal());
+    const VectorXd rotated = qr.householderQ().adjoint()*information.residual;
+    return std::sqrt(rotated.head(qr.rank()).squaredNorm() + information.ofInner);
+}
+
+MatrixXd pseudoCovariance(const Information& information)
+{
+    if (information.root.cols() == 0)
+        return MatrixXd(0, 0);
+    const VectorXd scale = scaleOf(information);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
+    cod.setThreshold(information.rounding);
+    cod.compute(information.root*scale.asDiagonal());
+    const MatrixXd half = scale.asDiagonal()*cod.pseudoInverse();
+    return half*half.transpose();
+}
+
+}} // namespace

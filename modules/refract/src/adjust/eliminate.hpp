@@ -1,0 +1,65 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_ELIMINATE_HPP
+#define OPENCV_REFRACT_ELIMINATE_HPP
+
+#include "adjust/linearize.hpp"
+#include <Eigen/QR>
+
+namespace cv { namespace refract {
+
+//! An inner block (the pose of a target, a cluster of a scene's points) as it follows from the outer parameters.
+struct InnerBlock
+{
+    std::vector<int> columns;       //!< of the free space: those that it depends on
+    Eigen::MatrixXd byOuter;        //!< d best values / d these columns
+    Eigen::VectorXd step;           //!< to the best values, the outer parameters staying
+    Eigen::MatrixXd half;           //!< H, H H^T = covariance for unit pixel noise, the outer parameters being known
+    bool isDetermined = true;
+};
+
+//! What all images tell of the outer parameters when the inner ones are unknown.
+struct Information
+{
+    Eigen::MatrixXd root;           //!< R, R^T R = information for unit pixel noise
+    Eigen::VectorXd effect;         //!< of each parameter alone: the norm of its derivatives
+    Eigen::VectorXd residual;       //!< R * (change of the parameters) = -residual is the step to the least squares
+    double ofInner = 0;             //!< sum of squares that the inner blocks alone could still take up
+    double rounding = 0;            //!< what is left of a scaled column below this is rounding
+    std::vector<InnerBlock> inner;  //!< of views, or of clusters
+};
+
+/** Sets a block from rows [K | J, r], rotated so that K is triangular.
+@param qr of K with its columns scaled
+@param rotated Q^T [J, r] */
+void setInner(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::VectorXd& scale, const Eigen::MatrixXd& rotated,
+              InnerBlock& block);
+
+//! By orthogonal transformations of each view's rows.
+Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
+//! By Schur's complement of the normal equations.
+Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
+//! The one of both that the problem asks for.
+Information informationOf(const Problem& problem, bool withHeld = true);
+
+/** Information on the first columns alone.
+@param last the others, as they follow from the first
+@param lost the first of the others that is not determined; -1: all are */
+Information eliminateLast(const Information& information, int first, InnerBlock& last, int& lost);
+
+/** How far the least squares of the linearised problem are from where the parameters are, in pixels: divided by a pixel
+coordinate's standard deviation, it is the length of the step in standard deviations of what it moves. */
+double newtonDecrement(const Information& information);
+
+//! C = (R^T R)^+; what is not determined has no part in it.
+Eigen::MatrixXd pseudoCovariance(const Information& information);
+
+/** Derivatives of all residuals, 2M x (P + 6 V): image by image in the order of images(); columns: the public parameters,
+then the pose of each view; 0 where fixed. One camera. */
+Eigen::MatrixXd publicJacobian(const Problem& problem);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_ELIMINATE_HPP

@@ -1,0 +1,157 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/inner.hpp"
+#include <Eigen/Cholesky>
+
+namespace cv { namespace refract {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+//! The sum of squares of one cluster's observations and lengths, with what a step needs.
+struct ClusterSquares
+{
+    double value = 0;
+    MatrixXd matrix;
+    VectorXd gradient;
+};
+
+//! A cluster on its way.
+struct ClusterSearch
+{
+    ClusterSquares best;
+    VectorXd values;            //!< of the best
+    StepControl control;
+    bool isDone = false;
+};
+
+//! All images at the current points: residuals, and derivatives by the pose's translation in the scene's frame.
+class SceneRows
+{
+public:
+    explicit SceneRows(const Problem& problem) : problem_(problem), images_(problem.images().size()) {}
+
+    void update()
+    {
+        parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
+        {
+            for (int i = range.start; i < range.end; i++)
+            {
+                const Image& image = problem_.images()[i];
+                problem_.evaluate(image, image.rootWeights, Problem::BY_POSE, images_[i]);
+                const Matx33d R = rotationMatrix(problem_.pose(image.view).rvec);
+                images_[i].byPose.rightCols<3>() *= Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+            }
+        });
+    }
+
+    //! Infinite where a point has no image.
+    ClusterSquares squaresOf(int index) const
+    {
+        const Cluster& cluster = problem_.scene().clusters()[index];
+        ClusterSquares sum;
+        sum.matrix = MatrixXd::Zero(cluster.size(), cluster.size());
+        sum.gradient = VectorXd::Zero(cluster.size());
+        for (const Observation& o : problem_.observationsOf(index))
+        {
+            const Image& image = problem_.images()[o.image];
+            if (image.rootWeights[o.row] == 0)
+                continue;
+            const Eigen::Vector2d residual = images_[o.image].residuals.segment<2>(2*o.row);
+            const Eigen::Matrix<double, 2, 3> E = images_[o.image].byPose.block<2, 3>(2*o.row, 3);
+            const int at = 3*problem_.scene().placeInCluster(image.points.index[o.row]);
+            sum.value += residual.squaredNorm();
+            sum.matrix.block<3, 3>(at, at) += E.transpose()*E;
+            sum.gradient.segment<3>(at) += E.transpose()*residual;
+        }
+        Eigen::RowVectorXd byValues;
+        for (const KnownLength& length : cluster.lengths)
+        {
+            const double sigma = problem_.pixelSigma(), residual = sigma*cluster.residual(length, byValues);
+            byValues *= sigma;
+            sum.value += residual*residual;
+            sum.matrix += byValues.transpose()*byValues;
+            sum.gradient += byValues.transpose()*residual;
+        }
+        return sum;
+    }
+
+private:
+    const Problem& problem_;
+    std::vector<Problem::Derivatives> images_;
+};
+
+//! @param gain of squares that the step promises
+VectorXd stepOf(const ClusterSquares& sum, double damping, double& gain)
+{
+    const double LEAST = 1e-12;     // keeps what no image determines where it is
+    const VectorXd scale = sum.matrix.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
+    MatrixXd A = scale.asDiagonal()*sum.matrix*scale.asDiagonal();
+    A.diagonal().array() += damping + LEAST;
+    const VectorXd gradient = scale.cwiseProduct(sum.gradient), step = -Eigen::LDLT<MatrixXd>(A).solve(gradient);
+    gain = -gradient.dot(step);
+    return scale.cwiseProduct(step);
+}
+
+} // namespace
+
+bool optimizePoints(Problem& problem, double& squaredError)
+{
+    const int ROUNDS = 50;
+    std::vector<Cluster>& clusters = problem.scene().clusters();
+    std::vector<ClusterSearch> searches(clusters.size());
+    SceneRows rows(problem);
+    double mean = 0;            // of the clusters' squares: what one may still gain is little against it
+    bool isPossible = true, areDone = false;
+    for (int round = 0; round < ROUNDS && isPossible && !areDone; round++)
+    {
+        rows.update();
+        parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+        {
+            for (int i = range.start; i < range.end; i++)
+            {
+                ClusterSearch& search = searches[i];
+                if (search.isDone)
+                    continue;
+                const ClusterSquares now = rows.squaresOf(i);
+                if (round > 0 && !(now.value < search.best.value))
+                    search.control.reject();
+                else
+                {
+                    if (round > 0)
+                        search.control.accept();
+                    search.best = now;
+                    search.values = clusters[i].values;
+                }
+            }
+        });
+        squaredError = 0;
+        for (const ClusterSearch& search : searches)
+            squaredError += search.best.value;
+        isPossible = std::isfinite(squaredError);
+        mean = squaredError/std::max((double)clusters.size(), 1.);
+        areDone = true;
+        for (size_t i = 0; i < clusters.size() && isPossible; i++)
+        {
+            ClusterSearch& search = searches[i];
+            if (search.isDone)
+                continue;
+            double gain;
+            const VectorXd step = stepOf(search.best, search.control.damping(), gain);
+            search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
+                            StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
+            clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
+            areDone = areDone && search.isDone;
+        }
+        problem.placePoints(problem.scene().points());
+    }
+    for (int block = 0; block < problem.outerCount(); block++)
+        squaredError += problem.priorResidual(block).squaredNorm();
+    return isPossible;
+}
+
+}} // namespace

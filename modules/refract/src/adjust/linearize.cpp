@@ -1,0 +1,70 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/linearize.hpp"
+
+namespace cv { namespace refract {
+
+FreeSpace::FreeSpace(const Problem& problem, bool withHeld) : count(0)
+{
+    for (int i = 0; i < problem.outerCount(); i++)
+    {
+        const ParameterBlock& block = problem.blocks()[i];
+        const bool isUnused = block.kind == ParameterBlock::POSE && !problem.isAdjusted(block.index);
+        bases.push_back(isUnused ? Eigen::MatrixXd(block.values.size(), 0) : block.tangentBasis(withHeld));
+        first.push_back(count);
+        count += (int)bases.back().cols();
+    }
+}
+
+ImageRows::ImageRows(const Problem& problem, const FreeSpace& space, int i, const std::vector<double>& rootWeights)
+{
+    const Image& image = problem.images()[i];
+    Problem::Derivatives d;
+    CV_Assert(problem.evaluate(image, rootWeights, Problem::ALL, d));
+    residuals = d.residuals;
+    std::vector<int> blocks = problem.cameraBlocksOf(image);
+    if (problem.hasScene())
+    {
+        // A point moves as the view's translation does, turned into the scene's frame.
+        const Matx33d R = rotationMatrix(problem.pose(image.view).rvec);
+        inner = d.byPose.rightCols<3>()*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+        blocks.push_back(problem.poseBlock(image.view));
+        d.byBlock.push_back(d.byPose);
+    }
+    else if (problem.isAdjusted(image.view))
+        inner = d.byPose;
+    else
+        inner = RowMajorMatrix::Zero(d.byPose.rows(), 6);
+    for (int block : blocks)
+        for (int j = 0; j < space.columnsOf(block); j++)
+            columns.push_back(space.first[block] + j);
+    outer.resize(residuals.size(), columns.size());
+    int column = 0;
+    for (size_t b = 0; b < blocks.size(); b++)
+    {
+        const int own = space.columnsOf(blocks[b]);
+        if (own > 0)
+            outer.middleCols(column, own) = d.byBlock[b]*space.bases[blocks[b]];
+        column += own;
+    }
+}
+
+std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space)
+{
+    const int count = (int)problem.images().size();
+    std::vector<std::unique_ptr<ImageRows> > rows(count);
+    parallel_for_(Range(0, count), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+            rows[i].reset(new ImageRows(problem, space, i, problem.images()[i].rootWeights));
+    });
+    std::vector<ImageRows> all;
+    all.reserve(count);
+    for (std::unique_ptr<ImageRows>& image : rows)
+        all.push_back(std::move(*image));
+    return all;
+}
+
+}} // namespace

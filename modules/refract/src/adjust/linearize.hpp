@@ -1,0 +1,41 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_LINEARIZE_HPP
+#define OPENCV_REFRACT_LINEARIZE_HPP
+
+#include "adjust/problem.hpp"
+
+namespace cv { namespace refract {
+
+//! Free coordinates of the outer blocks, one column each.
+struct FreeSpace
+{
+    //! @param withHeld also those that are held on their bound
+    explicit FreeSpace(const Problem& problem, bool withHeld = true);
+    int columnsOf(int block) const { return (int)bases[block].cols(); }
+
+    std::vector<Eigen::MatrixXd> bases;     //!< of each block
+    std::vector<int> first;                 //!< column of each block
+    int count;
+};
+
+//! One image's residuals and their derivatives.
+struct ImageRows
+{
+    Eigen::VectorXd residuals;      //!< u, v of each point
+    RowMajorMatrix inner;           //!< by what is eliminated: the pose of a target (0 if it is fixed), or each point of a scene
+    Eigen::MatrixXd outer;          //!< by the free parameters that the image depends on
+    std::vector<int> columns;       //!< which these are, in the free space
+
+    //! @param rootWeights in place of the image's own
+    ImageRows(const Problem& problem, const FreeSpace& space, int image, const std::vector<double>& rootWeights);
+};
+
+//! Of all images, with their own weights.
+std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_LINEARIZE_HPP

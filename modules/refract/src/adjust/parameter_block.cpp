@@ -1,0 +1,83 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/parameter_block.hpp"
+#include <Eigen/Cholesky>
+#include <ceres/sphere_manifold.h>
+#include <map>
+
+namespace cv { namespace refract {
+
+Eigen::MatrixXd ParameterBlock::tangentBasis(bool withHeld) const
+{
+    const int size = (int)values.size();
+    if (kind == NORMAL && isFree[0])
+    {
+        Eigen::Matrix<double, 3, 2, Eigen::RowMajor> basis;
+        ceres::SphereManifold<3>().PlusJacobian(values.data(), basis.data());
+        return basis.colwise().normalized();    // radians; Ceres' scale differs between versions
+    }
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, size);
+    int column = 0;
+    for (int i = 0; i < size; i++)
+        if (isFree[i] && (withHeld || !isHeld[i]))
+            basis(i, column++) = 1;
+    return basis.leftCols(column);
+}
+
+//! By the root of the correlations, as the parameters' sizes differ by orders.
+bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
+{
+    const int size = (int)values.size();
+    std::vector<int> uncertain;
+    for (int i = 0; i < size; i++)
+        if (covariance(i, i) > 0)
+            uncertain.push_back(i);
+        else if (kind == LENS && covariance(i, i) == 0)
+            isFree[i] = false;
+    const int count = (int)uncertain.size();
+    Eigen::MatrixXd correlation(count, count);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++)
+            correlation(i, j) = covariance(uncertain[i], uncertain[j])/
+                                std::sqrt(covariance(uncertain[i], uncertain[i])*covariance(uncertain[j], uncertain[j]));
+    const Eigen::LLT<Eigen::MatrixXd> root(correlation);
+    if (root.info() != Eigen::Success)
+        return false;
+    const Eigen::MatrixXd inverse = root.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
+    sqrtInformation.setZero(count, size);
+    for (int j = 0; j < count; j++)
+    {
+        isFree[uncertain[j]] = true;
+        sqrtInformation.col(uncertain[j]) = inverse.col(j)/std::sqrt(covariance(uncertain[j], uncertain[j]));
+    }
+    return true;
+}
+
+std::vector<bool> freeLens(const Camera& camera, int flags)
+{
+    static const std::map<String, int> FIXED_BY = {
+        { "fx", GLASS_FIX_FOCAL_LENGTH }, { "fy", GLASS_FIX_FOCAL_LENGTH }, { "cx", GLASS_FIX_PRINCIPAL_POINT },
+        { "cy", GLASS_FIX_PRINCIPAL_POINT }, { "k1", GLASS_FIX_K1 }, { "k2", GLASS_FIX_K2 }, { "k3", GLASS_FIX_K3 },
+        { "k4", GLASS_FIX_K4 }, { "k5", GLASS_FIX_K5 }, { "k6", GLASS_FIX_K6 }, { "p1", GLASS_FIX_TANGENT_DIST },
+        { "p2", GLASS_FIX_TANGENT_DIST }, { "s1", GLASS_FIX_S1_S2_S3_S4 }, { "s2", GLASS_FIX_S1_S2_S3_S4 },
+        { "s3", GLASS_FIX_S1_S2_S3_S4 }, { "s4", GLASS_FIX_S1_S2_S3_S4 }, { "tauX", GLASS_FIX_TAUX_TAUY },
+        { "tauY", GLASS_FIX_TAUX_TAUY } };
+    const std::vector<String> names = camera.parameterNames();
+    std::vector<bool> isFree;
+    for (int i = 0; i < camera.lensCount(); i++)
+    {
+        const auto fixed = FIXED_BY.find(names[i]);
+        isFree.push_back((flags & GLASS_FREE_INTRINSICS) && !camera.lens().isFixed(i)
+                         && !(fixed != FIXED_BY.end() && (flags & fixed->second)));
+    }
+    return isFree;
+}
+
+double lowerBoundOfLens(int coordinate, double start)
+{
+    return coordinate < 2 ? 1e-6*start : -std::numeric_limits<double>::infinity();
+}
+
+}} // namespace

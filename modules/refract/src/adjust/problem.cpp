@@ -1,0 +1,461 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/problem.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+std::vector<double> sixOf(const Pose& pose)
+{
+    std::vector<double> six(pose.rvec.val, pose.rvec.val + 3);
+    six.insert(six.end(), pose.tvec.val, pose.tvec.val + 3);
+    return six;
+}
+
+Pose poseOf(const double* six)
+{
+    Pose pose;
+    pose.rvec = Vec3d(six);
+    pose.tvec = Vec3d(six + 3);
+    pose.found = true;
+    return pose;
+}
+
+RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount)
+{
+    RigViews views;
+    const int count = (int)pixels[0].size();
+    views.object.assign(count, std::vector<Point3d>(pointCount));
+    for (const PixelViews& ofCamera : pixels)
+        views.cameras.push_back({ PixelViews(count), ofCamera });
+    return views;
+}
+
+} // namespace
+
+Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
+                 const std::vector<CameraPrior>& cameraPriors, int flags)
+    : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), pixelSigma_(1)
+{
+    addBlocks(poses, posePriors, cameraPriors, flags);
+    addImages(views);
+    updateCameras();
+}
+
+Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
+                 const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags)
+    : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
+{
+    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags);
+    addImages(viewsOfScene(pixels, pointCount));
+    updateCameras();
+}
+
+void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
+                        const std::vector<CameraPrior>& cameraPriors, int flags)
+{
+    size_t most = 6*(rig_.cameras.size() + poses.size());
+    for (const Camera& camera : rig_.cameras)
+        most += camera.parameterCount();
+    values_.reserve(most);              // blocks point into it
+    for (int c = 0; c < rig_.count(); c++)
+        addCameraBlocks(c, cameraPriors.empty() ? CameraPrior() : cameraPriors[c], flags);
+    const std::vector<String> names = { "R", "R", "R", "T", "T", "T" };
+    for (int c = 1; c < rig_.count(); c++)
+        addBlock(ParameterBlock::EXTRINSICS, c, sixOf(rig_.extrinsics[c]), names,
+                 std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
+    cameraBlocks_ = (int)blocks_.size();
+    for (int view = 0; view < (int)poses.size(); view++)
+    {
+        const PosePrior prior = posePriors.empty() ? PosePrior() : posePriors[view];
+        ParameterBlock& block = addBlock(ParameterBlock::POSE, view, sixOf(poses[view]), names,
+                                         std::vector<bool>(6, prior.kind != PosePrior::EXACT));
+        if (prior.kind == PosePrior::UNCERTAIN)
+            block.sqrtInformation = prior.sqrtInformation;
+    }
+    for (const Camera& camera : rig_.cameras)
+        cameras_.push_back(RigCamera(camera));
+}
+
+void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
+{
+    const Camera& camera = rig_.cameras[c];
+    const WindowLayout& at = camera.layers().at();
+    const std::vector<double> all = camera.parameters();
+    const std::vector<String> names = camera.parameterNames();
+    const std::vector<bool> isFree = freeWindowParameters(at.layers, flags);
+    const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free, bool mayHavePrior)
+    {
+        const int size = (int)free.size();
+        ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
+                                         std::vector<String>(names.begin() + first, names.begin() + first + size), free);
+        if (mayHavePrior && first + size <= prior.covariance.cols() &&
+            !block.setPrior(prior.covariance.block(first, first, size, size)))
+            CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", c));
+    };
+    const int lens = camera.lensCount();
+    add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);
+    if (!rig_.owns(c))
+        return;
+    add(ParameterBlock::NORMAL, lens + at.normal, std::vector<bool>(3, !(flags & GLASS_FIX_NORMAL)), false);
+    add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
+}
+
+ParameterBlock& Problem::addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
+                                  const std::vector<String>& names, const std::vector<bool>& isFree)
+{
+    const int size = (int)values.size();
+    CV_Assert(values_.size() + size <= values_.capacity());
+    double* const kept = values_.data() + values_.size();
+    values_.insert(values_.end(), values.begin(), values.end());
+    const bool isPose = kind == ParameterBlock::POSE;
+    ParameterBlock block = { kind, index, isPose ? WindowLayout() : rig_.cameras[index].layers().at(),
+                             Eigen::Map<Eigen::VectorXd>(kept, size), isFree, names, std::vector<double>(),
+                             std::vector<bool>(size, false), Eigen::VectorXd(), Eigen::MatrixXd() };
+    for (int i = 0; i < size; i++)
+        block.lower.push_back(kind == ParameterBlock::MEDIA ? lowerBound(block.windowParameter(i), kept[i]) :
+                              kind == ParameterBlock::LENS ? lowerBoundOfLens(i, kept[i]) :
+                              -std::numeric_limits<double>::infinity());
+    block.priorMean = block.values;
+    block.sqrtInformation.resize(0, size);
+    blocks_.push_back(block);
+    return blocks_.back();
+}
+
+void Problem::addImages(const RigViews& views)
+{
+    for (int view = 0; view < views.count(); view++)
+        for (int c = 0; c < (int)views.cameras.size(); c++)
+            for (bool refracted : { false, true })
+            {
+                const CameraViews& seen = views.cameras[c];
+                Image image;
+                image.view = view;
+                image.camera = c;
+                image.refracted = refracted;
+                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view]);
+                if (image.points.pixel.empty())
+                    continue;
+                image.rootWeights.assign(image.points.pixel.size(), 1.);
+                imagesOfView_[view].push_back((int)images_.size());
+                images_.push_back(image);
+                isSeen_[view] = true;
+            }
+}
+
+void Problem::setRootWeights(int image, const std::vector<double>& rootWeights)
+{
+    images_[image].rootWeights = rootWeights;
+    const int view = images_[image].view;
+    isSeen_[view] = std::any_of(imagesOfView_[view].begin(), imagesOfView_[view].end(),
+                                [this](int i) { return images_[i].usedCount() > 0; });
+}
+
+int Problem::pointCount() const
+{
+    int count = 0;
+    for (const Image& image : images_)
+        count += image.usedCount();
+    return count;
+}
+
+int Problem::blockOf(ParameterBlock::Kind kind, int camera) const
+{
+    if (kind == ParameterBlock::NORMAL || kind == ParameterBlock::MEDIA)
+        camera = rig_.owner[camera];
+    for (int i = 0; i < cameraBlocks_; i++)
+        if (blocks_[i].kind == kind && blocks_[i].index == camera)
+            return i;
+    return -1;
+}
+
+const double* Problem::valuesOf(ParameterBlock::Kind kind, int camera) const
+{
+    const int block = blockOf(kind, camera);
+    return block < 0 ? nullptr : blocks_[block].values.data();
+}
+
+std::vector<int> Problem::cameraBlocksOf(const Image& image) const
+{
+    const int c = image.camera, owner = rig_.owner[c];
+    std::vector<int> blocks;
+    if (c > 0)
+        blocks.push_back(blockOf(ParameterBlock::EXTRINSICS, c));
+    blocks.push_back(blockOf(ParameterBlock::LENS, c));
+    if (!image.refracted)
+        return blocks;
+    blocks.push_back(blockOf(ParameterBlock::NORMAL, c));
+    blocks.push_back(blockOf(ParameterBlock::MEDIA, c));
+    if (owner != c && owner > 0)
+        blocks.push_back(blockOf(ParameterBlock::EXTRINSICS, owner));
+    return blocks;
+}
+
+void Problem::updateCameras()
+{
+    for (int c = 0; c < rig_.count(); c++)
+    {
+        RigCamera::Parameters parameters;
+        parameters.extrinsics = valuesOf(ParameterBlock::EXTRINSICS, c);
+        parameters.lens = valuesOf(ParameterBlock::LENS, c);
+        parameters.normal = valuesOf(ParameterBlock::NORMAL, c);
+        parameters.media = valuesOf(ParameterBlock::MEDIA, c);
+        parameters.ownerExtrinsics = valuesOf(ParameterBlock::EXTRINSICS, rig_.owner[c]);
+        parameters.ownsWindow = rig_.owns(c);
+        cameras_[c].set(parameters);
+    }
+}
+
+Camera Problem::camera(int c) const
+{
+    const Camera* camera = cameras_[c].camera(true);
+    CV_Assert(camera);          // findPointWithoutImage() says why there is none, and the fit does not come to such a place
+    return *camera;
+}
+
+Rig Problem::rig() const
+{
+    Rig rig = rig_;
+    for (int c = 0; c < rig.count(); c++)
+    {
+        rig.cameras[c] = camera(c);
+        if (c > 0)
+            rig.extrinsics[c] = poseOf(valuesOf(ParameterBlock::EXTRINSICS, c));
+    }
+    return rig;
+}
+
+Pose Problem::pose(int view) const
+{
+    Pose pose = poseOf(blocks_[poseBlock(view)].values.data());
+    pose.found = isSeen_[view];
+    return pose;
+}
+
+void Problem::setPose(int view, const Pose& pose)
+{
+    ParameterBlock& block = blocks_[poseBlock(view)];
+    if (block.isFree[0])
+        block.values = Eigen::Map<const Eigen::VectorXd>(sixOf(pose).data(), 6);
+}
+
+void Problem::placePoints(const std::vector<Point3d>& points)
+{
+    for (Image& image : images_)
+        for (size_t i = 0; i < image.points.index.size(); i++)
+            if (std::isfinite(points[image.points.index[i]].x))     // derivatives are finite whatever the weight
+                image.points.object[i] = points[image.points.index[i]];
+}
+
+void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlier)
+{
+    scene_.setPoints(points);
+    observations_.assign(scene_.clusters().size(), std::vector<Observation>());
+    for (int i = 0; i < (int)images_.size(); i++)
+    {
+        const std::vector<int>& index = images_[i].points.index;
+        std::vector<double> rootWeights(index.size(), 0.);
+        for (int row = 0; row < (int)index.size(); row++)
+        {
+            if (!scene_.isUsed(index[row]))
+                continue;
+            observations_[scene_.clusterOf(index[row])].push_back({ i, row });
+            rootWeights[row] = isInlier.empty() || isInlier[i][row] ? 1 : 0;
+        }
+        setRootWeights(i, rootWeights);
+    }
+    placePoints(scene_.points());
+}
+
+std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) const
+{
+    const Camera* camera = cameras_[image.camera].camera(image.refracted);
+    if (!camera)
+        return std::vector<double>(image.points.pixel.size(), std::numeric_limits<double>::infinity());
+    const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
+    const Extrinsics toCamera1(pose);
+    std::vector<double> errors;
+    for (size_t i = 0; i < image.points.pixel.size(); i++)
+    {
+        const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(image.points.object[i])));
+        Point2d pixel;
+        uchar status = REFRACT_OK;
+        camera->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+        errors.push_back(status == REFRACT_OK ? norm(pixel - image.points.pixel[i]) :
+                         std::numeric_limits<double>::infinity());
+    }
+    return errors;
+}
+
+FitOutcome Problem::findPointWithoutImage() const
+{
+    for (const Image& image : images_)
+    {
+        const Camera* camera = cameras_[image.camera].camera(image.refracted);
+        FitOutcome outcome(FitOutcome::NO_IMAGE);
+        outcome.camera = image.camera;
+        outcome.view = image.view;
+        outcome.refracted = image.refracted;
+        if (!camera)
+        {
+            const WindowTransfer* window = cameras_[image.camera].window.get();
+            CV_Assert(window);
+            outcome.status = window->normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
+            outcome.point = Point3d(window->normal);
+            outcome.distance = window->distance;
+            return outcome;
+        }
+        const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
+        const Extrinsics toCamera1(pose(image.view));
+        for (size_t i = 0; i < image.points.object.size(); i++)
+        {
+            if (image.rootWeights[i] == 0)
+                continue;
+            outcome.point = image.points.object[i];
+            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(outcome.point)));
+            double u, v;
+            uchar status = REFRACT_OK;
+            camera->project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+            outcome.imageStatus = status;
+            if (status != REFRACT_OK)
+                return outcome;
+        }
+    }
+    return FitOutcome();
+}
+
+bool Problem::evaluate(const Image& image, const std::vector<double>& rootWeights, Wanted wanted, Derivatives& result) const
+{
+    const ImageResidual residual(cameras_[image.camera], image.points, rootWeights,
+                                 { image.refracted, image.camera == 0, rig_.owner[image.camera] == 0 });
+    const double* const pose = blocks_[poseBlock(image.view)].values.data();
+    const int rows = residual.count();
+    result.residuals.resize(rows);
+    if (wanted == RESIDUALS)
+        return residual.evaluate(pose, result.residuals.data(), nullptr);
+    const std::vector<int>& sizes = residual.blockSizes();
+    std::vector<double*> jacobians(sizes.size(), nullptr);
+    result.byPose.resize(rows, 6);
+    jacobians[0] = result.byPose.data();
+    if (wanted == ALL)
+    {
+        result.byBlock.resize(sizes.size() - 1);
+        for (size_t i = 1; i < sizes.size(); i++)
+        {
+            result.byBlock[i - 1].resize(rows, sizes[i]);
+            jacobians[i] = result.byBlock[i - 1].data();
+        }
+    }
+    return residual.evaluate(pose, result.residuals.data(), jacobians.data());
+}
+
+double Problem::squaredPixelError(const Image& image) const
+{
+    Derivatives result;
+    evaluate(image, image.rootWeights, RESIDUALS, result);
+    return result.residuals.squaredNorm();
+}
+
+double Problem::squaredError() const
+{
+    double sum = 0;
+    for (const Image& image : images_)
+        sum += squaredPixelError(image);
+    for (int block = 0; block < (int)blocks_.size(); block++)
+        sum += priorResidual(block).squaredNorm();
+    Eigen::RowVectorXd byValues;
+    for (const Cluster& cluster : scene_.clusters())
+        for (const KnownLength& length : cluster.lengths)
+            sum += std::pow(pixelSigma_*cluster.residual(length, byValues), 2);
+    return sum;
+}
+
+bool Problem::isActive(int block) const
+{
+    return blocks_[block].kind != ParameterBlock::POSE || isAdjusted(blocks_[block].index);
+}
+
+Eigen::MatrixXd Problem::priorRows(int block) const
+{
+    const Eigen::MatrixXd& rows = blocks_[block].sqrtInformation;
+    return isActive(block) ? Eigen::MatrixXd(pixelSigma_*rows) : Eigen::MatrixXd(0, rows.cols());
+}
+
+Eigen::VectorXd Problem::priorResidual(int block) const
+{
+    return priorRows(block)*(blocks_[block].values - blocks_[block].priorMean);
+}
+
+int Problem::equationCount() const
+{
+    int count = 2*pointCount() + scene_.lengthCount();
+    for (int block = 0; block < (int)blocks_.size(); block++)
+        count += isActive(block) ? (int)blocks_[block].sqrtInformation.rows() : 0;
+    return count;
+}
+
+int Problem::unknownCount() const
+{
+    int count = scene_.coordinateCount();
+    for (int block = 0; block < (int)blocks_.size(); block++)
+        count += isActive(block) ? (int)blocks_[block].tangentBasis().cols() : 0;
+    return count;
+}
+
+//! The first row of a block. A window has rows in every camera that looks through it.
+int Problem::publicRow(ParameterBlock::Kind kind, int camera) const
+{
+    int row = 0;
+    if (kind == ParameterBlock::EXTRINSICS)
+    {
+        for (const Camera& c : rig_.cameras)
+            row += c.parameterCount();
+        return row + 6*(camera - 1);
+    }
+    for (int c = 0; c < camera; c++)
+        row += rig_.cameras[c].parameterCount();
+    const Camera& camera_ = rig_.cameras[camera];
+    const WindowLayout& at = camera_.layers().at();
+    return row + (kind == ParameterBlock::LENS ? 0 : camera_.lensCount() + (kind == ParameterBlock::NORMAL ? at.normal : at.media));
+}
+
+Eigen::MatrixXd Problem::publicBasis() const
+{
+    int count = 0;
+    for (int i = 0; i < cameraBlocks_; i++)
+        count += (int)blocks_[i].tangentBasis().cols();
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(publicCount(), count);
+    int column = 0;
+    for (int i = 0; i < cameraBlocks_; i++)
+    {
+        const Eigen::MatrixXd tangent = blocks_[i].tangentBasis();
+        basis.block(publicRow(blocks_[i].kind, blocks_[i].index), column, tangent.rows(), tangent.cols()) = tangent;
+        column += (int)tangent.cols();
+    }
+    for (int c = 0; c < rig_.count(); c++)
+        if (!rig_.owns(c))
+            addSharedWindow(c, basis);
+    return basis;
+}
+
+//! The rows of a window in a camera that does not own it.
+void Problem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
+{
+    const int owner = rig_.owner[camera], row = publicRow(ParameterBlock::NORMAL, camera);
+    const int ownerRow = publicRow(ParameterBlock::NORMAL, owner);
+    const WindowTransfer& window = *cameras_[camera].window;
+    Eigen::MatrixXd rows = window.byWindow*basis.middleRows<4>(ownerRow);
+    if (camera > 0)
+        rows += window.byCamera*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, camera));
+    if (owner > 0)
+        rows += window.byOwner*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, owner));
+    basis.middleRows<4>(row) = rows;
+    const WindowLayout& at = rig_.cameras[camera].layers().at();
+    const int rest = at.thickness - at.normal, others = at.count - at.thickness;
+    basis.middleRows(row + rest, others) = basis.middleRows(ownerRow + rest, others).eval();
+}
+
+}} // namespace

@@ -1,0 +1,186 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_PROBLEM_HPP
+#define OPENCV_REFRACT_PROBLEM_HPP
+
+#include "adjust/fit_outcome.hpp"
+#include "adjust/parameter_block.hpp"
+#include "adjust/residual.hpp"
+#include "adjust/scene.hpp"
+
+namespace cv { namespace refract {
+
+//! The cameras: lens and window of each, and where they are.
+struct Rig
+{
+    std::vector<Camera> cameras;
+    std::vector<int> owner;             //!< the first camera that looks through the same window, whose frame describes it
+    std::vector<Pose> extrinsics;       //!< camera 1 -> camera; the first is the identity
+
+    int count() const { return (int)cameras.size(); }
+    bool owns(int c) const { return owner[c] == c; }
+};
+
+//! What is known of a view's pose from outside.
+struct PosePrior
+{
+    enum Kind { NONE, EXACT, UNCERTAIN };
+    Kind kind = NONE;
+    Matrix6 sqrtInformation;            //!< W, W^T W = inverse of the covariance; UNCERTAIN only
+};
+
+/** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window. A
+parameter with a variance is estimated, within it. A lens parameter with none is exact; NaN or empty: nothing is known. */
+struct CameraPrior
+{
+    Eigen::MatrixXd covariance;
+};
+
+//! One image of the problem.
+struct Image
+{
+    int view, camera;
+    bool refracted;
+    ImagePoints points;
+    std::vector<double> rootWeights;    //!< one per point; 0: left out
+
+    int usedCount() const { return (int)std::count_if(rootWeights.begin(), rootWeights.end(),
+                                                      [](double w) { return w > 0; }); }
+};
+
+typedef std::vector<std::vector<uchar> > Masks;     //!< per image, per point of it; 1: an inlier
+
+//! One point in one image: which of the image's points it is.
+struct Observation
+{
+    int image, row;
+};
+
+/** The joint problem: cameras, each behind its own window or several behind one, a pose (object -> camera 1) for each view, and
+every observed point of every image, through the window or direct. The points are known (targets; a calibration), or free: one
+scene that all views show (a bundle adjustment). Maximum likelihood under equal isotropic pixel noise.
+
+What is free are blocks of parameters. Some stand by themselves (outer blocks: of the cameras, and of a scene's views the poses);
+the others follow from them, each from its own observations alone (inner blocks: the poses of targets, the clusters of a scene),
+so the fit eliminates them.
+
+The public parameters are, per camera, those of Camera::parameters(), then rvec and T of each camera but the first. What is
+free is said by GlassCalibrationFlags. */
+class Problem
+{
+public:
+    /** Known targets. The start of what is known is the known value.
+    @param posePriors one per view, or empty
+    @param cameraPriors one per camera, or empty; throws if one is not positive definite */
+    Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
+            const std::vector<CameraPrior>& cameraPriors, int flags);
+    /** A scene.
+    @param pixels per camera, per view: one per scene point, or none */
+    Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
+            const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags);
+    Problem(const Problem&) = delete;
+    Problem& operator=(const Problem&) = delete;
+
+    // Images
+    int viewCount() const { return (int)imagesOfView_.size(); }
+    int cameraCount() const { return rig_.count(); }
+    const std::vector<Image>& images() const { return images_; }
+    //! Indices into images().
+    const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
+    void setRootWeights(int image, const std::vector<double>& rootWeights);
+    int pointCount() const;             //!< of those with a weight
+    /** Distance of each predicted from the observed pixel, whatever its weight, with this pose; infinite without image. */
+    std::vector<double> pixelErrors(const Image& image, const Pose& pose) const;
+    std::vector<double> pixelErrors(const Image& image) const { return pixelErrors(image, pose(image.view)); }
+    double squaredPixelError(const Image& image) const;     //!< weighted
+    //! The first point with a weight that has no image; or which window no camera can look through so.
+    FitOutcome findPointWithoutImage() const;
+
+    // Parameters
+    const std::vector<ParameterBlock>& blocks() const { return blocks_; }
+    std::vector<ParameterBlock>& blocks() { return blocks_; }     //!< updateCameras() after a change
+    int outerCount() const { return hasScene() ? (int)blocks_.size() : poseBlock(0); }     //!< blocks; these come first
+    int poseBlock(int view) const { return cameraBlocks_ + view; }
+    //! Indices into blocks(), in the order of ImageResidual's blocks after the pose.
+    std::vector<int> cameraBlocksOf(const Image& image) const;
+    //! The cameras at the current values of the blocks.
+    void updateCameras();
+    Rig rig() const;                    //!< with the current parameters
+    Camera camera(int c) const;
+    Pose pose(int view) const;
+    void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
+    bool isAdjusted(int view) const { return isSeen_[view] && blocks_[poseBlock(view)].isFree[0]; }
+
+    // A scene
+    bool hasScene() const { return scene_.pointCount() > 0; }
+    Scene& scene() { return scene_; }
+    const Scene& scene() const { return scene_; }
+    /** Which points are in use, and where they are. What is not in use has no weight in any image.
+    @param points NaN: not in use
+    @param isInlier 0 is left out; empty: all are used */
+    void setPoints(const std::vector<Point3d>& points, const Masks& isInlier);
+    //! Copies the scene's points to where the residuals look for them; what is not in use stays where it was.
+    void placePoints(const std::vector<Point3d>& points);
+    //! Of all its points, also those that are left out.
+    const std::vector<Observation>& observationsOf(int cluster) const { return observations_[cluster]; }
+
+    // Equations
+    //! Standard deviation of a pixel coordinate, against which priors and lengths are weighed.
+    void setPixelSigma(double sigma) { pixelSigma_ = sigma; }
+    double pixelSigma() const { return pixelSigma_; }
+    bool hasPriors() const { return equationCount() > 2*pointCount(); }     //!< or lengths
+    int equationCount() const;
+    int unknownCount() const;
+    int freedom() const { return equationCount() - unknownCount(); }
+    double squaredError() const;        //!< weighted; of images, lengths and priors
+    //! A block's prior counts as so many more residuals. Their derivatives by the block; none where it does not count now.
+    Eigen::MatrixXd priorRows(int block) const;
+    Eigen::VectorXd priorResidual(int block) const;
+
+    //! One image's residuals and their derivatives: by its pose, and by all coordinates of cameraBlocksOf().
+    struct Derivatives
+    {
+        Eigen::VectorXd residuals;
+        RowMajorMatrix byPose;
+        std::vector<RowMajorMatrix> byBlock;
+    };
+    enum Wanted { RESIDUALS, BY_POSE, ALL };
+    //! @return false where a point with a weight has no image; its residuals are infinite
+    bool evaluate(const Image& image, const std::vector<double>& rootWeights, Wanted wanted, Derivatives& result) const;
+
+    /** d public parameters / d free coordinates of the camera blocks, in their order. What the other cameras see of a shared
+    window follows from its owner's. */
+    Eigen::MatrixXd publicBasis() const;
+    int publicCount() const { return publicRow(ParameterBlock::EXTRINSICS, rig_.count()); }
+
+private:
+    void addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
+                   const std::vector<CameraPrior>& cameraPriors, int flags);
+    ParameterBlock& addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
+                             const std::vector<String>& names, const std::vector<bool>& isFree);
+    void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
+    void addImages(const RigViews& views);
+    bool isActive(int block) const;
+    int blockOf(ParameterBlock::Kind kind, int camera) const;
+    const double* valuesOf(ParameterBlock::Kind kind, int camera) const;    //!< null for the extrinsics of camera 1
+    int publicRow(ParameterBlock::Kind kind, int camera) const;
+    void addSharedWindow(int camera, Eigen::MatrixXd& basis) const;
+
+    Rig rig_;                           //!< lens models and numbers of layers
+    std::vector<RigCamera> cameras_;
+    std::vector<Image> images_;
+    std::vector<std::vector<int> > imagesOfView_;
+    std::vector<bool> isSeen_;          //!< per view: some image has a weight
+    std::vector<double> values_;        //!< of all blocks, one after the other
+    std::vector<ParameterBlock> blocks_;
+    int cameraBlocks_;
+    Scene scene_;
+    std::vector<std::vector<Observation> > observations_;
+    double pixelSigma_;
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_PROBLEM_HPP

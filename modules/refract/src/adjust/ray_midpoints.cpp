@@ -1,0 +1,136 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* The point X that is nearest to rays o_i + s d_i in the sense of least squares: sum (I - d_i d_i^T) (X - o_i) = 0. */
+
+#include "adjust/ray_midpoints.hpp"
+#include "arrays/arrays.hpp"
+#include <Eigen/Eigenvalues>
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+//! What the rays to one point add up to.
+struct RaySum
+{
+    Matx33d across = Matx33d::zeros();
+    Vec3d offset;
+    int rays = 0;
+
+    void add(const Vec3d& origin, const Vec3d& direction)
+    {
+        const Matx33d projector = Matx33d::eye() - direction*direction.t();
+        across += projector;
+        offset += projector*origin;
+        rays++;
+    }
+
+    Vec3d point() const
+    {
+        const double PARALLEL = 1e-12;      // squared sine
+        typedef Eigen::Matrix<double, 3, 3, Eigen::RowMajor> Matrix3;
+        const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(Eigen::Map<const Matrix3>(across.val));
+        if (rays < 2 || !(eigen.eigenvalues()[0] > PARALLEL*rays))
+            return Vec3d::all(NaN);
+        return across.inv(DECOMP_CHOLESKY)*offset;
+    }
+};
+
+//! Scene -> camera of an image.
+struct ImagePlace
+{
+    ImagePlace(const Problem& problem, const Rig& cameras, const Image& image)
+    {
+        const Extrinsics toCamera(cameras.extrinsics[image.camera]), toCamera1(problem.pose(image.view));
+        R = toCamera.rotation.R*toCamera1.rotation.R;
+        t = toCamera.apply(toCamera1.T);
+    }
+    Matx33d R;
+    Vec3d t;
+};
+
+//! @param isUsed per point of the image; empty: all
+void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& points, const std::vector<uchar>& isUsed,
+             std::vector<RaySum>& sums)
+{
+    const Vec3d normal = camera.layers().normal();
+    for (int begin = 0; begin < (int)points.pixel.size(); begin += BLOCK)
+    {
+        const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
+        double u[BLOCK], v[BLOCK], tau[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK];
+        uchar status[BLOCK];
+        for (int k = 0; k < n; k++)
+        {
+            u[k] = points.pixel[begin + k].x;
+            v[k] = points.pixel[begin + k].y;
+            status[k] = REFRACT_OK;
+        }
+        camera.unproject(n, u, v, tau, x, y, z, status);
+        for (int k = 0; k < n; k++)
+            if (status[k] == REFRACT_OK && (isUsed.empty() || isUsed[begin + k]))
+                sums[points.index[begin + k]].add(place.R.t()*(tau[k]*normal - place.t),
+                                                      place.R.t()*Vec3d(x[k], y[k], z[k]));
+    }
+}
+
+bool hasImage(const Camera& camera, const ImagePlace& place, const Point3d& point)
+{
+    const Vec3d X = place.R*Vec3d(point) + place.t;
+    double u, v;
+    uchar status = REFRACT_OK;
+    camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+    return status == REFRACT_OK;
+}
+
+} // namespace
+
+std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point3d>& given)
+{
+    const Rig rig = problem.rig();
+    std::vector<RaySum> sums(given.size());
+    std::vector<ImagePlace> places;
+    std::vector<int> seen(given.size(), 0);
+    for (const Image& image : problem.images())
+    {
+        places.push_back(ImagePlace(problem, rig, image));
+        addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), sums);
+        for (int index : image.points.index)
+            seen[index]++;
+    }
+    std::vector<Point3d> points = given;
+    for (size_t i = 0; i < points.size(); i++)
+        if (seen[i] < 2)
+            points[i] = Point3d(NaN, NaN, NaN);
+        else if (!std::isfinite(given[i].x))
+            points[i] = sums[i].point();
+    for (size_t k = 0; k < places.size(); k++)
+    {
+        const Image& image = problem.images()[k];
+        for (int index : image.points.index)
+            if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k], points[index]))
+                points[index] = Point3d(NaN, NaN, NaN);
+    }
+    return points;
+}
+
+std::vector<Point3d> rayMidpoints(const Problem& problem, int pointCount, const std::vector<std::vector<uchar> >& isUsed)
+{
+    const Rig rig = problem.rig();
+    std::vector<RaySum> sums(pointCount);
+    for (size_t i = 0; i < isUsed.size(); i++)
+    {
+        const Image& image = problem.images()[i];
+        if (std::any_of(isUsed[i].begin(), isUsed[i].end(), [](uchar used) { return used != 0; }))
+            addRays(rig.cameras[image.camera], ImagePlace(problem, rig, image), image.points, isUsed[i], sums);
+    }
+    std::vector<Point3d> points;
+    for (const RaySum& sum : sums)
+        points.push_back(Point3d(sum.point()));
+    return points;
+}
+
+}} // namespace

@@ -1,0 +1,109 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "adjust/reduced_cost.hpp"
+#include "adjust/inner.hpp"
+
+namespace cv { namespace refract {
+
+using Eigen::VectorXd;
+
+ReducedCost::ReducedCost(Problem& problem) : problem_(problem), isCurrent_(false), squaredError_(0)
+{
+    const FreeSpace space(problem, false);
+    count_ = space.count;
+    for (int block = 0; block < problem.outerCount(); block++)
+        if (space.columnsOf(block) > 0)
+        {
+            variable_.push_back(block);
+            mutable_parameter_block_sizes()->push_back((int)problem.blocks()[block].values.size());
+        }
+    set_num_residuals(count_ + 1);
+}
+
+//! False if it is there already.
+bool ReducedCost::moveTo(double const* const* parameters) const
+{
+    bool hasMoved = false;
+    for (size_t i = 0; i < variable_.size(); i++)
+    {
+        Eigen::Map<VectorXd>& values = problem_.blocks()[variable_[i]].values;
+        const Eigen::Map<const VectorXd> wanted(parameters[i], values.size());
+        hasMoved = hasMoved || values != wanted;
+        values = wanted;
+    }
+    problem_.updateCameras();
+    return hasMoved;
+}
+
+void ReducedCost::predictInner() const
+{
+    VectorXd change = VectorXd::Zero(count_);
+    for (size_t i = 0; i < variable_.size(); i++)
+    {
+        const int block = variable_[i], own = anchor_->space.columnsOf(block);
+        change.segment(anchor_->space.first[block], own) =
+            anchor_->space.bases[block].transpose()*(problem_.blocks()[block].values - anchor_->values[i]);
+    }
+    VectorXd inner = anchor_->inner;
+    int at = 0;
+    for (const InnerBlock& block : anchor_->blocks)
+    {
+        const int size = (int)block.byOuter.rows();
+        VectorXd own(block.columns.size());
+        for (size_t k = 0; k < block.columns.size(); k++)
+            own[k] = change[block.columns[k]];
+        inner.segment(at, size) += block.byOuter*own;
+        at += size;
+    }
+    setInnerValues(problem_, inner);
+}
+
+bool ReducedCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
+{
+    if (moveTo(parameters) || !isCurrent_)
+    {
+        if (anchor_)
+            predictInner();
+        isCurrent_ = optimizeInner(problem_, squaredError_);
+        if (!isCurrent_ && anchor_)
+        {
+            setInnerValues(problem_, anchor_->inner);       // the prediction may have gone too far
+            isCurrent_ = optimizeInner(problem_, squaredError_);
+        }
+        if (!isCurrent_)
+            return false;
+    }
+    Eigen::Map<VectorXd> r(residuals, count_ + 1);
+    r.setZero();
+    r[count_] = std::sqrt(squaredError_);
+    if (!jacobians)
+        return true;
+    const FreeSpace space(problem_, false);
+    const std::vector<ImageRows> images = linearize(problem_, space);
+    Information information = problem_.hasScene() ? eliminatePoints(problem_, space, images)
+                                                  : eliminatePoses(problem_, space, images);
+    r.head(count_) = information.residual;
+    r[count_] = std::sqrt(std::max(squaredError_ - information.residual.squaredNorm(), 0.));
+    fillJacobians(information, space, jacobians);
+    anchor_.reset(new Anchor{ {}, space, innerValues(problem_), std::move(information.inner) });
+    for (int block : variable_)
+        anchor_->values.push_back(problem_.blocks()[block].values);
+    return true;
+}
+
+void ReducedCost::fillJacobians(const Information& information, const FreeSpace& space, double** jacobians) const
+{
+    for (size_t i = 0; i < variable_.size(); i++)
+    {
+        if (!jacobians[i])
+            continue;
+        const int block = variable_[i];
+        Eigen::Map<RowMajorMatrix> J(jacobians[i], count_ + 1, problem_.blocks()[block].values.size());
+        J.topRows(count_) = information.root.middleCols(space.first[block], space.columnsOf(block))*space.bases[block].transpose();
+        J.bottomRows<1>().setZero();
+    }
+}
+
+}} // namespace

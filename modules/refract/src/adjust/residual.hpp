@@ -1,0 +1,59 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_RESIDUAL_HPP
+#define OPENCV_REFRACT_RESIDUAL_HPP
+
+#include "adjust/rig_camera.hpp"
+#include "arrays/views.hpp"
+
+namespace cv { namespace refract {
+
+/** Predicted minus observed pixel of all points of one image, with analytic derivatives through Camera::projectJacobian.
+
+    object --pose--> camera 1 --extrinsics--> camera --window, lens--> pixel
+
+The camera is evaluated once for all its images (RigCamera). Blocks in this order: pose (rvec, tvec; 6), extrinsics (rvec, T; 6)
+but for camera 1, lens, and through a window its normal (3, unit), media, and the owner's extrinsics if the window is neither the
+camera's own nor camera 1's.
+
+Every point has a weight: its residual is multiplied by the weight's root. 0: left out. */
+class ImageResidual
+{
+public:
+    struct Kind
+    {
+        bool refracted, isCamera1, ownerIsCamera1;
+    };
+    //! All arguments must outlive it. rootWeights: one per point.
+    ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights, const Kind& kind);
+
+    int count() const { return 2*(int)points_.pixel.size(); }
+    const std::vector<int>& blockSizes() const { return sizes_; }
+
+    /** @param residuals u, v of each point; infinite where one with a weight has no image
+    @param jacobians null, or count() x size of each block, row by row; null where it is not wanted
+    @return false if some point with a weight has no image, or the camera is impossible */
+    bool evaluate(const double* pose, double* residuals, double** jacobians) const;
+
+private:
+    struct Point;
+    bool project(const Camera& camera, const double* pose, double* residuals) const;
+    bool linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const;
+    void placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
+                     uchar* status) const;
+    bool writeResidual(int i, double u, double v, uchar status, double* residuals) const;
+    void writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const;
+
+    const RigCamera& camera_;
+    const ImagePoints& points_;
+    const std::vector<double>& rootWeights_;
+    bool refracted_;
+    std::vector<int> sizes_;
+    int extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_RESIDUAL_HPP

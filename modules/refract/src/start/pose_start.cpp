@@ -1,0 +1,116 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Starts of the views' poses. */
+
+#include "start/pose_start.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+struct PoseSource
+{
+    int camera, count;
+    bool operator<(const PoseSource& other) const { return count > other.count; }
+};
+
+//! The images of one view from which a pose can be had, the best first.
+std::vector<PoseSource> poseSources(const RigViews& views, int view, bool direct)
+{
+    std::vector<PoseSource> sources;
+    for (int c = 0; c < (int)views.cameras.size(); c++)
+    {
+        const PixelViews& pixels = direct ? views.cameras[c].direct : views.cameras[c].refracted;
+        const PoseSource source = { c, countSeen(pixels[view]) };
+        if (source.count >= 4)
+            sources.push_back(source);
+    }
+    std::stable_sort(sources.begin(), sources.end());
+    return sources;
+}
+
+Pose poseOfView(const std::vector<Camera>& cameras, const Rig& rig, const RigViews& views, int view, bool direct)
+{
+    for (const PoseSource& source : poseSources(views, view, direct))
+    {
+        const CameraViews& seen = views.cameras[source.camera];
+        double rms;
+        const Pose pose = solvePose(cameras[source.camera], views.object[view], (direct ? seen.direct : seen.refracted)[view],
+                                    Pose(), rms);
+        if (pose.found)
+            return source.camera == 0 ? pose : inCamera1(pose, rig.extrinsics[source.camera]);
+    }
+    return Pose();
+}
+
+} // namespace
+
+static std::vector<Camera> withoutWindows(const Rig& rig)
+{
+    std::vector<Camera> bare;
+    for (const Camera& camera : rig.cameras)
+        bare.push_back(withWindow(camera));
+    return bare;
+}
+
+std::vector<Pose> posesWithoutWindow(const Rig& rig, const RigViews& views, const std::vector<Pose>& known)
+{
+    const std::vector<Camera> bare = withoutWindows(rig);
+    std::vector<Pose> poses = known;
+    poses.resize(views.count());
+    for (int view = 0; view < views.count(); view++)
+        if (!poses[view].found)
+            poses[view] = poseOfView(bare, rig, views, view, true);
+    return poses;
+}
+
+void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses)
+{
+    for (int view = 0; view < views.count(); view++)
+        if (!poses[view].found)
+            poses[view] = poseOfView(rig.cameras, rig, views, view, false);
+}
+
+void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses)
+{
+    const std::vector<Camera> bare = withoutWindows(rig);
+    for (int view = 0; view < views.count(); view++)
+        if (!poses[view].found)
+            poses[view] = poseOfView(bare, rig, views, view, false);
+}
+
+FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses)
+{
+    FitOutcome outcome;
+    for (int view = 0; view < views.count() && outcome.converged(); view++)
+    {
+        if (poses[view].found)
+            continue;
+        outcome.status = FitOutcome::NO_POSE;
+        outcome.view = view;
+        for (bool direct : { true, false })
+            for (const PoseSource& source : poseSources(views, view, direct))
+                outcome.count = std::max(outcome.count, source.count);
+    }
+    return outcome;
+}
+
+RigViews inlierViews(const Rig& rig, const RigViews& views)
+{
+    RigViews inliers = views;
+    for (int c = 0; c < rig.count(); c++)
+    {
+        const Camera bare = withWindow(rig.cameras[c]);
+        for (int view = 0; view < views.count(); view++)
+        {
+            CameraViews& seen = inliers.cameras[c];
+            seen.direct[view] = pointsOfOnePose(bare, views.object[view], seen.direct[view]);
+            seen.refracted[view] = pointsOfOnePose(rig.cameras[c], views.object[view], seen.refracted[view]);
+        }
+    }
+    return inliers;
+}
+
+}} // namespace

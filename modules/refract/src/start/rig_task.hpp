@@ -1,0 +1,32 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_RIG_TASK_HPP
+#define OPENCV_REFRACT_RIG_TASK_HPP
+
+#include "adjust/problem.hpp"
+
+namespace cv { namespace refract {
+
+//! What the calibrators are given beside the cameras.
+struct RigTask
+{
+    RigViews views;
+    std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
+    std::vector<PosePrior> posePriors;          //!< of the same
+    std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
+    int flags;
+    TermCriteria criteria;
+    bool wantsJacobian = false;
+
+    bool isRobust() const { return (flags & GLASS_ROBUST) != 0; }
+    //! Images through the windows alone have to tell the lenses too.
+    bool isSealed() const;
+    //! A sealed rig of which hardly anything is known: its cameras are fitted alone first.
+    bool isIncremental() const;
+};
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_RIG_TASK_HPP

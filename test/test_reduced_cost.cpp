@@ -1,0 +1,143 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// What Ceres is given: one cost, the poses of targets or the points of a scene being at their best.
+#include "adjust/inner.hpp"
+#include "adjust/reduced_cost.hpp"
+#include "bundle_scenes.hpp"
+#include "problem_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+//! The cost by values of its own, one block after the other.
+class Cost
+{
+public:
+    explicit Cost(Problem& problem) : cost(problem)
+    {
+        for (int block : cost.variableBlocks())
+            values.push_back(problem.blocks()[block].values);
+    }
+    std::vector<const double*> parameters() const
+    {
+        std::vector<const double*> p;
+        for (const VectorXd& block : values)
+            p.push_back(block.data());
+        return p;
+    }
+    double squaredError()
+    {
+        VectorXd residuals(cost.num_residuals());
+        REQUIRE(cost.Evaluate(parameters().data(), residuals.data(), nullptr));
+        return residuals.squaredNorm();
+    }
+    //! By each block.
+    std::vector<VectorXd> gradient()
+    {
+        VectorXd residuals(cost.num_residuals());
+        std::vector<RowMajorMatrix> jacobians;
+        std::vector<double*> pointers;
+        for (const VectorXd& block : values)
+            jacobians.push_back(RowMajorMatrix(cost.num_residuals(), block.size()));
+        for (RowMajorMatrix& J : jacobians)
+            pointers.push_back(J.data());
+        REQUIRE(cost.Evaluate(parameters().data(), residuals.data(), pointers.data()));
+        std::vector<VectorXd> gradients;
+        for (const RowMajorMatrix& J : jacobians)
+            gradients.push_back(2*J.transpose()*residuals);
+        return gradients;
+    }
+
+    ReducedCost cost;
+    std::vector<VectorXd> values;
+};
+
+//! Of the squared error along every free coordinate, against central differences; relative to its largest part in the block.
+double largestGradientError(Problem& problem)
+{
+    Cost cost(problem);
+    const FreeSpace space(problem);
+    const std::vector<VectorXd> gradient = cost.gradient();
+    double largest = 0;
+    for (size_t k = 0; k < cost.values.size(); k++)
+    {
+        const MatrixXd& basis = space.bases[cost.cost.variableBlocks()[k]];
+        const VectorXd exact = basis.transpose()*gradient[k];
+        for (int i = 0; i < basis.cols(); i++)
+        {
+            const VectorXd kept = cost.values[k];
+            const double step = 1e-5*std::max(0.1, std::abs(kept.dot(basis.col(i))));
+            cost.values[k] = kept + step*basis.col(i);
+            const double above = cost.squaredError();
+            cost.values[k] = kept - step*basis.col(i);
+            const double below = cost.squaredError();
+            cost.values[k] = kept;
+            largest = std::max(largest, std::abs((above - below)/(2*step) - exact[i])/exact.norm());
+        }
+    }
+    return largest;
+}
+
+} // namespace
+
+TEST_CASE("The gradient is that of the squared error with the best poses", "[adjust]")
+{
+    CAPTURE(seed());
+    for (bool shared : { false, true })
+    {
+        Random random(31);
+        const RigTruth truth = makeRig(2, shared ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 }, 1.333);
+        const RigScene scene = makeRigScene(truth, 4, random, 0.5);
+        const std::unique_ptr<Problem> problem = problemAt(truth, scene, true, GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE |
+                                                           GLASS_FREE_INTRINSICS | GLASS_FREE_INDEX);
+        CAPTURE(shared);
+        CHECK(largestGradientError(*problem) < 1e-5);
+    }
+}
+
+TEST_CASE("The gradient is that of the squared error with the best points", "[adjust]")
+{
+    CAPTURE(seed());
+    for (bool moves : { false, true })
+    {
+        CAPTURE(moves);
+        Random random(9);
+        const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
+        BundleScene scene = moves ? makeMovingScene(truth, 4, 20, random, 0.5) : makeWandScene(truth, 15, random, 0.5, 0.05);
+        keepWhatAllSee(scene);
+        const std::unique_ptr<Problem> problem = bundleAt(truth, scene, 0.5, GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+        CHECK(largestGradientError(*problem) < 1e-5);
+    }
+}
+
+TEST_CASE("What a step of the outer parameters does to the inner ones is what the linearisation says", "[adjust]")
+{
+    CAPTURE(seed());
+    Random random(33);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const RigScene scene = makeRigScene(truth, 3, random, 0.2);
+    const std::unique_ptr<Problem> problem = problemAt(truth, scene, false, GLASS_FREE_DISTANCE);
+    double squaredError;
+    REQUIRE(optimizeInner(*problem, squaredError));
+    const FreeSpace space(*problem);
+    const Information information = informationOf(*problem);
+    const VectorXd before = innerValues(*problem);
+    ParameterBlock& media = problem->blocks()[2];
+    REQUIRE(media.kind == ParameterBlock::MEDIA);
+    const double step = 1e-3;
+    media.values[0] += step;
+    problem->updateCameras();
+    REQUIRE(optimizeInner(*problem, squaredError));
+    const VectorXd change = (innerValues(*problem) - before)/step;
+    for (int view = 0; view < 3; view++)
+    {
+        const VectorXd predicted = information.inner[view].byOuter.col(space.first[2]);
+        CHECK((change.segment<6>(6*view) - predicted).norm() < 1e-3*predicted.norm());
+    }
+}
