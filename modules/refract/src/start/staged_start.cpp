@@ -206,6 +206,8 @@ bool assemble(const Rig& given, const std::vector<Seer>& seers, const std::vecto
         if (!given.owns(c))
             continue;
         GlassWindow window = transferred(seers[from].camera.window(), start.rig.extrinsics[from], start.rig.extrinsics[c]);
+        if (!(window.normal[2] > 0))
+            return false;
         if (!(flags & GLASS_FREE_DISTANCE))
             window.distance = given.cameras[c].window().distance;
         start.rig.cameras[c].setWindow(window);

@@ -280,13 +280,15 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     return window;
 }
 
-//! The distance of the window of an owner from another camera; negative beyond it.
-double distanceFrom(const Rig& rig, int c)
+//! The window of an owner as another camera sees it; the distance is negative beyond it.
+WindowTransfer seenFrom(const Rig& rig, int c)
 {
     const GlassWindow window = rig.cameras[rig.owner[c]].window();
     return WindowTransfer(window.normal, window.distance, Extrinsics(rig.extrinsics[rig.owner[c]]),
-                          Extrinsics(rig.extrinsics[c])).distance;
+                          Extrinsics(rig.extrinsics[c]));
 }
+
+double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
 
 } // namespace
 
@@ -333,7 +335,7 @@ void giveToNearest(Rig& rig)
             continue;
         int nearest = owner;
         for (int c = owner + 1; c < rig.count(); c++)
-            if (given[c] == owner && distanceFrom(rig, c) < distanceFrom(rig, nearest))
+            if (given[c] == owner && seenFrom(rig, c).normal[2] > 0 && distanceFrom(rig, c) < distanceFrom(rig, nearest))
                 nearest = c;
         if (nearest == owner)
             continue;

@@ -1,0 +1,73 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Four real cameras behind one wall of a tank (proPTV's comparison): a lens with more coefficients than one view determines.
+#include "real_data.hpp"
+#include "scenes.hpp"
+
+#include <fstream>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+struct Markers
+{
+    std::vector<Point3d> object;
+    std::vector<Point2d> pixels;
+};
+
+Markers readMarkers(const std::string& path)
+{
+    Markers markers;
+    std::ifstream file(path);
+    std::string heading;
+    std::getline(file, heading);
+    for (double u, v, x, y, z; file >> u >> v >> x >> y >> z;)
+    {
+        markers.object.push_back({ x, y, z });
+        markers.pixels.push_back({ u, v });
+    }
+    return markers;
+}
+
+} // namespace
+
+TEST_CASE("A lens that one view hardly determines is answered within 100 iterations, with a large uncertainty", "[real]")
+{
+    for (int c = 0; c < 4; c++)
+    {
+        const std::string path = paths::data() + format("/proptv/markers_c%d.txt", c);
+        const Markers all = readMarkers(path);
+        if (all.object.empty())
+        {
+            WARN("SKIPPED: there is no " << path);
+            return;
+        }
+        for (int half = 0; half < 2; half++)
+        {
+            Markers some;
+            for (size_t i = half; i < all.object.size(); i += 2)
+            {
+                some.object.push_back(all.object[i]);
+                some.pixels.push_back(all.pixels[i]);
+            }
+            GlassWindow window;
+            window.distance = 300;
+            window.outerIndex = 1.333;
+            const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(2000, 0, 1024, 0, 2000, 1024, 0, 0, 1),
+                                                                          std::vector<double>(5, 0.), window);
+            Mat rvecs, tvecs, deviations;
+            const double rms = calibrateGlass(std::vector<std::vector<Point3d> >{ some.object }, noArray(),
+                                              std::vector<std::vector<Point2d> >{ some.pixels }, camera, rvecs, tvecs, deviations,
+                                              noArray(), noArray(), noArray(), GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS,
+                                              TermCriteria(TermCriteria::COUNT | TermCriteria::EPS, 100, 1e-9));
+            std::cout << "[numbers] proptv, camera " << c << ", half " << half << ", five coefficients: " << rms << " px, distance "
+                      << camera->window().distance << " +- " << deviations.at<double>(12) << " mm, focal length "
+                      << camera->cameraMatrix().at<double>(0, 0) << " +- " << deviations.at<double>(0) << " px\n";
+            CHECK(rms < 1);
+        }
+    }
+}
