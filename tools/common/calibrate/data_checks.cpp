@@ -133,7 +133,8 @@ void noticeParallel(const RigData& data, std::vector<std::string>& notices)
             notices.push_back((data.cameraCount == 1 ? "" : format("camera %d: ", c + 1))
                 + format("all boards in the %s are parallel within %.1f deg: ", through ? "images through the window"
                          : "direct images", spread)
-                + (through ? "they hardly determine the window's tilt" : "they hardly determine the focal length") + ". Tilt the board by 10 to 35 degrees, to all sides");
+                + (through ? "they hardly determine the window's tilt" : "they hardly determine the focal length")
+                + ". Tilt the board by 10 to 35 degrees, to all sides");
         }
 }
 
