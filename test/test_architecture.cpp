@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// The rooms of the module and of the tools are those of doc/architecture.md, and no include climbs.
+// The components of the module and of the tools are those of doc/architecture.md, and none includes one of a later layer.
 #include "paths.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
@@ -53,8 +53,8 @@ std::string sectionOf(const std::string& tree)
     return text.substr(begin, text.find("\n## ", begin) - begin);
 }
 
-//! Rooms of a tree from the ground up.
-std::vector<std::string> roomsOnThePage(const std::string& tree)
+//! Components of a tree, the lowest layer first.
+std::vector<std::string> componentsOnThePage(const std::string& tree)
 {
     return matches(sectionOf(tree), R"(\n\| `(\w+)/`)");
 }
@@ -104,11 +104,11 @@ std::vector<std::string> knownPaths()
 
 } // namespace
 
-TEST_CASE("The page of the house names every folder, and no other", "[architecture]")
+TEST_CASE("The page of the architecture names every folder, and no other", "[architecture]")
 {
     for (const std::string& tree : TREES)
     {
-        std::vector<std::string> named = roomsOnThePage(tree);
+        std::vector<std::string> named = componentsOnThePage(tree);
         std::sort(named.begin(), named.end());
         CAPTURE(tree);
         CHECK(below(ROOT + "/" + tree, true) == named);
@@ -116,32 +116,32 @@ TEST_CASE("The page of the house names every folder, and no other", "[architectu
     }
 }
 
-TEST_CASE("No include climbs from one room to a later one", "[architecture]")
+TEST_CASE("No component includes one of a later layer", "[architecture]")
 {
     for (const std::string& tree : TREES)
     {
-        const std::vector<std::string> rooms = roomsOnThePage(tree);
-        std::map<std::string, size_t> floor;
-        for (size_t i = 0; i < rooms.size(); i++)
-            floor[rooms[i]] = i;
+        const std::vector<std::string> components = componentsOnThePage(tree);
+        std::map<std::string, size_t> layer;
+        for (size_t i = 0; i < components.size(); i++)
+            layer[components[i]] = i;
         int arrows = 0;
         for (const std::string& file : below(ROOT + "/" + tree, false))
         {
-            const std::string room = file.substr(0, file.find('/'));
+            const std::string component = file.substr(0, file.find('/'));
             for (const std::string& other : matches(contentsOf(ROOT + "/" + tree + "/" + file), R"(#include "(\w+)/)"))
             {
-                if (!floor.count(other) || !floor.count(room))      // opencv2/; a file in no room, as precomp.hpp
+                if (!layer.count(other) || !layer.count(component))      // opencv2/; a file in no component, as precomp.hpp
                     continue;
                 CAPTURE(tree, file, other);
-                CHECK(floor[other] <= floor[room]);
-                arrows += other != room;
+                CHECK(layer[other] <= layer[component]);
+                arrows += other != component;
             }
         }
         CHECK(arrows > 30);
     }
 }
 
-TEST_CASE("Inside the tools an include says the room", "[architecture]")
+TEST_CASE("Inside the tools an include names the component", "[architecture]")
 {
     for (const std::string& file : below(ROOT + "/tools/common", false))
     {
@@ -151,7 +151,7 @@ TEST_CASE("Inside the tools an include says the room", "[architecture]")
     }
 }
 
-TEST_CASE("Files that the tables of the house name exist", "[architecture]")
+TEST_CASE("Files that the tables of the architecture name exist", "[architecture]")
 {
     const std::vector<std::string> paths = knownPaths();
     int count = 0;
@@ -167,7 +167,7 @@ TEST_CASE("Files that the tables of the house name exist", "[architecture]")
     CHECK(count > 40);
 }
 
-TEST_CASE("Folders that the tables of the house name exist", "[architecture]")
+TEST_CASE("Folders that the tables of the architecture name exist", "[architecture]")
 {
     int count = 0;
     for (const std::string& row : rowsOf(page()))
@@ -181,7 +181,7 @@ TEST_CASE("Folders that the tables of the house name exist", "[architecture]")
     CHECK(count > 16);
 }
 
-TEST_CASE("What a room is said to hold is in it, its extension left out", "[architecture]")
+TEST_CASE("What a component is said to hold is in it, its extension left out", "[architecture]")
 {
     std::vector<std::string> programs;
     for (const std::string& file : below(ROOT + "/tools", false))
@@ -189,10 +189,10 @@ TEST_CASE("What a room is said to hold is in it, its extension left out", "[arch
     int count = 0;
     for (const std::string& tree : TREES)
         for (const std::string& row : rowsOf(sectionOf(tree)))
-            for (const std::string& room : matches(row, R"(^\| `(\w+)/`)"))
+            for (const std::string& component : matches(row, R"(^\| `(\w+)/`)"))
             {
                 std::vector<std::string> stems = programs;      // who asks may be one
-                for (const std::string& file : below(ROOT + "/" + tree + "/" + room, false))
+                for (const std::string& file : below(ROOT + "/" + tree + "/" + component, false))
                     stems.push_back(file.substr(0, file.find('.')));
                 for (const std::string& stem : matches(row, R"(`([\w*]+)`)"))
                 {
@@ -208,9 +208,9 @@ TEST_CASE("Ceres and Eigen stay where calibrations are", "[architecture]")
 {
     for (const std::string& file : below(ROOT + "/" + TREES[0], false))
     {
-        const std::string room = file.substr(0, file.find('/'));
+        const std::string component = file.substr(0, file.find('/'));
         CAPTURE(file);
         for (const char* library : { "#include <ceres", "#include <Eigen" })
-            CHECK((room == "calibrate" || contentsOf(ROOT + "/" + TREES[0] + "/" + file).find(library) == std::string::npos));
+            CHECK((component == "calibrate" || contentsOf(ROOT + "/" + TREES[0] + "/" + file).find(library) == std::string::npos));
     }
 }

@@ -700,10 +700,10 @@ TEST_CASE("Bad arguments of triangulateRefractive for a rig are named", "[triang
     CHECK(withCovariance(1e-7, 1e-7, 1e-6) == "");
     CHECK(withCovariance(0, 0, 0) == "");           // known exactly
     CHECK(withCovariance(0, 0, -1e-20) == "");      // rounding
-    CHECK_THAT(withCovariance(1e-7, 1e-7, 0), Contains("calibrationCovariance has quantities without variance that vary"));
+    CHECK_THAT(withCovariance(1e-7, 1e-7, 0), Contains("calibrationCovariance has a covariance that is not 0"));
     CHECK_THAT(withCovariance(0, 0, -1e-6), Contains("calibrationCovariance") && Contains("below 0 on its diagonal"));
     CHECK_THAT(withCovariance(0, 1e-7, 1e-6), Contains("calibrationCovariance is not symmetric"));
-    CHECK_THAT(withCovariance(2e-6, 2e-6, 1e-6), Contains("calibrationCovariance gives some quantities a variance below 0"));
+    CHECK_THAT(withCovariance(2e-6, 2e-6, 1e-6), Contains("calibrationCovariance is not positive semidefinite"));
     CHECK_THAT(thrown([&] { Mat a, b, c; triangulateRefractive(rig.cameras, rig.Rs, rig.Ts, rig.pixels, a, b, 0, -1., noArray(), c); }),
                Contains("pixelSigma") && Contains("-1"));
 }

@@ -37,7 +37,7 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 --max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
 carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
-#include "assess/misfit.hpp"
+#include "diagnose/diagnosis.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
@@ -158,7 +158,7 @@ Options parseOptions(Command& command)
     app.add_option("--poses", o.poses, "known poses of the target in camera 1: poses.csv")->excludes(unpaired);
     app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--summary", o.summary, "JSON file with everything that the table and the report say");
-    app.add_option("--report", o.report, "HTML page to judge the calibration by, and to keep (needs gnuplot)");
+    app.add_option("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
     app.add_option("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
         "the images through the window, to compare with (refract_measure --compare-with)");
     app.add_option("--max-rms", o.limits.rms, "limit: RMS over all corners, px")->check(moreThanZero());
@@ -339,8 +339,8 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
 {
     PerCamera<cv::Size> sizes;
     sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
-    RigViewSets sets = readViewSets(o.images, target, sizes, quiet);
-    for (const ViewSet* set : sets.all())
+    RigImages sets = readRigImages(o.images, target, sizes, quiet);
+    for (const DetectedImages* set : sets.all())
     {
         c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
         c.inputs.insert(c.inputs.end(), set->files.begin(), set->files.end());
@@ -349,7 +349,7 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
         requirePairs(sets);
     c.photos = photosOf(sets);
     c.fewPoints = leaveOutFewPoints(target, sets);
-    c.data = pairViews(target, sets, o.unpaired);
+    c.data = groupIntoViews(target, sets, o.unpaired);
     if (!o.poses.empty())
     {
         readPoses(o.poses, o.unit, c.data);
@@ -362,7 +362,7 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
 void fit(const Options& o, RigCalibration& c, Progress& progress)
 {
     if (o.robust)
-        c.wrong = startWithoutWrongPoints(c.data, c.options, c.start, c.lensSources);
+        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources);
     else
         c.start = startModel(c.data, c.options, c.lensSources);
     progress.step();
@@ -386,13 +386,13 @@ std::string inOptions(std::string text)
 }
 
 //! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
-bool isSlowToStart(const Given& given)
+bool isSlowToStart(const CalibrationInput& input)
 {
     bool solid = false, known = true;
-    for (const Moment& m : given.data.moments)
-        solid = solid || isSolid(m.objectPoints);
-    for (int k = 0; k < given.data.cameraCount; k++)
-        known = known && given.options.known[k];
+    for (const View& view : input.data.views)
+        solid = solid || isSolid(view.objectPoints);
+    for (int k = 0; k < input.data.cameraCount; k++)
+        known = known && input.options.known[k];
     return solid && !known;
 }
 
@@ -425,7 +425,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     noticeLiquidLayers(o, c.options, c.notices);
     if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
-    const Given given{c.data, c.options, c.square, c.notices};
+    const CalibrationInput input{c.data, c.options, c.square, c.notices};
     Progress progress("calibrating", 5, quiet);
     try
     {
@@ -433,15 +433,15 @@ RigCalibration calibrate(const Options& o, bool quiet)
     }
     catch (const cv::Exception& e)
     {
-        throw Failure(explainError(inOptions(e.err), given));
+        throw Failure(explainError(inOptions(e.err), input));
     }
     catch (const Failure& e)
     {
-        if (isSlowToStart(given))
+        if (isSlowToStart(input))
             throw;
-        throw Failure(explainError(e.what(), given));
+        throw Failure(explainError(e.what(), input));
     }
-    requireSensible(c, given);
+    requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
     if (!o.crossValidation)
         return c;
     c.heldOut = holdOut(c.data, c.fit, c.options.flags);
@@ -466,7 +466,7 @@ void checkOutputs(const Options& o, const std::string& settings)
 }
 
 //! Whoever reads the file must know what was thought of it.
-Calibration judged(Calibration file, const Findings& findings)
+Calibration withFindings(Calibration file, const Findings& findings)
 {
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
@@ -484,7 +484,7 @@ void watch(const Options& o, bool quiet)
 
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)
 {
-    Calibration pinhole = calibratePinholeRig(calibration.data, allMoments(calibration.data),
+    Calibration pinhole = calibratePinholeRig(calibration.data, allViews(calibration.data),
                                               calibration.options.lensCoefficients);
     pinhole.command = command;
     pinhole.time = timeOfFiles(calibration.inputs);
@@ -502,14 +502,14 @@ int main(int argc, char** argv)
             watch(options, command.quiet());
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Assessment assessment = assess(calibration, command.quiet());
-        const Findings findings = judge(calibration, assessment);
+        const Findings findings = findingsOf(calibration, assessment);
         if (!options.pinholeOut.empty())
             writePinhole(options.pinholeOut, calibration, command.line());
         if (!options.summary.empty())
             writeText(options.summary, summaryJson(calibration, assessment, findings, command.line()));
         if (!options.report.empty())
             writeText(options.report, makeReport(calibration, assessment, findings, command.line(), command.quiet()));
-        writeCalibration(options.out, judged(toFile(calibration, command.line()), findings));
+        writeCalibration(options.out, withFindings(toFile(calibration, command.line()), findings));
         if (!command.quiet())
             printSummary(std::cout, calibration, assessment, findings);
         for (const LimitCheck& limit : findings.limits)

@@ -17,7 +17,7 @@ If nothing moved, it says "moved" with the probability --false-alarm.
 Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
 not show a tilt of --detect degrees with a probability of 95 %.)";
 
-#include "assess/measurement.hpp"
+#include "measure/measurement.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
@@ -62,49 +62,49 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--summary", o.summary, "JSON file with the result");
 }
 
-CheckBasis basisOf(const Options& o, const Calibration& calibration)
+CheckInput checkInputOf(const Options& o, const Calibration& calibration)
 {
-    CheckBasis basis;
-    basis.rig = modelOf(calibration);
-    basis.covariance = calibration.covariance;
-    basis.sigma = o.sigma > 0 ? o.sigma : pixelSigmaOf(calibration);
-    basis.freedom = o.sigma > 0 || !(calibration.freedom > 0) ? EXACT : calibration.freedom;
-    if (!(basis.sigma > 0))
+    CheckInput input;
+    input.rig = modelOf(calibration);
+    input.covariance = calibration.covariance;
+    input.sigma = o.sigma > 0 ? o.sigma : pixelSigmaOf(calibration);
+    input.dof = o.sigma > 0 || !(calibration.dof > 0) ? EXACT : calibration.dof;
+    if (!(input.sigma > 0))
         throw Failure("'" + o.calibration + "' does not say how large the noise of a pixel is: calibrate with refract_calib, or "
                       "give --pixel-sigma");
-    if (basis.covariance.empty() && !(o.sigma > 0))
+    if (input.covariance.empty() && !(o.sigma > 0))
         throw Failure("'" + o.calibration + "' has no covariance: calibrate with refract_calib, or give --pixel-sigma to take "
                       "the file as exact");
-    return basis;
+    return input;
 }
 
-//! One image each is of one moment, whatever the names.
-void nameSingles(RigViewSets& sets)
+//! If there is one image for each camera, they are one view, whatever their names.
+void nameSingles(RigImages& sets)
 {
-    const std::vector<const ViewSet*> all = sets.all();
-    if (std::any_of(all.begin(), all.end(), [](const ViewSet* set) { return set->files.size() > 1 || set->views.size() > 1; }))
+    const std::vector<const DetectedImages*> all = sets.all();
+    if (std::any_of(all.begin(), all.end(), [](const DetectedImages* set) { return set->files.size() > 1 || set->images.size() > 1; }))
         return;
-    const std::string name = stemOf(sets.glass[0].views[0].path);
-    for (PerCamera<ViewSet>* images : {&sets.direct, &sets.glass})
-        for (ViewSet& set : *images)
-            for (DetectedView& view : set.views)
-                view.stem = name;
+    const std::string name = stemOf(sets.glass[0].images[0].path);
+    for (PerCamera<DetectedImages>* images : {&sets.direct, &sets.glass})
+        for (DetectedImages& set : *images)
+            for (DetectedImage& image : set.images)
+                image.stem = name;
 }
 
 //! Direct images that have no glass image of their name are of no use here, and those are rarely meant.
-void requirePairs(const Options& o, const RigViewSets& sets, const Command& command)
+void requirePairs(const Options& o, const RigImages& sets, const Command& command)
 {
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
         const std::string number = cameraSuffix(c);
         std::string alone;
         int count = 0;
-        for (const DetectedView& view : sets.direct[c].views)
-            if (!sets.glass[c].find(view.stem))
-                alone += (count++ ? ", '" : "'") + view.stem + "'";
+        for (const DetectedImage& image : sets.direct[c].images)
+            if (!sets.glass[c].find(image.stem))
+                alone += (count++ ? ", '" : "'") + image.stem + "'";
         if (!count)
             continue;
-        if (count == (int)sets.direct[c].views.size())
+        if (count == (int)sets.direct[c].images.size())
             throw Failure("no image of --direct" + number + "='" + o.images.direct[c] + "' has the name of one of --glass" + number
                           + "='" + o.images.glass[c] + "' in which the target was found: the two images of a pair need equal names "
                           "(without folder and extension), or give one image each");
@@ -112,14 +112,14 @@ void requirePairs(const Options& o, const RigViewSets& sets, const Command& comm
     }
 }
 
-void sayMissing(const RigViewSets& sets, const Command& command)
+void warnNotFound(const RigImages& sets, const Command& command)
 {
-    for (const ViewSet* set : sets.all())
+    for (const DetectedImages* set : sets.all())
         for (const std::string& path : set->withoutTarget)
             command.warn("the target was not found in '" + path + "'");
 }
 
-std::vector<Moment> readMoments(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
+std::vector<View> readViews(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
 {
     const int count = (int)calibration.cameras.size(), given = o.images.cameraCount();
     if (given > count)
@@ -127,15 +127,15 @@ std::vector<Moment> readMoments(const Options& o, const Calibration& calibration
     PerCamera<cv::Size> sizes;
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
-    RigViewSets sets = readViewSets(o.images, &target, sizes, command.quiet());
+    RigImages sets = readRigImages(o.images, &target, sizes, command.quiet());
     nameSingles(sets);
     requirePairs(o, sets, command);
-    sayMissing(sets, command);
-    std::vector<Moment> moments;
-    for (const Moment& m : pairViews(&target, sets, false).moments)
-        if (m.hasGlass())
-            moments.push_back(m);
-    return moments;
+    warnNotFound(sets, command);
+    std::vector<View> views;
+    for (const View& view : groupIntoViews(&target, sets, false).views)
+        if (view.hasGlass())
+            views.push_back(view);
+    return views;
 }
 
 bool anyMoved(const CheckResult& result)
@@ -144,29 +144,29 @@ bool anyMoved(const CheckResult& result)
 }
 
 //! How many times as many images would show the tilt, or 0 if no number would.
-int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, double freedom)
+int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, double dof)
 {
     for (int n = 2; n <= 10000; n++)
-        if (powerOf(window, count, freedom, o.falseAlarm, o.detect, 1./n) >= CERTAIN)
+        if (powerOf(window, count, dof, o.falseAlarm, o.detect, 1./n) >= CERTAIN)
             return n;
     return 0;
 }
 
 //! Empty, or why the images do not tell.
-std::string whyNot(const CheckResult& result, const Options& o, const CheckBasis& basis)
+std::string whyNot(const CheckResult& result, const Options& o, const CheckInput& input)
 {
-    if (result.misfitProbability < NO_TILT_EXPLAINS)
+    if (result.residualProbability < NO_TILT_EXPLAINS)
         return format("the new images do not fit the calibration with any tilt of the window: noise %.3f px per coordinate, the "
                       "calibration had %.3f px; did the target move between the images of a pair, or did lens, focus, glass or "
-                      "target change?", result.sigmaSeen, basis.sigma);
+                      "target change?", result.sigmaSeen, input.sigma);
     if (anyMoved(result))
         return "";
     for (const WindowCheck& window : result.windows)
     {
-        const double power = powerOf(window, result.windows.size(), basis.freedom, o.falseAlarm, o.detect);
+        const double power = powerOf(window, result.windows.size(), input.dof, o.falseAlarm, o.detect);
         if (power >= CERTAIN)
             continue;
-        const int times = imagesNeeded(window, result.windows.size(), o, basis.freedom);
+        const int times = imagesNeeded(window, result.windows.size(), o, input.dof);
         const bool pairs = o.images.anyDirect();
         const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
@@ -181,7 +181,7 @@ const char* verdictOf(bool moved, const std::string& why)
     return !why.empty() ? "cannot tell" : moved ? "moved" : "unchanged";
 }
 
-std::string jsonOf(const CheckResult& result, const Options& o, const CheckBasis& basis, const std::string& verdict,
+std::string jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict,
                    const std::string& why)
 {
     nlohmann::ordered_json windows = nlohmann::ordered_json::array();
@@ -190,25 +190,25 @@ std::string jsonOf(const CheckResult& result, const Options& o, const CheckBasis
                            {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}}, {"probability_if_unchanged", w.probability},
                            {"normal", {w.normal[0], w.normal[1], w.normal[2]}},
                            {"detection_probability",
-                            powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)}});
+                            powerOf(w, result.windows.size(), input.dof, o.falseAlarm, o.detect)}});
     const nlohmann::ordered_json json = {
         {"verdict", verdict}, {"why", why}, {"windows", windows}, {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect},
-        {"sigma_px", basis.sigma}, {"sigma_seen_px", result.sigmaSeen}};
+        {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
     return json.dump(1) + '\n';
 }
 
-void print(const CheckResult& result, const Options& o, const CheckBasis& basis)
+void print(const CheckResult& result, const Options& o, const CheckInput& input)
 {
     Table table({"", "tilt since then, deg", "+- (two principal)", "chance if unchanged",
                  format("would show %g deg", o.detect), ""});
     for (const WindowCheck& w : result.windows)
         table.add({format("window of camera %d", w.camera + 1), format("%.4f", w.tiltDeg),
                    format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
-                   format("%.1f %%", 100.*powerOf(w, result.windows.size(), basis.freedom, o.falseAlarm, o.detect)),
+                   format("%.1f %%", 100.*powerOf(w, result.windows.size(), input.dof, o.falseAlarm, o.detect)),
                    w.moved ? "moved" : "no sign of it"});
     table.print(std::cout);
     std::cout << format("\nNoise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.\n",
-                        result.sigmaSeen, basis.sigma, o.falseAlarm);
+                        result.sigmaSeen, input.sigma, o.falseAlarm);
 }
 
 } // namespace
@@ -225,18 +225,18 @@ int main(int argc, char** argv)
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
-        const CheckBasis basis = basisOf(options, calibration);
-        const std::vector<Moment> moments = readMoments(options, calibration, target, command);
-        const CheckResult result = checkTilts(basis, moments, options.falseAlarm);
+        const CheckInput input = checkInputOf(options, calibration);
+        const std::vector<View> views = readViews(options, calibration, target, command);
+        const CheckResult result = checkTilts(input, views, options.falseAlarm);
         const bool moved = anyMoved(result);
-        const std::string why = whyNot(result, options, basis), verdict = verdictOf(moved, why);
+        const std::string why = whyNot(result, options, input), verdict = verdictOf(moved, why);
         if (!options.summary.empty())
-            writeText(options.summary, jsonOf(result, options, basis, verdict, why));
+            writeText(options.summary, jsonOf(result, options, input, verdict, why));
         if (!command.quiet())
         {
             const Tone tone = !why.empty() ? Tone::DOUBTFUL : moved ? Tone::BAD : Tone::GOOD;
             std::cout << toned(std::cout, verdict, tone) << "\n\n";
-            print(result, options, basis);
+            print(result, options, input);
         }
         if (!why.empty())
             throw Failure(why);

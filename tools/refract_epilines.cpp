@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/measurement.hpp"
+#include "measure/measurement.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -10,7 +10,7 @@
 #include "console/point_file.hpp"
 #include "console/table.hpp"
 #include "report/drawing.hpp"
-#include "target/detected_views.hpp"
+#include "target/detected_images.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>

@@ -1,16 +1,16 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/consistency.hpp"
-#include "assess/measurement.hpp"
-#include "assess/target_lengths.hpp"
+#include "measure/consistency.hpp"
+#include "measure/measurement.hpp"
+#include "measure/target_lengths.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
-#include "target/detected_views.hpp"
+#include "target/detected_images.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -66,30 +66,27 @@ struct Options
     bool lengthsMeasured() const { return target.given() && (triangulates() || !plane.empty()); }
 };
 
-//! What the cameras saw of one moment, and what its points are called.
-struct Sight
+//! A view, and the names of its points.
+struct MeasuredView : View
 {
-    Moment moment;
     std::vector<std::string> ids;
-
-    const std::string& stem() const { return moment.stem; }
 };
 
-void sayMissing(const ViewSet& set, const std::string& which, const Command& command)
+void warnNotFound(const DetectedImages& set, const std::string& which, const Command& command)
 {
     if (!set.withoutTarget.empty())
         command.warn("skipped" + which + ", as the target was not found: " + listed(set.withoutTarget));
 }
 
-//! Moments that a single camera has say nothing.
-void sayAlone(const std::vector<Moment>& moments, size_t cameras, const Command& command)
+//! Views of a single camera cannot be triangulated.
+void warnUnpaired(const std::vector<View>& views, size_t cameras, const Command& command)
 {
     for (size_t c = 0; c < cameras; c++)
     {
         std::vector<std::string> alone;
-        for (const Moment& m : moments)
-            if (m.countGlass() == 1 && m.hasGlass((int)c))
-                alone.push_back(m.stem);
+        for (const View& view : views)
+            if (view.countGlass() == 1 && view.hasGlass((int)c))
+                alone.push_back(view.stem);
         if (!alone.empty())
             command.warn(format("skipped of camera %zu, as ", c + 1)
                          + (cameras == 2 ? format("camera %zu has no", 2 - c) : std::string("no other camera has an"))
@@ -97,27 +94,27 @@ void sayAlone(const std::vector<Moment>& moments, size_t cameras, const Command&
     }
 }
 
-//! One image each is of one moment, whatever the names.
-void nameSingles(RigViewSets& sets)
+//! If there is one image for each camera, they are one view, whatever their names.
+void nameSingles(RigImages& sets)
 {
     std::string name;
-    for (ViewSet& set : sets.glass)
-        if (set.files.size() > 1 || set.views.size() > 1)
+    for (DetectedImages& set : sets.glass)
+        if (set.files.size() > 1 || set.images.size() > 1)
             return;
-    for (ViewSet& set : sets.glass)
-        for (DetectedView& view : set.views)
-            view.stem = name = name.empty() ? view.stem : name;
+    for (DetectedImages& set : sets.glass)
+        for (DetectedImage& image : set.images)
+            image.stem = name = name.empty() ? image.stem : name;
 }
 
-Sight sightOf(const Moment& moment)
+MeasuredView withIds(const View& view)
 {
-    Sight sight{moment, {}};
-    for (size_t i = 0; i < moment.objectPoints.size(); i++)
-        sight.ids.push_back(std::to_string(i));
-    return sight;
+    MeasuredView measured{view, {}};
+    for (size_t i = 0; i < view.objectPoints.size(); i++)
+        measured.ids.push_back(std::to_string(i));
+    return measured;
 }
 
-std::vector<Sight> readImages(const Options& options, const Calibration& calibration, const Target* target,
+std::vector<MeasuredView> readImages(const Options& options, const Calibration& calibration, const Target* target,
                               const Command& command)
 {
     RigSources sources;
@@ -126,52 +123,52 @@ std::vector<Sight> readImages(const Options& options, const Calibration& calibra
     std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = calibration.cameras[c].camera->imageSize();
-    RigViewSets sets = readViewSets(sources, target, sizes, command.quiet());
+    RigImages sets = readRigImages(sources, target, sizes, command.quiet());
     for (size_t c = 0; c < options.images.size(); c++)
-        sayMissing(sets.glass[c], options.images.size() == 1 ? "" : format(" of camera %zu", c + 1), command);
+        warnNotFound(sets.glass[c], options.images.size() == 1 ? "" : format(" of camera %zu", c + 1), command);
     if (options.triangulates())
         nameSingles(sets);
-    const std::vector<Moment> moments = pairViews(target, sets, false, 1).moments;
-    std::vector<Sight> sights;
-    for (const Moment& m : moments)
-        if (m.countGlass() > 1 || !options.triangulates())
-            sights.push_back(sightOf(m));
-    if (sights.empty() && options.images.size() == 2)
+    const std::vector<View> views = groupIntoViews(target, sets, false, 1).views;
+    std::vector<MeasuredView> measured;
+    for (const View& view : views)
+        if (view.countGlass() > 1 || !options.triangulates())
+            measured.push_back(withIds(view));
+    if (measured.empty() && options.images.size() == 2)
         throw Failure("no image of '" + options.images[0] + "' has the name of one of '" + options.images[1]
                       + "': images of one moment need equal names");
-    if (sights.empty())
+    if (measured.empty())
         throw Failure("no two cameras have images of one name with the target: images of one moment need equal names");
     if (options.triangulates())
-        sayAlone(moments, options.images.size(), command);
-    return sights;
+        warnUnpaired(views, options.images.size(), command);
+    return measured;
 }
 
 //! Points that are no target.
-std::vector<Sight> readPoints(const Options& options, const Calibration& calibration)
+std::vector<MeasuredView> readPoints(const Options& options, const Calibration& calibration)
 {
     const CsvTable table(options.points, {"id", "u1", "v1"}, "a file of image points");
-    Sight sight;
-    sight.moment.stem = stemOf(options.points);
+    MeasuredView view;
+    view.stem = stemOf(options.points);
     const int cameras = (int)calibration.cameras.size();
     if (table.find(format("u%d", cameras + 1)) >= 0)
         throw Failure(format("'%s' has pixels of camera %d, the calibration '%s' has %d camera%s", options.points.c_str(),
                              cameras + 1, options.calibration.c_str(), cameras, cameras == 1 ? "" : "s"));
     for (const CsvTable::Row& row : table.rows())
     {
-        sight.ids.push_back(table.text(row, "id"));
-        sight.moment.objectPoints.emplace_back();
+        view.ids.push_back(table.text(row, "id"));
+        view.objectPoints.emplace_back();
         for (int c = 0; c < cameras; c++)
         {
             const std::string u = format("u%d", c + 1), v = format("v%d", c + 1);
             if (table.find(u) < 0 || table.find(v) < 0)
                 continue;
-            sight.moment.glass[c].push_back(table.pixelOrNone(row, u, v));
+            view.glass[c].push_back(table.pixelOrNone(row, u, v));
         }
     }
-    return {sight};
+    return {view};
 }
 
-std::vector<Sight> readSights(const Options& options, const Calibration& calibration, const Target* target,
+std::vector<MeasuredView> readMeasuredViews(const Options& options, const Calibration& calibration, const Target* target,
                               const Command& command)
 {
     return options.points.empty() ? readImages(options, calibration, target, command) : readPoints(options, calibration);
@@ -182,35 +179,35 @@ double pixelSigma(const Options& options, const Calibration& calibration)
     return options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
 }
 
-Measurement measure(const Options& options, const Calibration& calibration, const Sight& sight)
+Measurement measure(const Options& options, const Calibration& calibration, const MeasuredView& view)
 {
     const double sigma = pixelSigma(options, calibration);
     if (options.triangulates())
-        return measureRig(calibration, glassPixels(sight.moment, (int)calibration.cameras.size()), sigma);
+        return measureRig(calibration, glassPixels(view, (int)calibration.cameras.size()), sigma);
     if (options.plane.empty())
-        return measureTarget(calibration, sight.moment.objectPoints, sight.moment.glass[0], sigma);
-    return measureOnPlane(calibration, sight.moment.glass[0], parsePlane(options.plane), sigma);
+        return measureTarget(calibration, view.objectPoints, view.glass[0], sigma);
+    return measureOnPlane(calibration, view.glass[0], parsePlane(options.plane), sigma);
 }
 
-std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights)
+std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
 {
     std::vector<Measurement> results;
-    for (const Sight& sight : sights)
-        results.push_back(measure(options, calibration, sight));
+    for (const MeasuredView& view : measured)
+        results.push_back(measure(options, calibration, view));
     return results;
 }
 
-void judge(const Options& options, const Calibration& calibration, std::vector<Measurement>& results)
+void checkMeasurements(const Options& options, const Calibration& calibration, std::vector<Measurement>& results)
 {
     for (Measurement& m : results)
         if (options.triangulates())
-            judgePartners(calibration, pixelSigma(options, calibration), m);
+            checkConsistency(calibration, pixelSigma(options, calibration), m);
         else if (options.plane.empty())
-            judgePose(pixelSigma(options, calibration), m);
+            checkPose(pixelSigma(options, calibration), m);
 }
 
 //! What contradicts itself, or empty.
-std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+std::string contradictionIn(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
 {
     std::vector<std::string> names;
     int points = 0, all = 0, nowhere = 0;
@@ -221,11 +218,11 @@ std::string contradictionIn(const std::vector<Sight>& sights, const std::vector<
         all += (int)m.points.size();
         if (!m.inconsistent())
             continue;
-        names.push_back(sights[i].stem());
+        names.push_back(measured[i].stem);
         points += m.inconsistent();
         for (size_t k = 0; k < m.points.size(); k++)
             nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
-        worst = std::max(worst, m.worstMisfit);
+        worst = std::max(worst, m.worstResidual);
     }
     if (names.empty())
         return "";
@@ -256,13 +253,13 @@ bool mostContradict(const std::vector<Measurement>& results)
 }
 
 //! What lengths say that are far from the target's, or empty.
-std::string wrongLengths(double square, const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+std::string wrongLengths(double square, const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
 {
     const double FAR_OFF = 0.2;
     double sum = 0;
     int count = 0;
     for (size_t k = 0; k < results.size(); k++)
-        for (const double ratio : lengthRatios(sights[k].moment, results[k].points))
+        for (const double ratio : lengthRatios(measured[k], results[k].points))
         {
             sum += ratio;
             count++;
@@ -274,7 +271,7 @@ std::string wrongLengths(double square, const std::vector<Sight>& sights, const 
                   square);
 }
 
-void sayNoisier(const Options& options, const Calibration& calibration, const std::vector<Sight>& sights,
+void warnNoisier(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured,
                 const std::vector<Measurement>& results, const Command& command)
 {
     const double sigma = pixelSigma(options, calibration), few = 3.;
@@ -283,12 +280,12 @@ void sayNoisier(const Options& options, const Calibration& calibration, const st
     for (size_t i = 0; i < results.size(); i++)
         if (!results[i].inconsistent() && results[i].noise > few*sigma)
         {
-            names.push_back(sights[i].stem());
+            names.push_back(measured[i].stem);
             worst = std::max(worst, results[i].noise);
         }
     if (!names.empty())
         command.warn(format("the pixels are noisier than in the calibration: up to %.3g px per coordinate instead of %.3g px, in ",
-                            worst, sigma) + listed(names) + "; sx, sy, sz say so. Check focus, light, motion, and the target");
+                            worst, sigma) + listed(names) + "; sx, sy, sz include this. Check focus, light, motion, and the target");
 }
 
 //! What sx, sy and sz leave out.
@@ -313,7 +310,7 @@ std::string cellOf(const std::string& text)
     return cell + "\"";
 }
 
-std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measurement>& measurements, size_t cameras)
+std::string csvOf(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& measurements, size_t cameras)
 {
     const cv::Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
     std::ostringstream csv;
@@ -323,8 +320,8 @@ std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measuremen
     for (size_t c = 1; c <= cameras; c++)
         csv << ",u" << c << ",v" << c;
     csv << ",x,y,z,sx,sy,sz,status\n";
-    for (size_t k = 0; k < sights.size(); k++)
-        for (size_t i = 0; i < sights[k].ids.size(); i++)
+    for (size_t k = 0; k < measured.size(); k++)
+        for (size_t i = 0; i < measured[k].ids.size(); i++)
         {
             const Measurement& m = measurements[k];
             std::vector<double> numbers;
@@ -335,7 +332,7 @@ std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measuremen
             }
             numbers.insert(numbers.end(), {m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0], m.sigma[i][1],
                                            m.sigma[i][2]});
-            csv << cellOf(sights[k].stem()) << ',' << cellOf(sights[k].ids[i]);
+            csv << cellOf(measured[k].stem) << ',' << cellOf(measured[k].ids[i]);
             for (const double number : numbers)
                 std::isnan(number) ? csv << ",nan" : csv << ',' << number;
             csv << ',' << (int)m.status[i] << '\n';
@@ -343,7 +340,7 @@ std::string csvOf(const std::vector<Sight>& sights, const std::vector<Measuremen
     return csv.str();
 }
 
-std::vector<std::string> rowOf(const std::string& name, const std::vector<Sight>& sights,
+std::vector<std::string> rowOf(const std::string& name, const std::vector<MeasuredView>& measured,
                                const std::vector<Measurement>& results, bool lengthsMeasured)
 {
     double squares = 0, sum = 0, largest = 0, near = std::numeric_limits<double>::infinity(), far = -near, depthSigma = 0;
@@ -351,7 +348,7 @@ std::vector<std::string> rowOf(const std::string& name, const std::vector<Sight>
     for (size_t k = 0; k < results.size(); k++)
     {
         const Measurement& m = results[k];
-        for (const double error : lengthErrors(sights[k].moment, m.points))
+        for (const double error : lengthErrors(measured[k], m.points))
         {
             squares += error*error;
             sum += error;
@@ -390,21 +387,21 @@ std::vector<Calibration> readOthers(const Options& options, const Calibration& c
 }
 
 void printTable(const Options& options, const Calibration& calibration, const std::vector<Calibration>& others,
-                const std::vector<Sight>& sights, const std::vector<Measurement>& results)
+                const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
 {
     const bool lengthsMeasured = options.lengthsMeasured()
-        && std::any_of(sights.begin(), sights.end(), [](const Sight& s) { return !s.moment.neighbours.empty(); });
+        && std::any_of(measured.begin(), measured.end(), [](const MeasuredView& s) { return !s.neighbours.empty(); });
     Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
                                                            "mean error", "largest"}
                                 : std::vector<std::string>{"", "points", "depth z", "mean sz"});
     if (options.compare)
-        table.add(rowOf("glass ignored", sights, measureAll(options, withoutWindows(calibration), sights),
+        table.add(rowOf("glass ignored", measured, measureAll(options, withoutWindows(calibration), measured),
                         lengthsMeasured));
     for (size_t i = 0; i < others.size(); i++)
-        table.add(rowOf(stemOf(options.compareWith[i]), sights, measureAll(options, others[i], sights), lengthsMeasured));
+        table.add(rowOf(stemOf(options.compareWith[i]), measured, measureAll(options, others[i], measured), lengthsMeasured));
     const bool alone = !options.compare && options.compareWith.empty();
-    table.add(rowOf(alone ? "measured" : "with the window", sights, results, lengthsMeasured));
-    std::cout << sights.size() << (sights.size() == 1 ? " view" : " views")
+    table.add(rowOf(alone ? "measured" : "with the window", measured, results, lengthsMeasured));
+    std::cout << measured.size() << (measured.size() == 1 ? " view" : " views")
               << (calibration.channel == BRIGHTNESS || !options.points.empty() ? std::string()
                   : ", the " + nameOf(calibration.channel) + " channel of colour images, as calibrated")
               << (lengthsMeasured ? "; distances between neighbouring points, measured minus true:\n\n"
@@ -476,10 +473,10 @@ int main(int argc, char** argv)
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
         const std::vector<Calibration> others = readOthers(options, calibration);
-        const std::vector<Sight> sights = readSights(options, calibration, target.get(), command);
-        std::vector<Measurement> results = measureAll(options, calibration, sights);
-        judge(options, calibration, results);
-        const std::string contradiction = contradictionIn(sights, results);
+        const std::vector<MeasuredView> measured = readMeasuredViews(options, calibration, target.get(), command);
+        std::vector<Measurement> results = measureAll(options, calibration, measured);
+        checkMeasurements(options, calibration, results);
+        const std::string contradiction = contradictionIn(measured, results);
         int answers = 0;
         for (const Measurement& m : results)
             answers += m.answers();
@@ -488,15 +485,15 @@ int main(int argc, char** argv)
                                                   "same cameras?" : contradiction);
         if (!contradiction.empty())
             command.warn(contradiction);
-        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), sights, results) : "";
+        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
-        sayNoisier(options, calibration, sights, results, command);
+        warnNoisier(options, calibration, measured, results, command);
         sayUncovered(options, calibration, command);
         if (!options.out.empty())
-            writeText(options.out, csvOf(sights, results, calibration.cameras.size()));
+            writeText(options.out, csvOf(measured, results, calibration.cameras.size()));
         if (!command.quiet())
-            printTable(options, calibration, others, sights, results);
+            printTable(options, calibration, others, measured, results);
         return mostContradict(results) || !lengths.empty() ? LIMIT_NOT_MET : DONE;
     });
 }

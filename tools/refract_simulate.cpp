@@ -174,7 +174,7 @@ void writeTruth(const std::string& path, const Scene& scene, const Target* targe
         fs << "command" << command;
         if (target)
             writeTarget(fs, scene.target, *target);
-        writeRig(fs, calibrationOf(modelOf(scene.cameras)));
+        writeCameras(fs, calibrationOf(modelOf(scene.cameras)));
         if (target)
             writeViews(fs, scene, target, jobs);
         if (!scene.surfaces.surfaces.empty())

@@ -221,7 +221,7 @@ cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vect
         const FramePair& pair = pairs[i*pairs.size()/count];
         progress.at(pair.stem);
         const auto images = reader.read(pair);
-        const std::vector<float> found = depthsOfDetails(rig, images.first, images.second);
+        const std::vector<float> found = depthsOfFeatures(rig, images.first, images.second);
         depths.insert(depths.end(), found.begin(), found.end());
         progress.step();
     }
@@ -384,12 +384,12 @@ void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
 }
 
 //! Says what the row errors mean; false if they are beyond the caller's limit.
-bool judgeRows(const Options& options, const std::vector<PairResult>& results, const Command& command)
+bool checkRows(const Options& options, const std::vector<PairResult>& results, const Command& command)
 {
     const PairResult worst = *std::max_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
         return std::isnan(a.rowOffset) ? !std::isnan(b.rowOffset) : a.rowOffset < b.rowOffset; });
     if (worst.rowOffset > DOUBTFUL_ROWS)
-        command.warn(format("partners miss each other's row by %.2f px (RMS) in '%s': calibration and images do not fit. Has a "
+        command.warn(format("matches have a row error of %.2f px (RMS) in '%s': calibration and images do not fit. Has a "
                             "camera or a window moved, is '%s' of this rig, are LEFT and RIGHT swapped?", worst.rowOffset,
                             worst.stem.c_str(), options.calibration.c_str()));
     if (options.maxRowError > 0 && std::isnan(worst.rowOffset))
@@ -422,7 +422,7 @@ void sayUnsupported(const std::vector<PairResult>& results, const Command& comma
                             100*worst.supported, worst.stem.c_str()));
 }
 
-void sayAlone(const std::vector<std::string>& stems, int camera, const Command& command)
+void warnUnpaired(const std::vector<std::string>& stems, int camera, const Command& command)
 {
     if (!stems.empty())
         command.warn(format("skipped of camera %d, as camera %d has no image of that name: ", camera, 3 - camera)
@@ -475,8 +475,8 @@ int main(int argc, char** argv)
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
         refuseOverwriting(options, command.settings(), first, second, files);
         requirePly(options.out);
-        sayAlone(frames.alone1, 1, command);
-        sayAlone(frames.alone2, 2, command);
+        warnUnpaired(frames.unpaired1, 1, command);
+        warnUnpaired(frames.unpaired2, 2, command);
 
         PairReader reader(first, second, rig, !options.channels.empty());
         auto images = reader.read(frames.pairs[0]);
@@ -507,10 +507,10 @@ int main(int argc, char** argv)
             }
         }
         if (results.empty())
-            throw Failure("next to nothing looks alike in both images: do they show the same textured scene, of one moment, "
+            throw Failure("hardly anything looks alike in both images: do they show the same textured scene, of one moment, "
                           "within --depth? Are LEFT and RIGHT swapped?");
         if (!unmatched.empty())
-            command.warn("nothing is written of pairs in which next to nothing looks alike: " + listed(unmatched));
+            command.warn("nothing is written of pairs in which hardly anything looks alike: " + listed(unmatched));
         if (!command.quiet())
         {
             if (!truth.empty())
@@ -518,6 +518,6 @@ int main(int argc, char** argv)
             printTable(results, tool.rig());
         }
         sayUnsupported(results, command);
-        return judgeRows(options, results, command) ? DONE : LIMIT_NOT_MET;
+        return checkRows(options, results, command) ? DONE : LIMIT_NOT_MET;
     });
 }

@@ -10,9 +10,9 @@ const char fuzz::EXTENSION[] = ".csv";
 
 void fuzz::tryFile(const std::string& path)
 {
-    for (const tools::DetectedView& view : tools::readPointsCsv(path))
+    for (const tools::DetectedImage& image : tools::readPointsCsv(path))
     {
-        promise(!view.stem.empty() && view.points.size() == view.objectPoints.size(), "each view has a name, each point a pixel");
-        promise(cv::checkRange(view.objectPoints), "the target's points are finite");
+        promise(!image.stem.empty() && image.points.size() == image.objectPoints.size(), "each view has a name, each point a pixel");
+        promise(cv::checkRange(image.objectPoints), "the target's points are finite");
     }
 }

@@ -12,11 +12,11 @@ const char fuzz::EXTENSION[] = ".csv";
 void fuzz::tryFile(const std::string& path)
 {
     tools::RigData data;
-    data.moments.resize(1);
-    data.moments[0].stem = "a";
+    data.views.resize(1);
+    data.views[0].stem = "a";
     tools::readPoses(path, "mm", data);
-    promise(bool(data.moments[0].pose), "the view has a pose");
-    const tools::KnownPose& pose = *data.moments[0].pose;
+    promise(bool(data.views[0].pose), "the view has a pose");
+    const tools::KnownPose& pose = *data.views[0].pose;
     promise(cv::checkRange(cv::Mat(pose.rvec)) && cv::checkRange(cv::Mat(pose.tvec)), "the pose is finite");
     promise(pose.covariance.empty() || cv::checkRange(pose.covariance), "its covariance is finite");
 }

@@ -5,7 +5,7 @@
 #ifndef REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 #define REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 
-#include "assess/view_derivatives.hpp"
+#include "measure/view_derivatives.hpp"
 #include "calibrate/rig_data.hpp"
 #include "scenes.hpp"
 #include <opencv2/calib3d.hpp>
@@ -39,12 +39,12 @@ inline std::vector<cv::Point3d> board(int columns, int rows, double square = 39.
 }
 
 //! What the rig sees of a board, with noise; points outside the images too.
-inline tools::Moment observe(const tools::RigModel& rig, const std::vector<cv::Point3d>& object, const cv::Vec3d& rvec,
-                             const cv::Vec3d& tvec, bool direct, double sigma, scenes::Random& random)
+inline tools::View observe(const tools::RigModel& rig, const std::vector<cv::Point3d>& object, const cv::Vec3d& rvec,
+                           const cv::Vec3d& tvec, bool direct, double sigma, scenes::Random& random)
 {
-    tools::Moment moment;
-    moment.stem = "new";
-    moment.objectPoints = object;
+    tools::View view;
+    view.stem = "new";
+    view.objectPoints = object;
     for (int c = 0; c < (int)rig.cameras.size(); c++)
         for (bool glass : {false, true})
         {
@@ -52,13 +52,13 @@ inline tools::Moment observe(const tools::RigModel& rig, const std::vector<cv::P
                 continue;
             cv::Vec3d r = rvec, t = tvec;
             tools::poseInCamera(rig, c, r, t);
-            std::vector<cv::Point2d>& pixels = glass ? moment.glass[c] : moment.direct[c];
+            std::vector<cv::Point2d>& pixels = glass ? view.glass[c] : view.direct[c];
             cv::refract::refractiveProjectPoints(object, r, t,
                 glass ? rig.cameras[c] : tools::copyWithWindow(rig.cameras[c], cv::refract::GlassWindow()), pixels);
             for (cv::Point2d& p : pixels)
                 p += cv::Point2d(random.normal(sigma), random.normal(sigma));
         }
-    return moment;
+    return view;
 }
 
 #endif // REFRACT_TEST_TOOLS_PAPER_RIG_HPP

@@ -3,12 +3,12 @@
 
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
-#include "assess/eigen_matrix.hpp"
-#include "assess/measurement.hpp"
-#include "assess/sight.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/measurement.hpp"
+#include "assess/heldout_test.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "calibrate/wrong_points.hpp"
+#include "calibrate/outliers.hpp"
 #include "paper_rig.hpp"
 #include "simulate/render.hpp"
 #include <Eigen/LU>
@@ -134,22 +134,22 @@ BoardPose randomPose(const std::vector<Point3d>& object, scenes::Random& random)
 }
 
 //! What the cameras see, without what lies outside the images.
-Moment look(const RigModel& rig, const std::vector<Point3d>& object, const BoardPose& pose, bool direct, bool glass,
-            const Setup& setup, scenes::Random& random)
+View look(const RigModel& rig, const std::vector<Point3d>& object, const BoardPose& pose, bool direct, bool glass,
+          const Setup& setup, scenes::Random& random)
 {
     const Vec3d rvec = pose.rvec, tvec = pose.tvec;
-    Moment m = observe(rig, object, rvec, tvec, direct, SIGMA, random);
+    View view = observe(rig, object, rvec, tvec, direct, SIGMA, random);
     for (int c = 0; c < (int)rig.cameras.size() && setup.rendered; c++)
         for (bool through : {false, true})
         {
-            std::vector<Point2d>& pixels = (through ? m.glass : m.direct)[c];
+            std::vector<Point2d>& pixels = (through ? view.glass : view.direct)[c];
             if (allInside(pixels) && (through ? glass : direct))
                 pixels = findRendered(rig, c, through, rvec, tvec, random);
             else
                 pixels.clear();
         }
     for (int c = 0; c < (int)rig.cameras.size(); c++)
-        for (std::vector<Point2d>* pixels : {&m.direct[c], &m.glass[c]})
+        for (std::vector<Point2d>* pixels : {&view.direct[c], &view.glass[c]})
         {
             for (Point2d& p : *pixels)
                 if (!Rect2d(0, 0, 1280, 1024).contains(p))
@@ -160,8 +160,8 @@ Moment look(const RigModel& rig, const std::vector<Point3d>& object, const Board
                 pixels->clear();
         }
     if (!glass)
-        m.glass[0].clear(), m.glass[1].clear();
-    return m;
+        view.glass[0].clear(), view.glass[1].clear();
+    return view;
 }
 
 //! The images of a calibration, and where the board truly was in each.
@@ -181,16 +181,16 @@ Images takeImages(const RigModel& rig, const Setup& setup, scenes::Random& rando
     const int directs = 14, glasses = setup.paired() ? 6 : setup.hasDirect() ? 15 : 25;
     const auto take = [&](bool direct, bool glass)
     {
-        Moment moment;
+        View view;
         BoardPose pose;
-        while (!moment.hasDirect(0) && !moment.hasGlass())      // a rendered board may not be all in the image
+        while (!view.hasDirect(0) && !view.hasGlass())          // a rendered board may not be all in the image
         {
             pose = randomPose(object, random);
-            moment = look(rig, object, pose, direct, glass, setup, random);
+            view = look(rig, object, pose, direct, glass, setup, random);
         }
-        moment.stem = "view" + std::to_string(data.moments.size());
+        view.stem = "view" + std::to_string(data.views.size());
         images.poses.push_back(pose);
-        data.moments.push_back(moment);
+        data.views.push_back(view);
     };
     for (int i = 0; setup.hasDirect() && i < directs; i++)
         take(true, setup.paired() && i < glasses);
@@ -218,8 +218,8 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
         fit.tvecs.push_back(poses[i].tvec + noise(sigmaT));
         for (int c = 0; c < cameras; c++)
         {
-            direct[c].push_back(Mat(data.moments[i].direct[c], true));
-            glass[c].push_back(Mat(data.moments[i].glass[c], true));
+            direct[c].push_back(Mat(data.views[i].direct[c], true));
+            glass[c].push_back(Mat(data.views[i].glass[c], true));
         }
     }
     std::vector<Mat> Rs, Ts;
@@ -228,7 +228,7 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
         Rs.push_back(Mat(start.Rs[c], true));
         Ts.push_back(Mat(start.Ts[c], true));
     }
-    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.moments[0].objectPoints), direct, glass,
+    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.views[0].objectPoints), direct, glass,
                                 fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations,
                                 fit.covariance, noArray(), fit.imageStatus, fit.inliers, fit.otherMinima,
                                 flags | GLASS_USE_POSES | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS,
@@ -261,7 +261,7 @@ Fit calibrate(const Images& images, const Setup& setup, const RigModel& truth, s
     std::vector<LensSource> sources;
     RigModel start;
     if (setup.flow == Flow::ROBUST)
-        startWithoutWrongPoints(data, options, start, sources);
+        startWithoutOutliers(data, options, start, sources);
     else
         start = startModel(data, options, sources);
     if (setup.flow == Flow::KNOWN_POSES)
@@ -378,8 +378,8 @@ Honesty honestyOf(const Setup& setup, int trials, unsigned salt)
         try
         {
             const Fit fit = calibrate(images, setup, truth, random);
-            if (fit.freedom > 0 && !setup.rendered)     // known poses: the priors' residuals are no pixels
-                honesty.ratios["noise"].add(fit.sigma - SIGMA, SIGMA/std::sqrt(2.*fit.freedom));
+            if (fit.dof > 0 && !setup.rendered)         // known poses: the priors' residuals are no pixels
+                honesty.ratios["noise"].add(fit.sigma - SIGMA, SIGMA/std::sqrt(2.*fit.dof));
             compare(fit, truth, honesty);
             comparePoints(fit, truth, honesty);
         }
@@ -488,11 +488,11 @@ TEST_CASE("A moment whose images are all left out does not end a calibration", "
     const RigModel truth = trueRig(setup);
     scenes::Random random(9022);
     Images images = takeImages(truth, setup, random);
-    images.data.moments[7].direct[0].clear();       // both seemed to show a moved board
-    images.data.moments[7].direct[1].clear();
-    REQUIRE_FALSE(images.data.moments[7].hasGlass());
+    images.data.views[7].direct[0].clear();         // both seemed to show a moved board
+    images.data.views[7].direct[1].clear();
+    REQUIRE_FALSE(images.data.views[7].hasGlass());
     const Fit fit = calibrate(images, setup, truth, random);
-    CHECK(fit.moments.size() == images.data.moments.size() - 1);
+    CHECK(fit.views.size() == images.data.views.size() - 1);
     CHECK(fit.sigma == Approx(SIGMA).epsilon(0.1));
 }
 
@@ -501,18 +501,18 @@ TEST_CASE("Boards that took no part are as far off as stated, and the check sees
     std::cout << "seed " << scenes::seed() << '\n';
     const Setup setup{Flow::HAND_HELD, Medium::HOUSING, 1};
     const RigModel truth = trueRig(setup);
-    Misfit stated, tooSure;
+    HeldOutTest stated, tooSure;
     for (int trial = 0; trial < 10; trial++)
     {
         scenes::Random random(8100 + trial);
         const Images images = takeImages(truth, setup, random);
         const Fit fit = calibrate(images, setup, truth, random);
-        const std::vector<Point3d>& object = images.data.moments[0].objectPoints;
-        std::vector<Moment> fresh;
+        const std::vector<Point3d>& object = images.data.views[0].objectPoints;
+        std::vector<View> fresh;
         for (int i = 0; i < 5; i++)
             fresh.push_back(look(truth, object, randomPose(object, random), true, true, setup, random));     // pairs: they tell most
-        stated.add(misfitOf(fit.rig, fit.covariance, fit.sigma, fresh));
-        tooSure.add(misfitOf(fit.rig, Mat(0.04*fit.covariance), fit.sigma, fresh));
+        stated.add(testHeldOut(fit.rig, fit.covariance, fit.sigma, fresh));
+        tooSure.add(testHeldOut(fit.rig, Mat(0.04*fit.covariance), fit.sigma, fresh));
     }
     std::cout << "[numbers] held-out boards, error over stated: " << stated.calibrationRatio() << "; +- five times too small: "
               << tooSure.calibrationRatio() << std::endl;
@@ -574,19 +574,19 @@ struct SealedRig
         for (int i = 0; i < views; i++)
         {
             const double z = random.uniform(1000, 3000);
-            Moment m = observe(truth, board(9, 6, 60.), random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1)*z,
+            View view = observe(truth, board(9, 6, 60.), random.vector(0.5), Vec3d(random.uniform(-0.1, 0.1)*z,
                                random.uniform(-0.08, 0.08)*z, z), false, 0.3, random);
-            m.stem = "view" + std::to_string(i);
+            view.stem = "view" + std::to_string(i);
             for (int c = 0; c < 2; c++)
             {
-                for (Point2d& p : m.glass[c])
+                for (Point2d& p : view.glass[c])
                     if (!Rect2d(0, 0, 1280, 1024).contains(p))
                         p = Point2d(NAN, NAN);
-                displaceSome(m.glass[c], 0.05, random);
-                if (std::count_if(m.glass[c].begin(), m.glass[c].end(), seen) < 12)
-                    m.glass[c].clear();
+                displaceSome(view.glass[c], 0.05, random);
+                if (std::count_if(view.glass[c].begin(), view.glass[c].end(), seen) < 12)
+                    view.glass[c].clear();
             }
-            data.moments.push_back(m);
+            data.views.push_back(view);
         }
     }
 };
@@ -616,7 +616,7 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             std::vector<LensSource> sources;
             RigData data = scene.data;
             RigModel start;
-            startWithoutWrongPoints(data, options, start, sources);
+            startWithoutOutliers(data, options, start, sources);
             const Fit fit = fitAllImages(data, start, sources, options.flags);
             const Point3d a(-60, 20, 1800), b(60, -30, 2000);
             std::vector<Point2d> pixels1, pixels2;

@@ -21,8 +21,8 @@ RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
-        data.moments.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
-        data.moments.back().glass[0] = observe(rig, board(6, 5), rvec, tvec + shift, false, 0., random).glass[0];
+        data.views.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
+        data.views.back().glass[0] = observe(rig, board(6, 5), rvec, tvec + shift, false, 0., random).glass[0];
     }
     return data;
 }
@@ -34,7 +34,7 @@ RigCalibration calibrated(const RigModel& rig, const Vec3d& shift)
     c.data = pairsMovedBy(rig, shift);
     c.start = rig;
     c.lensSources.resize(1);
-    c.fit = fitImages(c.data, rig, allMoments(c.data), 0);
+    c.fit = fitImages(c.data, rig, allViews(c.data), 0);
     c.residuals = residualsOf(c.data, c.fit);
     return c;
 }
@@ -70,8 +70,8 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
     CHECK(worst > 0.8*nudge.worst);
 
     RigCalibration glassOnly = still;
-    for (Moment& m : glassOnly.data.moments)
-        m.direct[0].clear();
+    for (View& view : glassOnly.data.views)
+        view.direct[0].clear();
     CHECK(analyseTolerances(glassOnly, 1., true).size() == 5);
 }
 
@@ -91,13 +91,13 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
         const Vec3d rvec = random.vector(0.4);
-        right.data.moments.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
-        ofBent.moments.push_back(observe(rig, bent, rvec, tvec, true, 0., random));
-        ofBent.moments.back().objectPoints = board(6, 5);      // taken for flat
+        right.data.views.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
+        ofBent.views.push_back(observe(rig, bent, rvec, tvec, true, 0., random));
+        ofBent.views.back().objectPoints = board(6, 5);        // taken for flat
     }
     right.start = rig;
     right.lensSources.resize(2);
-    right.fit = fitImages(right.data, rig, allMoments(right.data), 0);
+    right.fit = fitImages(right.data, rig, allViews(right.data), 0);
     right.residuals = residualsOf(right.data, right.fit);
     const std::vector<Tolerance> tolerances = analyseTolerances(right, 1., true);
     REQUIRE(tolerances.size() >= 2);
@@ -111,7 +111,7 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     CHECK(square.rms == Approx(0.6).epsilon(0.2));
 
     // A calibration of images of a bent board, taken for flat.
-    const RigModel found = fitImages(ofBent, rig, allMoments(ofBent), 0).rig;
+    const RigModel found = fitImages(ofBent, rig, allViews(ofBent), 0).rig;
     double worst = 0.;
     for (const Point3d& X : {Point3d(0, 0, 600), Point3d(60, 40, 650), Point3d(-60, -40, 560), Point3d(50, -60, 610)})
     {

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/eigen_matrix.hpp"
+#include "measure/eigen_matrix.hpp"
 #include "assess/window_check.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
@@ -26,11 +26,11 @@ Mat calibratedCovariance(const RigModel& rig, const std::vector<Point3d>& object
     Mat covariance;
     for (int i = 0; i < 10; i++)
     {
-        const Moment m = observe(rig, object, random.vector(0.4), Vec3d(random.uniform(-30, 30), random.uniform(-20, 20),
-                                                                        random.uniform(560, 660)), true, SIGMA, random);
+        const View view = observe(rig, object, random.vector(0.4), Vec3d(random.uniform(-30, 30), random.uniform(-20, 20),
+                                                                         random.uniform(560, 660)), true, SIGMA, random);
         objects.push_back(object);
-        direct.push_back(m.direct[0]);
-        glass.push_back(m.glass[0]);
+        direct.push_back(view.direct[0]);
+        glass.push_back(view.glass[0]);
     }
     RigModel found = rig.clone();
     rms = calibrateGlass(objects, direct, glass, found.cameras[0], noArray(), noArray(), noArray(), covariance, noArray(),
@@ -80,10 +80,10 @@ Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int tr
         for (int k = 0; k < FREEDOM; k++)
             chi += std::pow(random.normal(1), 2);
         const double scale = chi/FREEDOM;
-        const CheckBasis basis{drawn(truth, covariance, random), covariance*scale, SIGMA*std::sqrt(scale), FREEDOM};
+        const CheckInput input{drawn(truth, covariance, random), covariance*scale, SIGMA*std::sqrt(scale), FREEDOM};
         const Vec3d rvec = random.vector(0.3), tvec(random.uniform(-20, 20), random.uniform(-20, 20), z);
         const auto check = [&](const RigModel& now) {
-            return checkTilts(basis, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
+            return checkTilts(input, {observe(now, object, rvec, tvec, true, SIGMA, random)}, FALSE_ALARM).windows[0];
         };
         const RigModel away = tilted(truth, tiltDeg, random.uniform(0, 2*CV_PI));
         const WindowCheck same = check(truth), other = check(away);
@@ -115,16 +115,16 @@ TEST_CASE("A large tilt of both windows is measured, and the camera named", "[wi
     std::cout << "seed " << scenes::seed() << '\n';
     const std::vector<Point3d> object = board(6, 5);
     const RigModel rig = paperRig(2), now = tilted(rig, 5., 1.);
-    const CheckBasis basis{rig, Mat(), 0.02, FREEDOM};
+    const CheckInput input{rig, Mat(), 0.02, FREEDOM};
     for (bool direct : {true, false})       // two cameras that see the same board need no image without the window
     {
-        const CheckResult result = checkTilts(basis, {observe(now, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620),
+        const CheckResult result = checkTilts(input, {observe(now, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620),
                                                                       direct, 0.02, random)}, FALSE_ALARM);
         REQUIRE(result.windows.size() == 2);
         CHECK(result.windows[0].moved);
         CHECK(result.windows[0].tiltDeg == Approx(5.).margin(5*result.windows[0].stdDeg[0]));
         CHECK_FALSE(result.windows[1].moved);
-        CHECK(result.misfitProbability > 1e-4);
+        CHECK(result.residualProbability > 1e-4);
         CHECK(result.sigmaSeen == Approx(0.02).epsilon(0.3));
     }
 }
@@ -135,11 +135,11 @@ TEST_CASE("A board that moved within its pair is no tilt of the window", "[windo
     std::cout << "seed " << scenes::seed() << '\n';
     const std::vector<Point3d> object = board(6, 5);
     const RigModel rig = paperRig(1);
-    Moment m = observe(rig, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620), true, 0.02, random);
-    m.glass[0] = observe(rig, object, Vec3d(0.2, 0.3, 0.02), Vec3d(-20, 0, 620), true, 0.02, random).glass[0];
-    CHECK(checkTilts({rig, Mat(), 0.02, FREEDOM}, {m}, FALSE_ALARM).misfitProbability < 1e-4);
+    View view = observe(rig, object, Vec3d(0.2, 0.3, 0), Vec3d(-20, 0, 620), true, 0.02, random);
+    view.glass[0] = observe(rig, object, Vec3d(0.2, 0.3, 0.02), Vec3d(-20, 0, 620), true, 0.02, random).glass[0];
+    CHECK(checkTilts({rig, Mat(), 0.02, FREEDOM}, {view}, FALSE_ALARM).residualProbability < 1e-4);
 
-    Moment without = m;
+    View without = view;
     without.glass[0].clear();
     CHECK_THROWS_AS(checkTilts({rig, Mat(), 0.02, FREEDOM}, {without}, FALSE_ALARM), Failure);
 }

@@ -11,19 +11,19 @@ using namespace tools;
 namespace {
 
 //! Views of one camera, as pairs if the names are common.
-RigViewSets views(const std::string& direct, const std::string& glass, double tilt, scenes::Random& random)
+RigImages images(const std::string& direct, const std::string& glass, double tilt, scenes::Random& random)
 {
     const RigModel rig = paperRig(1);
-    RigViewSets sets;
+    RigImages sets;
     for (int i = 0; i < 6; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
-        const Moment m = observe(rig, board(6, 5), random.vector(tilt), tvec, true, 0.1, random);
+        const View view = observe(rig, board(6, 5), random.vector(tilt), tvec, true, 0.1, random);
         const std::string number = std::to_string(i);
-        sets.direct[0].views.push_back({direct + number, "d/" + direct + number + ".png", m.direct[0], {}});
-        sets.glass[0].views.push_back({glass + number, "g/" + glass + number + ".png", m.glass[0], {}});
+        sets.direct[0].images.push_back({direct + number, "d/" + direct + number + ".png", view.direct[0], {}});
+        sets.glass[0].images.push_back({glass + number, "g/" + glass + number + ".png", view.glass[0], {}});
     }
-    for (ViewSet* set : {&sets.direct[0], &sets.glass[0]})
+    for (DetectedImages* set : {&sets.direct[0], &sets.glass[0]})
         set->imageSize = Size(1280, 1024);
     return sets;
 }
@@ -36,11 +36,11 @@ Target chessboard()
     return Target(options);
 }
 
-std::string allNotices(const RigViewSets& sets, bool unpaired)
+std::string allNotices(const RigImages& sets, bool unpaired)
 {
     std::string text;
     const Target target = chessboard();
-    for (const std::string& notice : noticesOf(sets, pairViews(&target, sets, unpaired)))
+    for (const std::string& notice : noticesOf(sets, groupIntoViews(&target, sets, unpaired)))
         text += notice + '\n';
     return text;
 }
@@ -50,16 +50,16 @@ std::string allNotices(const RigViewSets& sets, bool unpaired)
 TEST_CASE("Names that pair no image are refused, with both names and what to do", "[data_checks]")
 {
     scenes::Random random(810);
-    CHECK_NOTHROW(requirePairs(views("v", "v", 0.4, random)));
-    const RigViewSets sets = views("air", "wet", 0.4, random);
+    CHECK_NOTHROW(requirePairs(images("v", "v", 0.4, random)));
+    const RigImages sets = images("air", "wet", 0.4, random);
     CHECK_THROWS_WITH(requirePairs(sets), Catch::Contains("'air0'") && Catch::Contains("'wet0'")
                                           && Catch::Contains("--unpaired"));
 
-    RigViewSets oneGlass = sets;
-    oneGlass.glass[0].views.resize(1);
+    RigImages oneGlass = sets;
+    oneGlass.glass[0].images.resize(1);
     CHECK_NOTHROW(requirePairs(oneGlass));
 
-    RigViewSets notFound = sets;
+    RigImages notFound = sets;
     notFound.glass[0].withoutTarget = {"g/air0.png"};
     CHECK_THROWS_WITH(requirePairs(notFound), Catch::Contains("not found") && Catch::Contains("'air0'"));
 }
@@ -67,16 +67,16 @@ TEST_CASE("Names that pair no image are refused, with both names and what to do"
 TEST_CASE("One image under two names is told", "[data_checks]")
 {
     scenes::Random random(820);
-    RigViewSets sets = views("v", "v", 0.4, random);
+    RigImages sets = images("v", "v", 0.4, random);
     CHECK(allNotices(sets, false) == "");
-    sets.glass[0].views[4].points = sets.glass[0].views[1].points;
+    sets.glass[0].images[4].points = sets.glass[0].images[1].points;
     CHECK_THAT(allNotices(sets, false), Catch::Contains("'g/v1.png' and 'g/v4.png' are one image"));
 }
 
 TEST_CASE("Boards that are all parallel are told where they hide something", "[data_checks]")
 {
     scenes::Random random(830);
-    const RigViewSets flat = views("v", "v", 0.01, random), tilted = views("v", "v", 0.4, random);
+    const RigImages flat = images("v", "v", 0.01, random), tilted = images("v", "v", 0.4, random);
     CHECK_THAT(allNotices(flat, false), Catch::Contains("direct images are parallel"));
     CHECK_THAT(allNotices(flat, false), !Catch::Contains("through the window are parallel"));     // pairs do not mind
     CHECK_THAT(allNotices(flat, true), Catch::Contains("through the window are parallel"));
@@ -86,7 +86,7 @@ TEST_CASE("Boards that are all parallel are told where they hide something", "[d
 TEST_CASE("A target found in few of the images is told", "[data_checks]")
 {
     scenes::Random random(840);
-    RigViewSets sets = views("v", "v", 0.4, random);
+    RigImages sets = images("v", "v", 0.4, random);
     sets.direct[0].withoutTarget = {"a.png", "b.png", "c.png", "d.png", "e.png", "f.png", "g.png", "h.png"};
     CHECK_THAT(allNotices(sets, false), Catch::Contains("6 of 14 direct images") && Catch::Contains("--size"));
 }

@@ -22,8 +22,8 @@ RigData posesOf(const std::string& text, const std::string& unit = "mm", const s
     RigData data;
     for (const std::string& view : views)
     {
-        data.moments.emplace_back();
-        data.moments.back().stem = view;
+        data.views.emplace_back();
+        data.views.back().stem = view;
     }
     readPoses(folder / "poses.csv", unit, data);
     return data;
@@ -33,13 +33,13 @@ RigData posesOf(const std::string& text, const std::string& unit = "mm", const s
 
 TEST_CASE("Poses are read in the units that their columns name", "[poses_file]")
 {
-    const KnownPose plain = *posesOf("view,rx_deg,ry_deg,rz_deg,tx,ty,tz\nb,0,0,0,0,0,0\na,180,0,90,1,2,3\n").moments[0].pose;
+    const KnownPose plain = *posesOf("view,rx_deg,ry_deg,rz_deg,tx,ty,tz\nb,0,0,0,0,0,0\na,180,0,90,1,2,3\n").views[0].pose;
     CHECK(norm(plain.rvec - Vec3d(CV_PI, 0, CV_PI/2)) < 1e-12);
     CHECK(plain.tvec == Vec3d(1, 2, 3));
     CHECK(plain.covariance.empty());
 
     const KnownPose units = *posesOf("view,rx_rad,ry_rad,rz_rad,tx_mm,ty_cm,tz_m,sigma_deg,sigma_mm\na,0.1,0.2,0.3,1,2,3,0,0\n", "cm")
-        .moments[0].pose;
+        .views[0].pose;
     CHECK(units.rvec == Vec3d(0.1, 0.2, 0.3));
     CHECK(norm(units.tvec - Vec3d(0.1, 2, 300)) < 1e-12);
     CHECK(units.covariance.empty());            // 0: exact
@@ -49,7 +49,7 @@ TEST_CASE("Poses are read in the units that their columns name", "[poses_file]")
     std::string row = "a";
     for (double r : R.val)
         row += format(",%.17g", r);
-    const KnownPose matrix = *posesOf("view,r11,r12,r13,r21,r22,r23,r31,r32,r33,tx,ty,tz\n" + row + ",0,0,0\n").moments[0].pose;
+    const KnownPose matrix = *posesOf("view,r11,r12,r13,r21,r22,r23,r31,r32,r33,tx,ty,tz\n" + row + ",0,0,0\n").views[0].pose;
     CHECK(norm(matrix.rvec - Vec3d(0.3, -0.2, 0.5)) < 1e-12);
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("A deviation about each axis is that of the rotation vector, also of a
     std::cout << "seed " << scenes::seed() << '\n';
     const Vec3d rvec(1.2, -0.8, 2.);
     const KnownPose pose = *posesOf(format("view,rx_rad,ry_rad,rz_rad,tx,ty,tz,sigma_deg,sigma_m\na,%g,%g,%g,1,2,3,0.1,0.002\n",
-                                           rvec[0], rvec[1], rvec[2])).moments[0].pose;
+                                           rvec[0], rvec[1], rvec[2])).views[0].pose;
     REQUIRE(pose.covariance.size() == Size(6, 6));
     CHECK(pose.covariance.at<double>(4, 4) == Approx(4.));             // 2 mm
     const double sigma = 0.1*CV_PI/180;

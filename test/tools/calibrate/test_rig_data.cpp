@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// What belongs together: points of files by their coordinates, views by their names, cameras by what they see in common.
+// What belongs together: points of files by their coordinates, images by their names, cameras by what they see in common.
 #include "calibrate/rig_data.hpp"
 #include "target/points_csv.hpp"
 #include "temporary_folder.hpp"
@@ -13,25 +13,25 @@ using namespace tools;
 
 namespace {
 
-std::vector<DetectedView> readText(const std::string& text)
+std::vector<DetectedImage> readText(const std::string& text)
 {
     const TemporaryFolder folder;
     std::ofstream(folder / "points.csv") << text;
     return readPointsCsv(folder / "points.csv");
 }
 
-DetectedView viewOf(const std::string& name, const std::vector<Point3d>& object, double u)
+DetectedImage imageOf(const std::string& name, const std::vector<Point3d>& object, double u)
 {
-    DetectedView view{name, "points.csv", {}, object};
+    DetectedImage image{name, "points.csv", {}, object};
     for (size_t i = 0; i < object.size(); i++)
-        view.points.emplace_back(u + object[i].x, 10. + object[i].y);
-    return view;
+        image.points.emplace_back(u + object[i].x, 10. + object[i].y);
+    return image;
 }
 
-ViewSet setOf(const std::vector<DetectedView>& views)
+DetectedImages setOf(const std::vector<DetectedImage>& images)
 {
-    ViewSet set;
-    set.views = views;
+    DetectedImages set;
+    set.images = images;
     set.files = {"points.csv"};
     set.imageSize = Size(640, 480);
     return set;
@@ -43,19 +43,19 @@ const std::vector<Point3d> CUBE = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {
 
 TEST_CASE("A file of observed points is read as spreadsheets write it", "[points_csv]")
 {
-    const std::vector<DetectedView> views = readText("\xEF\xBB\xBFview,x,y,z,u,v\r\n# a comment\r\n\r\nb,1,2,3,10.5,20\r\n"
-                                                     "\"a, first\",-1e1,0,0.5,,\r\nb,4,5,6,nan,NaN\r\n");
-    REQUIRE(views.size() == 2);
-    CHECK(views[0].stem == "a, first");
-    CHECK(!seen(views[0].points.at(0)));
-    CHECK(views[0].objectPoints.at(0) == Point3d(-10, 0, 0.5));
-    CHECK(views[1].stem == "b");
-    REQUIRE(views[1].points.size() == 2);
-    CHECK(views[1].points[0] == Point2d(10.5, 20));
-    CHECK(views[1].objectPoints[1] == Point3d(4, 5, 6));
-    CHECK(!seen(views[1].points[1]));
+    const std::vector<DetectedImage> images = readText("\xEF\xBB\xBFview,x,y,z,u,v\r\n# a comment\r\n\r\nb,1,2,3,10.5,20\r\n"
+                                                       "\"a, first\",-1e1,0,0.5,,\r\nb,4,5,6,nan,NaN\r\n");
+    REQUIRE(images.size() == 2);
+    CHECK(images[0].stem == "a, first");
+    CHECK(!seen(images[0].points.at(0)));
+    CHECK(images[0].objectPoints.at(0) == Point3d(-10, 0, 0.5));
+    CHECK(images[1].stem == "b");
+    REQUIRE(images[1].points.size() == 2);
+    CHECK(images[1].points[0] == Point2d(10.5, 20));
+    CHECK(images[1].objectPoints[1] == Point3d(4, 5, 6));
+    CHECK(!seen(images[1].points[1]));
 
-    const std::vector<DetectedView> other = readText("v;u;z;y;x;view\n2;1;5;4;3;name\n");    // any order, semicolons
+    const std::vector<DetectedImage> other = readText("v;u;z;y;x;view\n2;1;5;4;3;name\n");   // any order, semicolons
     CHECK(other.at(0).objectPoints.at(0) == Point3d(3, 4, 5));
     CHECK(other[0].points[0] == Point2d(1, 2));
 }
@@ -82,32 +82,32 @@ TEST_CASE("Points that several cameras see are matched by their coordinates, wha
 {
     std::vector<Point3d> reversed(CUBE.rbegin(), CUBE.rend() - 2);      // without the first two
     reversed.push_back({7, 7, 7});                                      // that nobody else sees
-    RigViewSets sets;
-    sets.glass[0] = setOf({viewOf("a", CUBE, 100), viewOf("b", CUBE, 100)});
-    sets.glass[2] = setOf({viewOf("a", reversed, 300)});
-    sets.direct[2] = setOf({viewOf("a", CUBE, 500)});
-    const RigData data = pairViews(nullptr, sets, false);
+    RigImages sets;
+    sets.glass[0] = setOf({imageOf("a", CUBE, 100), imageOf("b", CUBE, 100)});
+    sets.glass[2] = setOf({imageOf("a", reversed, 300)});
+    sets.direct[2] = setOf({imageOf("a", CUBE, 500)});
+    const RigData data = groupIntoViews(nullptr, sets, false);
     CHECK(data.cameraCount == 3);
-    REQUIRE(data.moments.size() == 2);
-    const Moment& m = data.moments[0];
-    CHECK(m.stem == "a");
-    CHECK(m.countGlass() == 2);
-    CHECK(m.countDirect() == 1);
-    REQUIRE(m.objectPoints.size() == 9);
-    REQUIRE(m.glass[2].size() == 9);
-    REQUIRE(m.glass[0].size() == 9);
+    REQUIRE(data.views.size() == 2);
+    const View& view = data.views[0];
+    CHECK(view.stem == "a");
+    CHECK(view.countGlass() == 2);
+    CHECK(view.countDirect() == 1);
+    REQUIRE(view.objectPoints.size() == 9);
+    REQUIRE(view.glass[2].size() == 9);
+    REQUIRE(view.glass[0].size() == 9);
     for (size_t i = 0; i < 9; i++)
     {
-        CHECK(seen(m.glass[0][i]) == (i < 8));
-        CHECK(seen(m.glass[2][i]) == (i >= 2));
-        for (const std::vector<Point2d>* pixels : {&m.glass[0], &m.glass[2], &m.direct[2]})
+        CHECK(seen(view.glass[0][i]) == (i < 8));
+        CHECK(seen(view.glass[2][i]) == (i >= 2));
+        for (const std::vector<Point2d>* pixels : {&view.glass[0], &view.glass[2], &view.direct[2]})
             if (seen((*pixels)[i]))
-                CHECK((*pixels)[i].y == 10. + m.objectPoints[i].y);
+                CHECK((*pixels)[i].y == 10. + view.objectPoints[i].y);
     }
-    CHECK(m.isPair(2));
+    CHECK(view.isPair(2));
     CHECK(data.countPairs() == 1);
-    CHECK(data.moments[1].glass[2].empty());
-    CHECK(pairViews(nullptr, sets, true).moments.size() == 3);          // no pair
+    CHECK(data.views[1].glass[2].empty());
+    CHECK(groupIntoViews(nullptr, sets, true).views.size() == 3);       // no pair
 }
 
 TEST_CASE("Points of a file beside a board have the board's numbers where they are its corners", "[rig_data]")
@@ -118,29 +118,29 @@ TEST_CASE("Points of a file beside a board have the board's numbers where they a
     const Target target(options);
     std::vector<Point3d> some(target.objectPoints().begin() + 2, target.objectPoints().end());
     some.push_back({5, 5, 20});
-    RigViewSets sets;
-    sets.glass[0] = setOf({viewOf("a", some, 100)});
-    DetectedView board = viewOf("a", target.objectPoints(), 200);
+    RigImages sets;
+    sets.glass[0] = setOf({imageOf("a", some, 100)});
+    DetectedImage board = imageOf("a", target.objectPoints(), 200);
     board.objectPoints.clear();
     sets.glass[1] = setOf({board});
-    const Moment m = pairViews(&target, sets, false).moments.at(0);
-    REQUIRE(m.objectPoints.size() == 13);
-    CHECK(m.objectPoints[2] == target.objectPoints()[2]);
-    CHECK(!seen(m.glass[0][1]));
-    CHECK(m.glass[0][2] == Point2d(100 + m.objectPoints[2].x, 10 + m.objectPoints[2].y));
-    CHECK(seen(m.glass[0][12]));
-    CHECK(!seen(m.glass[1][12]));
-    CHECK(m.neighbours.size() == target.neighbours().size());
+    const View view = groupIntoViews(&target, sets, false).views.at(0);
+    REQUIRE(view.objectPoints.size() == 13);
+    CHECK(view.objectPoints[2] == target.objectPoints()[2]);
+    CHECK(!seen(view.glass[0][1]));
+    CHECK(view.glass[0][2] == Point2d(100 + view.objectPoints[2].x, 10 + view.objectPoints[2].y));
+    CHECK(seen(view.glass[0][12]));
+    CHECK(!seen(view.glass[1][12]));
+    CHECK(view.neighbours.size() == target.neighbours().size());
 }
 
 TEST_CASE("Cameras are placed one beside another, and one that shares nothing is named", "[rig_data]")
 {
-    RigViewSets sets;
-    sets.glass[0] = setOf({viewOf("a", CUBE, 1), viewOf("b", CUBE, 1)});
-    sets.glass[1] = setOf({viewOf("c", CUBE, 1), viewOf("d", CUBE, 1)});
-    sets.glass[2] = setOf({viewOf("b", CUBE, 1), viewOf("c", CUBE, 1)});
+    RigImages sets;
+    sets.glass[0] = setOf({imageOf("a", CUBE, 1), imageOf("b", CUBE, 1)});
+    sets.glass[1] = setOf({imageOf("c", CUBE, 1), imageOf("d", CUBE, 1)});
+    sets.glass[2] = setOf({imageOf("b", CUBE, 1), imageOf("c", CUBE, 1)});
     const std::vector<std::pair<int, int>> chain = {{0, 2}, {2, 1}};
-    CHECK(cameraLinks(pairViews(nullptr, sets, false), true) == chain);
-    sets.glass[3] = setOf({viewOf("e", CUBE, 1)});
-    CHECK_THROWS_WITH(cameraLinks(pairViews(nullptr, sets, false), true), Catch::Contains("camera 4"));
+    CHECK(cameraLinks(groupIntoViews(nullptr, sets, false), true) == chain);
+    sets.glass[3] = setOf({imageOf("e", CUBE, 1)});
+    CHECK_THROWS_WITH(cameraLinks(groupIntoViews(nullptr, sets, false), true), Catch::Contains("camera 4"));
 }

@@ -89,8 +89,8 @@ TEST_CASE("Images of one moment have one stem, frames one number", "[tools][fram
     const FramePairs pairs = pairsOf(Frames(folder / "l/*"), Frames(folder / "r/*"));
     REQUIRE(pairs.pairs.size() == 2);
     CHECK(pairs.pairs[1].stem == "b");
-    CHECK(pairs.alone1 == std::vector<std::string>{"only"});
-    CHECK(pairs.alone2 == std::vector<std::string>{"other"});
+    CHECK(pairs.unpaired1 == std::vector<std::string>{"only"});
+    CHECK(pairs.unpaired2 == std::vector<std::string>{"other"});
     CHECK(pairsOf(Frames(folder / "l/a.png"), Frames(folder / "r/b.png")).pairs.at(0).stem == "a");
 
     writeVideo(folder / "l.avi", 3);

@@ -35,7 +35,7 @@ struct PaperRig
 
 struct SceneOptions
 {
-    int moments = 10;
+    int views = 10;
     bool direct = true, stereo = false;
     double missing = 0.;                            // share of corners that are not seen
     double wrong = 0.;                              // share of corners that are 5 to 20 px off
@@ -58,7 +58,7 @@ void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsi
     scenes::Random random(salt);
     const std::vector<Point3d> object = boardPoints();
     std::ostringstream files[2][2];
-    for (int m = 0; m < options.moments; m++)
+    for (int m = 0; m < options.views; m++)
     {
         const Vec3d rvec = random.vector(0.4);
         Matx33d board, R;
@@ -177,11 +177,11 @@ TEST_CASE("refract_calib finds the normal from pairs and says how well", "[calib
     CHECK(r.err.empty());
 }
 
-//! fx that refract_calib finds from 14 moments without a lens from a file; the normal is checked here.
+//! fx that refract_calib finds from 14 views without a lens from a file; the normal is checked here.
 static double focalLengthOf(SceneOptions options, unsigned salt, const std::string& more)
 {
     const TemporaryFolder f;
-    options.moments = 14;
+    options.views = 14;
     writeScene(f, options, salt);
     const ToolResult r = runTool(inputs(f, std::string(PANE) + " --lens=opencv4" + more));
     INFO(r.out << r.err);
@@ -262,7 +262,7 @@ TEST_CASE("refract_calib is not plainly good if no board could check the +-", "[
     for (const auto& c : cases)
     {
         SceneOptions options;
-        options.moments = c.pairs;
+        options.views = c.pairs;
         writeScene(f, options, 117);
         const ToolResult r = runTool(inputs(f, PANE + c.options + " --summary=" + f / "summary.json"));
         INFO(r.out << r.err);
@@ -305,7 +305,7 @@ TEST_CASE("refract_calib tells of a second solution that fits as well, and not w
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 1;
+    options.views = 1;
     const std::string summary = " --no-cross-validation --no-robust --summary=" + f / "summary.json";
     ToolResult r{-1, "", ""};
     for (unsigned salt = 119; salt < 139 && !mentions(r.out, "a second solution"); salt++)     // not every board has one
@@ -434,7 +434,7 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 14;
+    options.views = 14;
     writeScene(f, options, 112);
     const ToolResult far = runTool(inputs(f, " --thickness=40 --index=1.5437" + lens(f)));
     INFO(far.out << far.err);
@@ -492,7 +492,7 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 14;
+    options.views = 14;
     writeScene(f, options, 121);
     const std::string images = " --direct=" + f / "direct1.vnl" + " --glass=" + f / "glass1.vnl";
     const std::string out = " --out=" + f / "calib.yml", board = "refract_calib --size=6x5 --image-size=1280x1024", known = lens(f);
@@ -586,7 +586,7 @@ TEST_CASE("refract_calib says that direct and glass images are swapped, or no pa
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 6;
+    options.views = 6;
     writeScene(f, options, 113);
     const std::string out = PANE + lens(f) + " --out=" + f / "calib.yml";
     const ToolResult swapped = runTool("refract_calib" + std::string(TARGET) + " --direct=" + f / "glass1.vnl" + " --glass="
@@ -610,7 +610,7 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 6;
+    options.views = 6;
     writeScene(f, options, 111);
     const ToolResult without = runTool(inputs(f, PANE + lens(f) + " --report=" + f / "report.html"), "PATH=/nonexistent");
     CHECK(without.code == 1);
@@ -740,7 +740,7 @@ TEST_CASE("refract_calib leaves wrong points and moved boards out, and names the
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 12;
+    options.views = 12;
     options.wrong = 0.1;
     writeScene(f, options, 116);
     const ToolResult robust = runTool(inputs(f, PANE + lens(f) + " --no-cross-validation --summary=" + f / "summary.json"));
@@ -764,7 +764,7 @@ TEST_CASE("refract_calib writes the same bytes for the same input", "[calib_tool
     const TemporaryFolder f;
     SceneOptions options;
     options.stereo = true;
-    options.moments = 5;
+    options.views = 5;
     writeScene(f, options, 114);
     const bool gnuplot = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
     const std::vector<std::string> names = gnuplot ? std::vector<std::string>{"calib.yml", "summary.json", "report.html"}
@@ -792,7 +792,7 @@ TEST_CASE("refract_calib says which combination of thickness and index is determ
 {
     const TemporaryFolder f;
     SceneOptions options;
-    options.moments = 20;
+    options.views = 20;
     writeScene(f, options, 115);
     const ToolResult r = runTool(inputs(f, PANE + lens(f) + " --free=thickness,index --no-cross-validation"));
     INFO(r.out << r.err);

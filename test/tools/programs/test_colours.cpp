@@ -274,7 +274,7 @@ TEST_CASE("Colours are refused where nothing tells of them, with one sentence", 
     REQUIRE(runTool(simulate + (f / "grey.yml") + " --out-dir=" + (f / "g")).code == 0);
     const std::string undistort = "refract_undistort " + (f / "g/truth.yml") + " " + (f / "g/glass/right1.png") + " --depth=1200" + out;
     const struct { std::string call, mentioned; } cases[] = {
-        {simulate + (f / "unknown.yml") + out, "unknown.yml' does not say what the window is made of"},
+        {simulate + (f / "unknown.yml") + out, "unknown.yml' does not name the window's materials"},
         {simulate + (f / "order.yml") + out, "red, green and blue"},
         {simulate + (f / "ultraviolet.yml") + out, "365"},
         {simulate + (f / "material.yml") + out, "N-BK7"},

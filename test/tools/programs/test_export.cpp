@@ -201,7 +201,7 @@ TEST_CASE("refract_export writes COLMAP's model, whose points and pixels belong 
     const std::vector<std::string> cameras = linesOf(folder / "m/cameras.txt"), images = linesOf(folder / "m/images.txt"),
                                    points = linesOf(folder / "m/points3D.txt");
     REQUIRE(cameras.size() == 2);
-    REQUIRE(images.size() == 2*4);      // two moments, two cameras; two lines each
+    REQUIRE(images.size() == 2*4);      // two views, two cameras; two lines each
     REQUIRE(points.size() == rig.points.size());
     std::map<int, Point3d> places;
     for (const std::string& line : points)

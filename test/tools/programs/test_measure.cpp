@@ -221,8 +221,8 @@ TEST_CASE("refract_measure gives no point for pixels that contradict each other"
     const std::string call = "refract_measure " + STEREO + "/truth.yml --pixel-sigma=0.014" + TARGET + " --out="
                              + (folder / "points.csv") + " ";
     const std::string swapped = image("measure2/z600_1") + " " + image("measure1/z600_1");
-    const std::string twoMoments = image("measure1/z600_1") + " " + image("measure2/z600_2");
-    for (const std::string& images : {swapped, twoMoments})
+    const std::string twoViews = image("measure1/z600_1") + " " + image("measure2/z600_2");
+    for (const std::string& images : {swapped, twoViews})
     {
         const ToolResult result = runTool(call + images);
         INFO(result.out << result.err);

@@ -358,7 +358,7 @@ TEST_CASE("refract_stereo refuses with one sentence and writes nothing", "[tools
         {tool + PAIR + " --depth=0,400" + out, "NEAR < FAR"},
         {tool + PAIR + " --depth=20,50" + out, "window"},
         {tool + PAIR + " --depth=20,1250" + out, "NEAR=20"},
-        {tool + PAIR + " --depth=110,130" + out, "see no point"},
+        {tool + PAIR + " --depth=110,130" + out, "have no common point"},
         {tool + images("black") + DEPTH + out, "looks alike"},
         {tool + images("flat") + DEPTH + out, "looks alike"},
         {tool + images("noise") + DEPTH + out, "looks alike"},

@@ -21,11 +21,11 @@ RigCalibration calibrationOf(int views, const std::string& path)
     {
         const std::string stem = format("%03d", i);
         const std::vector<Point2d> points = {{20, 20}, {60, 40}};
-        Moment m;
-        m.stem = stem;
-        m.objectPoints.resize(2);
-        m.glass[0] = points;
-        c.data.moments.push_back(m);
+        View view;
+        view.stem = stem;
+        view.objectPoints.resize(2);
+        view.glass[0] = points;
+        c.data.views.push_back(view);
         c.photos.push_back({path, stem, 0, true, points});
         for (const Point2d& p : points)
             c.residuals.push_back({0, i, true, p, Point2d(i + 1 < views ? 0.1 : 1., 0)});
@@ -57,7 +57,7 @@ TEST_CASE("Of very many images a report shows those to look at first, in their o
     CHECK(photosToShow(calibrationOf(40, "")).size() == 40);
     RigCalibration c = calibrationOf(300, "");
     c.photos[7].points.clear();                                         // not found
-    c.data.moments[150].glass[0][1] = Point2d(NAN, NAN);                // left out
+    c.data.views[150].glass[0][1] = Point2d(NAN, NAN);                  // left out
     c.residuals.erase(c.residuals.begin() + 301);
     const std::vector<Photo> shown = photosToShow(c);
     CHECK(shown.size() < 150);
@@ -80,7 +80,7 @@ TEST_CASE("The colour of a point says how far off it is, and one left out is tol
     CHECK(far[2] > far[1] + 60);                                        // orange
     CHECK(far[1] > 100);
     CHECK_FALSE(makeThumbnail(c, c.photos[1]).suspect);
-    c.data.moments[1].glass[0][0] = Point2d(NAN, NAN);
+    c.data.views[1].glass[0][0] = Point2d(NAN, NAN);
     c.residuals.erase(c.residuals.begin() + 2);
     const Thumbnail spoilt = makeThumbnail(c, c.photos[1]);
     const Vec3b red = decoded(spoilt).at<Vec3b>(20, 20);

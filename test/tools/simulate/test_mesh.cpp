@@ -136,17 +136,17 @@ TEST_CASE("a mesh's first triangle is the first of all its triangles", "[simulat
         {
             const Vec3d from = random.vector(100), direction = random.vector(50) - from;
             const SceneRay ray{from, normalize(direction), i % 2 ? 0. : 40.};
-            Meeting expected, found;
+            Intersection expected, found;
             for (const Mesh& triangle : alone)
-                triangle.meet(ray, expected);
-            const bool any = mesh.meet(ray, found);
+                triangle.intersect(ray, expected);
+            const bool any = mesh.intersect(ray, found);
             met += any;
             wrong += any != std::isfinite(found.s) || found.s != expected.s || (any && found.s <= ray.least)
                      || (any && norm(found.normal - expected.normal) > 1e-12);
             // What was met before stays where it is nearer.
-            Meeting before;
+            Intersection before;
             before.s = 0.5*expected.s;
-            if (any && mesh.meet(ray, before))
+            if (any && mesh.intersect(ray, before))
                 wrong++;
         }
         CAPTURE(count);

@@ -12,7 +12,7 @@ using namespace tools;
 TEST_CASE("The range of a scene is found from what both images show", "[tools][stereo][search]")
 {
     const ScenePair scene;
-    const std::vector<float> depths = depthsOfDetails(scene.rig, scene.left, scene.right);
+    const std::vector<float> depths = depthsOfFeatures(scene.rig, scene.left, scene.right);
     REQUIRE(depths.size() > 500);
     CHECK(std::is_sorted(depths.begin(), depths.end()));
     const cv::Vec2d range = depthRangeOf(depths);
@@ -26,8 +26,8 @@ TEST_CASE("Without details in common no range is found, and --depth asked for", 
 {
     const ScenePair scene;
     const cv::Mat black(scene.left.size(), CV_8U, cv::Scalar(0));
-    CHECK(depthsOfDetails(scene.rig, black, black).empty());
-    CHECK(depthsOfDetails(scene.rig, scene.left, black).empty());
+    CHECK(depthsOfFeatures(scene.rig, black, black).empty());
+    CHECK(depthsOfFeatures(scene.rig, scene.left, black).empty());
     for (const size_t few : {0, 29})
         CHECK_THROWS_WITH(depthRangeOf(std::vector<float>(few, 500.f)), Catch::Contains("--depth=NEAR,FAR"));
     const cv::Vec2d enough = depthRangeOf(std::vector<float>(30, 500.f));

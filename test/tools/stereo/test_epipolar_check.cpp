@@ -31,7 +31,7 @@ TEST_CASE("Points whose raw pixels miss each other's epipolar curve are taken aw
         cv::refract::triangulateRefractive(cameras[0].camera, cameras[1].camera, scene.rig.Rs[1], scene.rig.Ts[1], raw1, raw2, seen);
         Mat points(rig.size(), CV_32FC3, cv::Scalar::all(NAN));
         points.at<cv::Point3f>(y, x) = seen[0];
-        dropImpossible(rig, moved, disparities, points);
+        removeInconsistentPoints(rig, moved, disparities, points);
         INFO("off by " << off);
         CHECK(cv::countNonZero(points.reshape(1) == points.reshape(1)) == (std::abs(off) < 1 ? 3 : 0));
     }

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/advice.hpp"
-#include "assess/eigen_matrix.hpp"
-#include "assess/point_error.hpp"
-#include "assess/view_derivatives.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/point_error.hpp"
+#include "measure/view_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
@@ -32,20 +32,20 @@ struct Placement
 
 enum Kind { PAIR, GLASS_ONLY, DIRECT_ONLY };
 
-class Adviser
+class ViewPlanner
 {
 public:
-    explicit Adviser(const RigCalibration& c)
-        : c_(c), board_(c.data.moments[c.fit.moments[0]].objectPoints), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
+    explicit ViewPlanner(const RigCalibration& c)
+        : c_(c), board_(c.data.views[c.fit.views[0]].objectPoints), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
 
     const MatrixXd& now() const { return now_; }
 
     //! @param columns of the error maps
-    Worth worthOf(const MatrixXd& covariance, int columns = ERROR_MAP_COLUMNS) const
+    Quality qualityOf(const MatrixXd& covariance, int columns = ERROR_MAP_COLUMNS) const
     {
-        Worth worth;
+        Quality quality;
         for (int k = 0; k < c_.data.cameraCount; k++)
-            worth.normalStdDeg.push_back(normalStdDeg(toMat(covariance), c_.fit.rig, k)[0]);
+            quality.normalStdDeg.push_back(normalStdDeg(toMat(covariance), c_.fit.rig, k)[0]);
         Calibration calibration = calibrationOf(c_.fit.rig);
         calibration.covariance = toMat(covariance);
         const Vec3d depth = workingDepth(c_, 0);
@@ -55,16 +55,16 @@ public:
         {
             const ErrorMap map = mapErrors(calibration, z, sigma_, columns);
             if (map.seen())
-                worth.worstPoint = std::fmax(worth.worstPoint, map.worst());
+                quality.worstPoint = std::fmax(quality.worstPoint, map.worst());
             for (size_t i = 0; i < map.total.size(); i++)
                 if (map.total[i] == map.total[i])
                 {
-                    squares += map.total[i]*map.total[i] - map.ofPixels[i]*map.ofPixels[i];
+                    squares += map.total[i]*map.total[i] - map.pixelNoise[i]*map.pixelNoise[i];
                     count++;
                 }
         }
-        worth.calibrationPart = count ? std::sqrt(std::max(0., squares)/count) : NONE;
-        return worth;
+        quality.calibrationPart = count ? std::sqrt(std::max(0., squares)/count) : NONE;
+        return quality;
     }
 
     /** The square root of what a view tells about the parameters; empty if too little of the board is seen by camera 1, or by
@@ -86,7 +86,7 @@ public:
         if (c_.data.cameraCount > 1 && images.back().camera == 0)
             return MatrixXd();
         const ViewDerivatives d = differentiateView(c_.fit.rig, board_, placement.rvec, placement.tvec, images);
-        const MatrixXd J = WithoutPose(d.byPose)(d.byParameters);
+        const MatrixXd J = PoseNullSpace(d.byPose)(d.byParameters);
         const Eigen::Index n = std::min(J.rows(), J.cols());
         return Eigen::HouseholderQR<MatrixXd>(J).matrixQR().topRows(n).triangularView<Eigen::Upper>();
     }
@@ -144,40 +144,40 @@ private:
 
 Advice adviseImages(const RigCalibration& calibration)
 {
-    const Adviser adviser(calibration);
+    const ViewPlanner planner(calibration);
     Advice advice;
-    advice.now = adviser.worthOf(adviser.now());
+    advice.now = planner.qualityOf(planner.now());
     if (!(calibration.square > 0))      // where another target would be put nobody knows
         return advice;
     std::vector<Placement> placements;
     std::vector<MatrixXd> informations;
-    for (const Placement& placement : adviser.placements())
+    for (const Placement& placement : planner.placements())
     {
-        const MatrixXd information = adviser.informationOf(placement, PAIR);
+        const MatrixXd information = planner.informationOf(placement, PAIR);
         if (information.size() == 0)
             continue;
         placements.push_back(placement);
         informations.push_back(information);
     }
-    MatrixXd covariance = adviser.now();
+    MatrixXd covariance = planner.now();
     int first = -1;
     for (int n = 0; n < NEXT && !placements.empty(); n++)
     {
-        Shot best;
+        PlannedImage best;
         MatrixXd bestCovariance;
         int at = -1;
         for (size_t i = 0; i < placements.size(); i++)
         {
-            const MatrixXd after = adviser.covarianceAfter(covariance, informations[i]);
-            const Worth worth = adviser.worthOf(after, GRID_COLUMNS);
-            if (at >= 0 && !(worth.calibrationPart < best.worth.calibrationPart))
+            const MatrixXd after = planner.covarianceAfter(covariance, informations[i]);
+            const Quality quality = planner.qualityOf(after, GRID_COLUMNS);
+            if (at >= 0 && !(quality.calibrationPart < best.quality.calibrationPart))
                 continue;
-            best = {placements[i].words, worth};
+            best = {placements[i].words, quality};
             bestCovariance = after;
             at = (int)i;
         }
         covariance = bestCovariance;
-        best.worth = adviser.worthOf(covariance);
+        best.quality = planner.qualityOf(covariance);
         advice.pairs.push_back(best);
         if (n == 0)
             first = at;
@@ -187,8 +187,8 @@ Advice adviseImages(const RigCalibration& calibration)
     const struct { Kind kind; const char* words; } others[] = {{GLASS_ONLY, "only the image through the window of the first"},
                                                               {DIRECT_ONLY, "only the direct image of the first"}};
     for (const auto& other : others)
-        advice.instead.push_back({other.words, adviser.worthOf(
-            adviser.covarianceAfter(adviser.now(), adviser.informationOf(placements[first], other.kind)))});
+        advice.instead.push_back({other.words, planner.qualityOf(
+            planner.covarianceAfter(planner.now(), planner.informationOf(placements[first], other.kind)))});
     return advice;
 }
 

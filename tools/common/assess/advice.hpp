@@ -6,29 +6,29 @@
 
 #include "assess/rig_calibration.hpp"
 
-/* Which images to take next, and what they would bring: the covariance is known before an image is taken, as it depends on
-where the board is and not on what the noise will be. */
+/* Which images to take next, and how much they would improve the calibration. The covariance is known before an image is taken: it
+depends on the pose of the board and not on the noise. */
 namespace tools {
 
-//! What the calibration is worth, in the two numbers that matter.
-struct Worth
+//! The quality of a calibration, in two numbers.
+struct Quality
 {
     std::vector<double> normalStdDeg;   //!< of each window, larger principal one
     double worstPoint = NONE;           //!< expected error of the worst point of the working volume, see point_error.hpp
     double calibrationPart = NONE;      //!< the part of it that better calibration removes, RMS over the volume
 };
 
-struct Shot
+struct PlannedImage
 {
-    std::string words;                  //!< where to hold the board
-    Worth worth;                        //!< with this image and all before it
+    std::string placement;              //!< of the board, in words
+    Quality quality;                    //!< with this image and all before it
 };
 
 struct Advice
 {
-    Worth now;
-    std::vector<Shot> pairs;            //!< the best next pairs, one after the other
-    std::vector<Shot> instead;          //!< other kinds of image in place of the first, each alone
+    Quality now;
+    std::vector<PlannedImage> pairs;    //!< the best next pairs, one after the other
+    std::vector<PlannedImage> instead;  //!< other kinds of image in place of the first, each by itself
 };
 
 Advice adviseImages(const RigCalibration& calibration);

@@ -20,7 +20,7 @@ Assessment assess(const RigCalibration& c, bool quiet)
         result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS));
     result.tolerances = analyseTolerances(c, 1./millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
-    result.contradictions = contradictedValues(c);
+    result.contradictions = testGivenValues(c.data, c.options, c.fit);
     return result;
 }
 

@@ -5,11 +5,11 @@
 #define REFRACT_TOOLS_ASSESSMENT_HPP
 
 #include "assess/advice.hpp"
-#include "assess/given_values.hpp"
-#include "assess/point_error.hpp"
+#include "diagnose/hypothesis_tests.hpp"
+#include "measure/point_error.hpp"
 #include "assess/tolerance.hpp"
 
-/* What a calibration is good for: how well it measures, what wrong values would do to it, what the next images would bring. */
+/* The quality of a calibration: the errors of measured points, its sensitivity to wrong given values, the gain of the next images. */
 namespace tools {
 
 struct Assessment

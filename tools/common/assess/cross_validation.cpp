@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/cross_validation.hpp"
-#include "assess/measurement.hpp"
+#include "measure/measurement.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "console/failure.hpp"
@@ -18,12 +18,12 @@ namespace tools {
 namespace {
 
 const int FOLDS = 5;
-const size_t MIN_HELD_OUT = 3;      // moments with a glass image, to hold any of them out
+const size_t MIN_HELD_OUT = 3;      // views with a glass image, to hold any of them out
 
 //! Range of the board's middle from camera 1.
 double rangeOf(const RigData& data, const Fit& fit, size_t k)
 {
-    const std::vector<Point3d>& object = data.moments[fit.moments[k]].objectPoints;
+    const std::vector<Point3d>& object = data.views[fit.views[k]].objectPoints;
     Point3d middle;
     for (const Point3d& X : object)
         middle += X*(1./object.size());
@@ -32,13 +32,13 @@ double rangeOf(const RigData& data, const Fit& fit, size_t k)
     return norm(R*Vec3d(middle) + fit.tvecs[k]);
 }
 
-//! Moments with a glass image, nearest board first; the others, which are never held out.
-void splitMoments(const RigData& data, const Fit& fit, std::vector<std::pair<double, int>>& byRange, std::vector<int>& always)
+//! Views with a glass image, nearest board first; the others, which are never held out.
+void splitViews(const RigData& data, const Fit& fit, std::vector<std::pair<double, int>>& byRange, std::vector<int>& always)
 {
-    for (size_t k = 0; k < fit.moments.size(); k++)
+    for (size_t k = 0; k < fit.views.size(); k++)
     {
-        const int i = fit.moments[k];
-        if (data.moments[i].hasGlass())
+        const int i = fit.views[k];
+        if (data.views[i].hasGlass())
             byRange.push_back({rangeOf(data, fit, k), i});
         else
             always.push_back(i);
@@ -46,7 +46,7 @@ void splitMoments(const RigData& data, const Fit& fit, std::vector<std::pair<dou
     std::sort(byRange.begin(), byRange.end());
 }
 
-//! A fit of some moments; no cameras if they do not determine it.
+//! A fit of some views; no cameras if they do not determine it.
 Fit trainWindow(const RigData& data, const Fit& fit, int flags, const std::vector<int>& train)
 {
     try
@@ -89,43 +89,43 @@ private:
     int count_ = 0;
 };
 
-void addLengths(const RigModel& rig, const Moment& m, Pool& lengths)
+void addLengths(const RigModel& rig, const View& view, Pool& lengths)
 {
-    if (m.countGlass() < 2)
+    if (view.countGlass() < 2)
         return;
-    const std::vector<Point3d> points = measureRig(calibrationOf(rig), glassPixels(m, (int)rig.cameras.size()), NONE).points;
-    for (const auto& pair : m.neighbours)
+    const std::vector<Point3d> points = measureRig(calibrationOf(rig), glassPixels(view, (int)rig.cameras.size()), NONE).points;
+    for (const auto& pair : view.neighbours)
     {
         const double length = norm(points[pair.second] - points[pair.first]);
         if (length == length)
-            lengths.add(length - norm(m.objectPoints[pair.second] - m.objectPoints[pair.first]));
+            lengths.add(length - norm(view.objectPoints[pair.second] - view.objectPoints[pair.first]));
     }
 }
 
 //! The board where the direct image shows it: what the glass image should then be.
-void addTransfer(const Ptr<RefractiveCamera>& camera, const Moment& m, int c, Pool& errors)
+void addTransfer(const Ptr<RefractiveCamera>& camera, const View& view, int c, Pool& errors)
 {
     Vec3d rvec, tvec;
-    if (!m.isPair(c) || !refractiveSolvePnP(m.objectPoints, m.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
+    if (!view.isPair(c) || !refractiveSolvePnP(view.objectPoints, view.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
         return;
     std::vector<Point2d> predicted;
-    refractiveProjectPoints(m.objectPoints, rvec, tvec, camera, predicted);
+    refractiveProjectPoints(view.objectPoints, rvec, tvec, camera, predicted);
     for (size_t i = 0; i < predicted.size(); i++)
     {
-        const double error = norm(m.glass[c][i] - predicted[i]);
+        const double error = norm(view.glass[c][i] - predicted[i]);
         if (error == error)
             errors.add(error);
     }
 }
 
-void addMisfit(const RigData& data, const Fit& trained, const std::vector<int>& test, Misfit& misfit)
+void addTest(const RigData& data, const Fit& trained, const std::vector<int>& test, HeldOutTest& covarianceTest)
 {
-    std::vector<Moment> moments;
+    std::vector<View> views;
     for (int i : test)
-        moments.push_back(data.moments[i]);
+        views.push_back(data.views[i]);
     try
     {
-        misfit.add(misfitOf(trained.rig, trained.covariance, trained.sigma, moments));
+        covarianceTest.add(testHeldOut(trained.rig, trained.covariance, trained.sigma, views));
     }
     catch (const Failure&) {}       // no pose: the other numbers say it
 }
@@ -135,7 +135,7 @@ double testRig(const RigData& data, const RigModel& rig, const std::vector<int>&
     PooledRms rms;
     for (size_t c = 0; c < rig.cameras.size(); c++)
         for (int i : test)
-            rms.add(data.moments[i].objectPoints, data.moments[i].glass[c], rig.cameras[c]);
+            rms.add(data.views[i].objectPoints, data.views[i].glass[c], rig.cameras[c]);
     return rms.value();
 }
 
@@ -145,7 +145,7 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
 {
     std::vector<std::pair<double, int>> byRange;
     std::vector<int> always;
-    splitMoments(data, fit, byRange, always);
+    splitViews(data, fit, byRange, always);
     HeldOut result;
     if (byRange.size() < MIN_HELD_OUT)
         return result;
@@ -164,21 +164,21 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
         if (window.cameras.empty())
             result.failed += (int)test.size();
         else
-            addMisfit(data, trained, test, result.misfit);
+            addTest(data, trained, test, result.covarianceTest);
         for (int i : test)
         {
-            const Moment& m = data.moments[i];
+            const View& view = data.views[i];
             for (size_t c = 0; c < window.cameras.size(); c++)
             {
-                px.add(m.objectPoints, m.glass[c], window.cameras[c]);
-                addTransfer(window.cameras[c], m, (int)c, transfer);
+                px.add(view.objectPoints, view.glass[c], window.cameras[c]);
+                addTransfer(window.cameras[c], view, (int)c, transfer);
             }
             for (size_t c = 0; c < pinhole.cameras.size(); c++)
-                pinholePx.add(m.objectPoints, m.glass[c], pinhole.cameras[c]);
+                pinholePx.add(view.objectPoints, view.glass[c], pinhole.cameras[c]);
             if (!window.cameras.empty())
-                addLengths(window, m, lengths);
+                addLengths(window, view, lengths);
             if (!pinhole.cameras.empty())
-                addLengths(pinhole, m, pinholeLengths);
+                addLengths(pinhole, view, pinholeLengths);
         }
     }
     result.px = px.value();
@@ -194,7 +194,7 @@ NearFar nearAgainstFar(const RigData& data, const Fit& fit, int flags)
 {
     std::vector<std::pair<double, int>> byRange;
     std::vector<int> always, nearHalf, farHalf;
-    splitMoments(data, fit, byRange, always);
+    splitViews(data, fit, byRange, always);
     NearFar result;
     if (byRange.size() < 4)
         return result;

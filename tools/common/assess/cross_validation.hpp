@@ -5,21 +5,20 @@
 #define REFRACT_TOOLS_CROSS_VALIDATION_HPP
 
 #include "assess/rig_checks.hpp"
-#include "assess/sight.hpp"
+#include "assess/heldout_test.hpp"
 
-/* What the calibration is worth on images that it has not seen: the numbers to judge it by. Lens, window and rig come from
-some of the moments; the others are held out. A lens that does not take part in the fit (given, or from direct images alone)
-stays. */
+/* Cross-validation: the errors of a calibration on images that it was not fitted to. Lens, window and rig are fitted to some of the
+views; the others are held out. A lens that is not part of the fit (given, or from direct images alone) stays. */
 namespace tools {
 
-/** Each moment with a glass image is held out once; the rest calibrates. NaN: not applicable. */
+/** Each view with a glass image is held out once, and the calibration is fitted to the others. NaN: not applicable. */
 struct HeldOut
 {
     int folds = 0;                  //!< 0: not done
-    int views = 0, failed = 0;      //!< moments held out; those whose rest did not determine the window
+    int views = 0, failed = 0;      //!< views held out; those without which the window was not determined
     double px = NONE;               //!< RMS through the window, the board's pose fitted to the one image
     double pinholePx = NONE;        //!< the same for a pinhole calibrated through the glass
-    Misfit misfit;                  //!< of all images of the moments, over all folds: error against what was stated
+    HeldOutTest covarianceTest;     //!< of all images of the views, over all folds: errors against the stated covariance
     double transferPx = NONE;       //!< RMS through the window, the board's pose from the direct image of the pair alone
     double lengthRms = NONE;        //!< several cameras: distances of neighbouring corners, triangulated minus true, RMS
     double lengthMean = NONE;

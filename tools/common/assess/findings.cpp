@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/findings.hpp"
-#include "assess/f_distribution.hpp"
+#include "measure/f_distribution.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
@@ -37,7 +37,7 @@ std::string of(const RigCalibration& c, int camera)
 
 bool equalMedia(const GlassWindow& window) { return window.innerIndex == window.outerIndex; }
 
-void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
+void checkLimits(const RigCalibration& c, const Assessment& a, Findings& f)
 {
     const Limits& limits = c.limits;
     if (limits.rms > 0)
@@ -54,7 +54,7 @@ void judgeLimits(const RigCalibration& c, const Assessment& a, Findings& f)
     }
 }
 
-void judgeWindow(const RigCalibration& c, int camera, Findings& f)
+void checkWindow(const RigCalibration& c, int camera, Findings& f)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const WindowStd std = windowStd(c.fit, camera);
@@ -84,8 +84,8 @@ void judgeWindow(const RigCalibration& c, int camera, Findings& f)
                                "has exactly no effect on the image (and is not needed)");
     if (c.data.countPairs(camera) == 0 && std.normalDeg[0] > WEAK_NORMAL_DEG)
         f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
-                               "place, so tilt and board poses are partly exchangeable. Pairs are worth 30 to 90 times more "
-                               "than such glass-only views");
+                               "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
+                               "such glass-only views");
 }
 
 //! Thickness and index of a single layer: what shows at small angles, and how well it is known.
@@ -106,7 +106,7 @@ std::string opticalPath(const RigCalibration& c, int camera)
 
 bool isOneOf(const EstimatedParameter& p, int first, int second) { return p.column == first || p.column == second; }
 
-void judgeCorrelations(const RigCalibration& c, Findings& f)
+void checkCorrelations(const RigCalibration& c, Findings& f)
 {
     const std::vector<EstimatedParameter> free = estimatedWindowParameters(c.fit);
     for (size_t i = 0; i < free.size(); i++)
@@ -138,7 +138,7 @@ void judgeCorrelations(const RigCalibration& c, Findings& f)
         }
 }
 
-void judgeFit(const RigCalibration& c, int camera, Findings& f)
+void checkFit(const RigCalibration& c, int camera, Findings& f)
 {
     const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
     // What the direct images reach without the window; in the joint fit a wrong window drags them along.
@@ -170,12 +170,12 @@ void judgeFit(const RigCalibration& c, int camera, Findings& f)
                                                 depth[2], c.unit.c_str()));
 }
 
-void judgeViews(const RigCalibration& c, int camera, Findings& f)
+void checkViews(const RigCalibration& c, int camera, Findings& f)
 {
     for (bool glass : {true, false})
     {
         std::vector<std::pair<double, int>> views;
-        for (int i : c.fit.moments)
+        for (int i : c.fit.views)
         {
             const Rms rms = rmsOf(c, camera, glass, i);
             if (rms.points)
@@ -187,15 +187,15 @@ void judgeViews(const RigCalibration& c, int camera, Findings& f)
         const double median = views[views.size()/2].first;
         for (const auto& view : views)
             if (view.first > OUTLYING_VIEW*median)
-                f.weak.push_back(of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the middle view has %.3f px; look at "
-                                 "the image, leave it out if corners are wrong", c.data.moments[view.second].stem.c_str(),
+                f.weak.push_back(of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the median view has %.3f px; look at "
+                                 "the image, leave it out if corners are wrong", c.data.views[view.second].stem.c_str(),
                                  glass ? "through the window" : "direct", view.first, median));
     }
     const double sigma = windowStd(c.fit, camera).normalDeg[0];
     for (const Influence& influence : c.influences)
         if (influence.turnDeg[camera] > INFLUENTIAL*sigma)
             f.weak.push_back(of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
-                             c.data.moments[influence.moment].stem.c_str(), influence.turnDeg[camera],
+                             c.data.views[influence.view].stem.c_str(), influence.turnDeg[camera],
                              influence.turnDeg[camera]/sigma));
 }
 
@@ -208,22 +208,22 @@ bool isLensFree(const RigCalibration& c, int camera)
 std::string whyNotChecked(const RigCalibration& c)
 {
     const HeldOut& h = c.heldOut;
-    if (h.misfit.directions)
+    if (h.covarianceTest.directions)
         return "";
     if (!c.crossValidated)
         return "with --no-cross-validation all boards took part";
     if (!h.folds)
         return "there are too few images through the window to hold any out";
-    if (h.failed == h.views || !(h.misfit.expectedSquares > 0))
+    if (h.failed == h.views || !(h.covarianceTest.expectedSquares > 0))
         return "without the boards held out the others do not determine the calibration";
     return "on the held-out boards the calibration's stated error is below the noise of the pixels, so they cannot show "
            "whether it is true";
 }
 
-//! Boards that took no part against what was stated of them.
-void judgeHeldOut(const RigCalibration& c, Findings& f)
+//! The errors on held-out boards against the stated ones.
+void checkHeldOut(const RigCalibration& c, Findings& f)
 {
-    const Misfit& m = c.heldOut.misfit;
+    const HeldOutTest& m = c.heldOut.covarianceTest;
     f.notChecked = whyNotChecked(c);
     if (!f.notChecked.empty())
     {
@@ -233,8 +233,8 @@ void judgeHeldOut(const RigCalibration& c, Findings& f)
     const double perDirection = m.chiSquare/m.directions;
     // The folds share most of their images: as if there were only one.
     const int pairsOfDirections = std::max(1, m.directions/c.heldOut.folds/2);
-    if (upperTailF(pairsOfDirections, c.fit.freedom, perDirection) < HELD_OUT_CHANCE)
-        f.weak.push_back(format("boards that took no part are %.1f times as far off as the calibration's +- says: the stated "
+    if (upperTailF(pairsOfDirections, c.fit.dof, perDirection) < HELD_OUT_CHANCE)
+        f.weak.push_back(format("the errors on held-out boards are %.1f times as large as the calibration's +- says: the stated "
                                 "uncertainties are too small. A given value, the lens model or the target may be wrong, or "
                                 "the window not flat", std::sqrt(perDirection)));
 }
@@ -243,9 +243,9 @@ void judgeHeldOut(const RigCalibration& c, Findings& f)
 std::string scaleInWords(const RigCalibration& c)
 {
     double width = 0.;
-    for (int i : c.fit.moments)
+    for (int i : c.fit.views)
     {
-        const std::vector<Point3d>& points = c.data.moments[i].objectPoints;
+        const std::vector<Point3d>& points = c.data.views[i].objectPoints;
         for (const Point3d& X : points)
             width = std::max(width, norm(X - points[0]));
     }
@@ -257,7 +257,7 @@ std::string scaleInWords(const RigCalibration& c)
     return text;
 }
 
-void judgeAssumptions(const RigCalibration& c, Findings& f)
+void checkAssumptions(const RigCalibration& c, Findings& f)
 {
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
@@ -284,8 +284,8 @@ void judgeAssumptions(const RigCalibration& c, Findings& f)
         if (c.data.countPairs(k))
             f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
                                 "all the same way, which no residual shows");
-    if (!c.wrong.fault.empty())
-        f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.wrong.fault);
+    if (!c.outliers.fault.empty())
+        f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.outliers.fault);
     f.assumed.push_back((c.square > 0 ? "a flat board with even spacing" : "a rigid target that is as its coordinates say")
                         + std::string(", a flat window with parallel surfaces, and independent corner noise"));
 }
@@ -348,23 +348,23 @@ std::string Findings::verdict() const
     return notChecked.empty() ? "Good" : "Good, but not checked: " + notChecked;
 }
 
-Findings judge(const RigCalibration& calibration, const Assessment& assessment)
+Findings findingsOf(const RigCalibration& calibration, const Assessment& assessment)
 {
     Findings findings;
     findings.weak = calibration.notices;
-    judgeLimits(calibration, assessment, findings);
+    checkLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {
         if (calibration.fit.rig.ownsWindow(c))
-            judgeWindow(calibration, c, findings);
-        judgeFit(calibration, c, findings);
-        judgeViews(calibration, c, findings);
+            checkWindow(calibration, c, findings);
+        checkFit(calibration, c, findings);
+        checkViews(calibration, c, findings);
     }
-    judgeCorrelations(calibration, findings);
-    judgeHeldOut(calibration, findings);
+    checkCorrelations(calibration, findings);
+    checkHeldOut(calibration, findings);
     for (const Contradiction& contradiction : assessment.contradictions)
         findings.contradictions.push_back(contradiction.sentence);
-    judgeAssumptions(calibration, findings);
+    checkAssumptions(calibration, findings);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
         mergeCameras(calibration, *list);
     return findings;

@@ -8,32 +8,32 @@
 
 namespace tools {
 
-//! A limit that the caller set, and what there is instead.
+//! A limit that the caller set, and the value to compare with it.
 struct LimitCheck
 {
     std::string option, what;       //!< "--max-rms=0.3", "RMS over all corners"
-    double limit, value;            //!< value NaN: there is none, which does not meet the limit
+    double limit, value;            //!< value NaN: unknown, which does not meet the limit
     std::string unit;
 
     bool met() const { return value <= limit; }
     std::string sentence() const;
 };
 
-//! What a technician must know, in sentences.
+//! The result for a technician, in sentences.
 struct Findings
 {
     std::vector<LimitCheck> limits;
-    std::vector<std::string> contradictions;    //!< between the images and what was given
-    std::vector<std::string> weak;          //!< to be mended, and how
-    std::vector<std::string> cannotTell;    //!< what these data do not say
-    std::vector<std::string> assumed;       //!< taken as given
-    std::string notChecked;                 //!< why no held-out board says whether the +- is true; empty: they do
+    std::vector<std::string> contradictions;    //!< between the images and given values
+    std::vector<std::string> weak;          //!< weak points, and how to improve them
+    std::vector<std::string> cannotTell;    //!< what these data do not determine
+    std::vector<std::string> assumed;       //!< taken as exact
+    std::string notChecked;                 //!< why held-out boards do not test the +-; empty: they do
 
     bool pass() const;              //!< all limits are met
-    std::string verdict() const;    //!< PASS or FAIL where there are limits, otherwise in words
+    std::string verdict() const;    //!< PASS or FAIL if there are limits, otherwise in words
 };
 
-Findings judge(const RigCalibration& calibration, const Assessment& assessment);
+Findings findingsOf(const RigCalibration& calibration, const Assessment& assessment);
 
 } // namespace tools
 

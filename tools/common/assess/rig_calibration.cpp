@@ -13,24 +13,24 @@ using namespace cv::refract;
 
 namespace tools {
 
-std::vector<Dropped> leftOutOf(const RigCalibration& calibration)
+std::vector<Rejected> rejectedOf(const RigCalibration& calibration)
 {
-    std::vector<Dropped> all = calibration.fewPoints;
-    all.insert(all.end(), calibration.wrong.dropped.begin(), calibration.wrong.dropped.end());
+    std::vector<Rejected> all = calibration.fewPoints;
+    all.insert(all.end(), calibration.outliers.rejected.begin(), calibration.outliers.rejected.end());
     return all;
 }
 
-Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment)
+Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int view)
 {
     Rms rms;
     double sum = 0.;
     std::set<int> views;
     for (const Residual& r : calibration.residuals)
-        if (r.camera == camera && r.glass == glass && (moment < 0 || r.moment == moment))
+        if (r.camera == camera && r.glass == glass && (view < 0 || r.view == view))
         {
             sum += r.error.dot(r.error);
             rms.points++;
-            views.insert(r.moment);
+            views.insert(r.view);
         }
     rms.views = (int)views.size();
     if (rms.points)
@@ -67,11 +67,11 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
     if (std::isnan(excess))
         return std::nullopt;
     const Vec3d normal(row.ptr<double>());
-    const auto rmsWith = [&](double rms, double freedom) { return rms*std::sqrt(1. + excess*excess/freedom); };
+    const auto rmsWith = [&](double rms, double dof) { return rms*std::sqrt(1. + excess*excess/dof); };
     // The search that knows of it had all images where none is direct;
     const Fit& fit = calibration.fit;
     if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
-        return SecondSolution{normal, excess, rmsWith(fit.rms, fit.freedom), fit.rms};
+        return SecondSolution{normal, excess, rmsWith(fit.rms, fit.dof), fit.rms};
     // else those of one camera, that with most points, and their poses and the normal to fit.
     Rms seen = rmsOf(calibration, camera, true);
     for (int other = 0; other < calibration.data.cameraCount; other++)
@@ -95,16 +95,16 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
 {
     std::vector<double> depths;
     const Fit& fit = calibration.fit;
-    for (size_t k = 0; k < fit.moments.size(); k++)
+    for (size_t k = 0; k < fit.views.size(); k++)
     {
-        const Moment& m = calibration.data.moments[fit.moments[k]];
-        if (!m.hasGlass(camera))
+        const View& view = calibration.data.views[fit.views[k]];
+        if (!view.hasGlass(camera))
             continue;
         Vec3d rvec, tvec;
         poseInCamera(fit, k, camera, rvec, tvec);
         Matx33d R;
         Rodrigues(rvec, R);
-        for (const Point3d& X : m.objectPoints)
+        for (const Point3d& X : view.objectPoints)
             depths.push_back((R*Vec3d(X) + tvec)[2]);
     }
     std::sort(depths.begin(), depths.end());

@@ -5,10 +5,10 @@
 #define REFRACT_TOOLS_RIG_CALIBRATION_HPP
 
 #include "assess/cross_validation.hpp"
-#include "calibrate/wrong_points.hpp"
+#include "calibrate/outliers.hpp"
 #include <optional>
 
-/* The whole of a calibration, and the numbers that describe it. */
+/* A complete calibration, and the numbers that describe it. */
 namespace tools {
 
 //! The expected error of a measured point that the caller allows at a range.
@@ -17,7 +17,7 @@ struct ErrorLimit
     double range, error;
 };
 
-//! What the caller asks for; 0 or empty: nothing.
+//! Limits that the caller sets; 0 or empty: none.
 struct Limits
 {
     double rms = 0., normalStdDeg = 0.;
@@ -33,7 +33,7 @@ struct Photo
     std::vector<cv::Point2d> points;            //!< found; empty: the target was not
 };
 
-//! Everything that the table, the JSON summary and the report speak of; what is derived from it is in assessment.hpp.
+//! The data of the table, the JSON summary and the report; what is derived from them is in assessment.hpp.
 struct RigCalibration
 {
     RigData data;
@@ -49,9 +49,9 @@ struct RigCalibration
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
     std::vector<Photo> photos;
-    std::vector<std::string> notices;           //!< what is wrong with the images as such, see data_checks.hpp
-    std::vector<Dropped> fewPoints;             //!< images that have no pose, already taken out of data
-    WrongPoints wrong;                          //!< points and images, already taken out of data
+    std::vector<std::string> notices;           //!< of the checks of the images, see data_checks.hpp
+    std::vector<Rejected> fewPoints;            //!< images that have no pose, already removed from data
+    Outliers outliers;                          //!< points and images, already removed from data
     std::vector<std::string> inputs;            //!< files that it was made from
     Limits limits;
     Label label;
@@ -59,8 +59,8 @@ struct RigCalibration
     double square = 0.;                         //!< side of a square of the board, as given; 0: there is no board
 };
 
-//! Images that have no pose, then what is wrong.
-std::vector<Dropped> leftOutOf(const RigCalibration& calibration);
+//! Images that have no pose, then outliers.
+std::vector<Rejected> rejectedOf(const RigCalibration& calibration);
 
 struct Rms
 {
@@ -68,8 +68,8 @@ struct Rms
     int points = 0, views = 0;
 };
 
-//! Of the images of one camera in one state; moment >= 0: of that moment alone.
-Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int moment = -1);
+//! Of the images of one camera in one state; view >= 0: of that view alone.
+Rms rmsOf(const RigCalibration& calibration, int camera, bool glass, int view = -1);
 
 //! Both states together.
 Rms rmsOfCamera(const RigCalibration& calibration, int camera);
@@ -92,7 +92,7 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
 //! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
 double coverage(const RigCalibration& calibration, int camera);
 
-//! Distance of the board's points from camera 1, at the moments with a glass image: nearest, median, farthest z.
+//! Distance of the board's points from camera 1, at the views with a glass image: nearest, median, farthest z.
 cv::Vec3d workingDepth(const RigCalibration& calibration, int camera);
 
 } // namespace tools

@@ -16,11 +16,11 @@ namespace tools {
 namespace {
 
 Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RefractiveCamera& lens, int camera,
-                                    const std::vector<int>& moments)
+                                    const std::vector<int>& views)
 {
     try
     {
-        return calibratePinholeThroughGlass(data, camera, moments, pinholeCoefficients(lens)).camera;
+        return calibratePinholeThroughGlass(data, camera, views, pinholeCoefficients(lens)).camera;
     }
     catch (const std::exception&)
     {
@@ -38,10 +38,10 @@ double shiftOfPairs(const RigData& data, int camera)
 {
     double sum = 0.;
     int count = 0;
-    for (const Moment& m : data.moments)
-        for (size_t i = 0; m.isPair(camera) && i < m.glass[camera].size(); i++)
+    for (const View& view : data.views)
+        for (size_t i = 0; view.isPair(camera) && i < view.glass[camera].size(); i++)
         {
-            const Point2d d = m.glass[camera][i] - m.direct[camera][i];
+            const Point2d d = view.glass[camera][i] - view.direct[camera][i];
             if (!seen(d))
                 continue;
             sum += d.dot(d);
@@ -70,14 +70,14 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
     Baselines result;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, *start.cameras[c], c, allMoments(data));
+        const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, *start.cameras[c], c, allViews(data));
         const Ptr<RefractiveCamera> bare = copyWithWindow(start.cameras[c], GlassWindow());
         PooledRms ignored, through;
-        for (const Moment& m : data.moments)
+        for (const View& view : data.views)
         {
-            ignored.add(m.objectPoints, m.glass[c], bare);
+            ignored.add(view.objectPoints, view.glass[c], bare);
             if (pinhole)
-                through.add(m.objectPoints, m.glass[c], pinhole);
+                through.add(view.objectPoints, view.glass[c], pinhole);
         }
         // A lens that itself came from the glass images knows no "without".
         const bool airLens = lensSources[c].kind != LensSource::FROM_GLASS;
@@ -88,19 +88,27 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
     return result;
 }
 
+double rmsOfSeparateFits(const Baselines& baselines, const std::vector<LensSource>& lensSources)
+{
+    double largest = 0.;
+    for (size_t c = 0; c < lensSources.size(); c++)
+        largest = std::max({largest, baselines.throughGlass[c], lensSources[c].rms});
+    return largest;
+}
+
 std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet)
 {
     std::vector<Influence> result;
-    for (int i : fit.moments)
-        if (data.moments[i].hasGlass())
+    for (int i : fit.views)
+        if (data.views[i].hasGlass())
             result.push_back({i, std::vector<double>(data.cameraCount, NONE)});
     if (result.size() < 3)
         return {};
     Progress progress("leaving out one view at a time", (int)result.size(), quiet);
     for (Influence& influence : result)
     {
-        std::vector<int> others = fit.moments;
-        others.erase(std::find(others.begin(), others.end(), influence.moment));
+        std::vector<int> others = fit.views;
+        others.erase(std::find(others.begin(), others.end(), influence.view));
         try
         {
             const Fit without = fitImages(data, fit.rig, others, flags);

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-/* What a user would do instead, on the same images (every board pose is fitted to its single image again, so that the numbers
-compare), and which views the result hangs on. */
+/* Baselines: what a user could do instead with the same images (every board pose is fitted to its single image, so that the numbers are
+comparable). And the influence of single views on the result. */
 namespace tools {
 
 const double NONE = std::numeric_limits<double>::quiet_NaN();
@@ -37,14 +37,17 @@ struct Baselines
 
 Baselines computeBaselines(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources);
 
-//! How far the normal of each camera turns (degrees) if one moment is left out.
+//! The largest RMS of what was fitted to one camera: the pinhole through the glass, or the lens. 0: there is none.
+double rmsOfSeparateFits(const Baselines& baselines, const std::vector<LensSource>& lensSources);
+
+//! How far the normal of each camera turns (degrees) if one view is left out.
 struct Influence
 {
-    int moment;
+    int view;
     std::vector<double> turnDeg;    //!< of each camera's window; NaN: not determined without it
 };
 
-//! Moments with a glass image; empty if there are fewer than three.
+//! Views with a glass image; empty if there are fewer than three.
 std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet);
 
 } // namespace tools

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/tolerance.hpp"
-#include "assess/measurement.hpp"
-#include "assess/point_error.hpp"
+#include "measure/measurement.hpp"
+#include "measure/point_error.hpp"
 #include "assess/wedge.hpp"
 #include "calibrate/image_fit.hpp"
 #include "console/progress.hpp"
@@ -129,16 +129,16 @@ private:
 RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
 {
     RigData data = c.data;
-    for (size_t k = 0; k < c.fit.moments.size(); k++)
+    for (size_t k = 0; k < c.fit.views.size(); k++)
         for (int camera = 0; camera < data.cameraCount; camera++)
         {
-            std::vector<Point2d>& pixels = data.moments[c.fit.moments[k]].glass[camera];
+            std::vector<Point2d>& pixels = data.views[c.fit.views[k]].glass[camera];
             std::vector<Point2d> before, after;
             for (bool moved : {false, true})
             {
                 Vec3d rvec = c.fit.rvecs[k], tvec = c.fit.tvecs[k] + (moved ? shift : Vec3d());
                 poseInCamera(c.fit.rig, camera, rvec, tvec);
-                refractiveProjectPoints(data.moments[c.fit.moments[k]].objectPoints, rvec, tvec, c.fit.rig.cameras[camera],
+                refractiveProjectPoints(data.views[c.fit.views[k]].objectPoints, rvec, tvec, c.fit.rig.cameras[camera],
                                         moved ? after : before);
             }
             for (size_t i = 0; i < pixels.size(); i++)
@@ -151,21 +151,21 @@ RigData nudgedData(const RigCalibration& c, const Vec3d& shift)
 RigData deformedData(const RigCalibration& c, const Cause& cause)
 {
     RigData data = c.data;
-    for (size_t k = 0; k < c.fit.moments.size(); k++)
+    for (size_t k = 0; k < c.fit.views.size(); k++)
     {
-        Moment& m = data.moments[c.fit.moments[k]];
-        std::vector<Point3d> deformed = m.objectPoints;
+        View& view = data.views[c.fit.views[k]];
+        std::vector<Point3d> deformed = view.objectPoints;
         cause.deform(deformed);
         for (int camera = 0; camera < data.cameraCount; camera++)
             for (bool glass : {false, true})
             {
-                std::vector<Point2d>& pixels = (glass ? m.glass : m.direct)[camera];
+                std::vector<Point2d>& pixels = (glass ? view.glass : view.direct)[camera];
                 const Ptr<RefractiveCamera> in = c.fit.rig.cameras[camera];
                 const Ptr<RefractiveCamera> by = glass ? in : copyWithWindow(in, GlassWindow());
                 Vec3d rvec, tvec;
                 poseInCamera(c.fit, k, camera, rvec, tvec);
                 std::vector<Point2d> before, after;
-                refractiveProjectPoints(m.objectPoints, rvec, tvec, by, before);
+                refractiveProjectPoints(view.objectPoints, rvec, tvec, by, before);
                 refractiveProjectPoints(deformed, rvec, tvec, by, after);
                 for (size_t i = 0; i < pixels.size(); i++)
                     pixels[i] += after[i] - before[i];
@@ -182,15 +182,15 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
     if (cause.deform)
         return deformedData(c, cause);
     RigData data = c.data;
-    for (size_t k = 0; k < c.fit.moments.size(); k++)
+    for (size_t k = 0; k < c.fit.views.size(); k++)
     {
         Matx33d R;
         Rodrigues(c.fit.rvecs[k], R);
         std::vector<Point3d> points;
-        for (const Point3d& X : data.moments[c.fit.moments[k]].objectPoints)
+        for (const Point3d& X : data.views[c.fit.views[k]].objectPoints)
             points.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
         for (int camera = 0; camera < data.cameraCount; camera++)
-            Volume::bend(c.fit.rig, cause, camera, points, tilt, data.moments[c.fit.moments[k]].glass[camera]);
+            Volume::bend(c.fit.rig, cause, camera, points, tilt, data.views[c.fit.views[k]].glass[camera]);
     }
     return data;
 }
@@ -205,7 +205,7 @@ RigModel refit(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
             cause.spoil(window);
             start.cameras[k]->setWindow(window);
         }
-    return fitImages(bentData(c, cause, tilt), start, c.fit.moments, c.options.flags).rig;
+    return fitImages(bentData(c, cause, tilt), start, c.fit.views, c.options.flags).rig;
 }
 
 double rmsOfAll(const std::vector<double>& values)

@@ -6,8 +6,8 @@
 
 #include "assess/rig_calibration.hpp"
 
-/* What a wrong given value does to a measurement: the rig is calibrated again with the same images and the wrong value (all
-else that was free takes up what it can), then measures points of the working volume again. */
+/* The sensitivity of measured points to a wrong given value. The rig is calibrated again with the same images and the wrong value
+(the free parameters absorb part of it), then points of the working volume are measured again. */
 namespace tools {
 
 struct Tolerance

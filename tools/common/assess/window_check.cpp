@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/window_check.hpp"
-#include "assess/eigen_matrix.hpp"
-#include "assess/f_distribution.hpp"
-#include "assess/sight.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/f_distribution.hpp"
+#include "measure/view_observations.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include <Eigen/Cholesky>
@@ -47,12 +47,12 @@ struct FreeNormal
 class CheckProblem
 {
 public:
-    CheckProblem(const CheckBasis& basis, const std::vector<Moment>& moments) : basis_(basis), rig_(basis.rig.clone())
+    CheckProblem(const CheckInput& input, const std::vector<View>& views) : input_(input), rig_(input.rig.clone())
     {
-        for (const Moment& m : moments)
-            sights_.push_back(sightOf(basis.rig, m));
+        for (const View& view : views)
+            observed_.push_back(observationsOf(input.rig, view));
         for (int c = 0; c < (int)rig_.cameras.size(); c++)
-            if (std::any_of(moments.begin(), moments.end(), [c](const Moment& m) { return m.hasGlass(c); }))
+            if (std::any_of(views.begin(), views.end(), [c](const View& view) { return view.hasGlass(c); }))
                 normals_.emplace_back(rig_, c);
         if (normals_.empty())
             throw Failure("there is no image through the window to check: give --glass");
@@ -72,8 +72,8 @@ public:
 
     VectorXd delta;             //!< two for each window
     MatrixXd covariance;        //!< of delta
-    double misfit = 0.;         //!< r^T S^-1 r that is left
-    int freedom = 0;            //!< of it
+    double chiSquare = 0.;      //!< r^T S^-1 r that is left
+    int dof = 0;                //!< of it
 
 private:
     double step()
@@ -82,10 +82,10 @@ private:
         VectorXd r;
         std::vector<ViewDerivatives> views;
         linearise(views, A, B, r);
-        MatrixXd S = MatrixXd::Identity(r.size(), r.size())*(basis_.sigma*basis_.sigma);
+        MatrixXd S = MatrixXd::Identity(r.size(), r.size())*(input_.sigma*input_.sigma);
         MatrixXd CAt = MatrixXd::Zero(A.cols(), A.rows());
-        if (!basis_.covariance.empty())
-            CAt = toEigen(basis_.covariance)*A.transpose();
+        if (!input_.covariance.empty())
+            CAt = toEigen(input_.covariance)*A.transpose();
         S += A*CAt;
         const Eigen::LDLT<MatrixXd> inverse(S);
         covariance = (B.transpose()*inverse.solve(B)).inverse();
@@ -93,10 +93,10 @@ private:
         if (!change.allFinite())
             throw Failure(NO_TILT);
         const VectorXd rest = r - B*change, weighted = inverse.solve(rest), parameters = CAt*weighted;
-        misfit = rest.dot(weighted);
-        freedom = (int)(r.size() - delta.size());
-        for (size_t i = 0; i < sights_.size(); i++)
-            movePose(sights_[i], views[i], parameters, change);
+        chiSquare = rest.dot(weighted);
+        dof = (int)(r.size() - delta.size());
+        for (size_t i = 0; i < observed_.size(); i++)
+            movePose(observed_[i], views[i], parameters, change);
         delta += change;
         for (size_t w = 0; w < normals_.size(); w++)
         {
@@ -120,13 +120,13 @@ private:
     void linearise(std::vector<ViewDerivatives>& views, MatrixXd& A, MatrixXd& B, VectorXd& r) const
     {
         Eigen::Index rows = 0;
-        for (const Sight& sight : sights_)
-            rows += sight.pixels.size() - 6;
-        for (const Sight& sight : sights_)
+        for (const ViewObservations& observed : observed_)
+            rows += observed.pixels.size() - 6;
+        for (const ViewObservations& observed : observed_)
         {
-            views.push_back(differentiateView(rig_, sight.objectPoints, sight.rvec, sight.tvec, sight.images));
+            views.push_back(differentiateView(rig_, observed.objectPoints, observed.rvec, observed.tvec, observed.images));
             const ViewDerivatives& view = views.back();
-            const WithoutPose project(view.byPose);
+            const PoseNullSpace project(view.byPose);
             const MatrixXd byParameters = project(view.byParameters);
             const Eigen::Index count = byParameters.rows();
             if (A.size() == 0)
@@ -138,33 +138,33 @@ private:
             }
             A.middleRows(rows, count) = byParameters;
             B.middleRows(rows, count) = project(byTilts(view));
-            r.segment(rows, count) = project(sight.pixels - view.predicted);
+            r.segment(rows, count) = project(observed.pixels - view.predicted);
             rows += count;
         }
     }
 
-    void movePose(Sight& sight, const ViewDerivatives& view, const VectorXd& parameters, const VectorXd& change) const
+    void movePose(ViewObservations& observed, const ViewDerivatives& view, const VectorXd& parameters, const VectorXd& change) const
     {
-        const VectorXd r = sight.pixels - view.predicted - view.byParameters*parameters - byTilts(view)*change;
+        const VectorXd r = observed.pixels - view.predicted - view.byParameters*parameters - byTilts(view)*change;
         const VectorXd pose = view.byPose.colPivHouseholderQr().solve(r);
         for (int i = 0; i < 3; i++)
         {
-            sight.rvec[i] += pose[i];
-            sight.tvec[i] += pose[3 + i];
+            observed.rvec[i] += pose[i];
+            observed.tvec[i] += pose[3 + i];
         }
     }
 
-    const CheckBasis& basis_;
+    const CheckInput& input_;
     RigModel rig_;                   // the windows as they are now
-    std::vector<Sight> sights_;
+    std::vector<ViewObservations> observed_;
     std::vector<FreeNormal> normals_;
 };
 
 } // namespace
 
-CheckResult checkTilts(const CheckBasis& basis, const std::vector<Moment>& moments, double falseAlarm)
+CheckResult checkTilts(const CheckInput& input, const std::vector<View>& views, double falseAlarm)
 {
-    CheckProblem problem(basis, moments);
+    CheckProblem problem(input, views);
     problem.solve();
     CheckResult result;
     const size_t count = problem.normals().size();
@@ -181,20 +181,20 @@ CheckResult checkTilts(const CheckBasis& basis, const std::vector<Moment>& momen
         check.tiltDeg = std::atan(delta.norm())*DEGREES;
         check.stdDeg[0] = std::sqrt(variances[1])*DEGREES;
         check.stdDeg[1] = std::sqrt(variances[0])*DEGREES;
-        check.probability = upperTailF(1, basis.freedom, 0.5*delta.dot(V.inverse()*delta));
+        check.probability = upperTailF(1, input.dof, 0.5*delta.dot(V.inverse()*delta));
         check.moved = check.probability < falseAlarm/count;
         result.windows.push_back(check);
     }
     // Pixels come in twos, and so do poses and tilts: the number of degrees of freedom is even.
-    result.sigmaSeen = basis.sigma*std::sqrt(problem.misfit/problem.freedom);
-    result.misfitProbability = upperTailF(problem.freedom/2, basis.freedom, problem.misfit/problem.freedom);
+    result.sigmaSeen = input.sigma*std::sqrt(problem.chiSquare/problem.dof);
+    result.residualProbability = upperTailF(problem.dof/2, input.dof, problem.chiSquare/problem.dof);
     return result;
 }
 
-double powerOf(const WindowCheck& window, size_t windowCount, double freedom, double falseAlarm, double tiltDeg, double share)
+double powerOf(const WindowCheck& window, size_t windowCount, double dof, double falseAlarm, double tiltDeg, double share)
 {
     const double lambda = tiltDeg*tiltDeg/(share*window.stdDeg[0]*window.stdDeg[0]);
-    return upperTailNoncentralF2(freedom, lambda, quantileF2(freedom, falseAlarm/windowCount));
+    return upperTailNoncentralF2(dof, lambda, quantileF2(dof, falseAlarm/windowCount));
 }
 
 } // namespace tools

@@ -18,12 +18,12 @@ freedom, as sigma (and with it C) is itself an estimate. Two windows: each is te
 namespace tools {
 
 //! What the test starts from.
-struct CheckBasis
+struct CheckInput
 {
     RigModel rig;
     cv::Mat covariance;         //!< of its parameters, as Fit::covariance; empty: they are exact
     double sigma;               //!< of a pixel coordinate
-    double freedom;             //!< degrees of freedom of sigma
+    double dof;                 //!< degrees of freedom of sigma
 };
 
 struct WindowCheck
@@ -40,15 +40,15 @@ struct CheckResult
 {
     std::vector<WindowCheck> windows;   //!< of the cameras that have a glass image
     double sigmaSeen;                   //!< of the new images, after the windows were let go
-    double misfitProbability;           //!< of residuals as large as these or larger if only the windows could have moved
+    double residualProbability;         //!< of residuals as large as these or larger if only the windows could have moved
 };
 
-//! Throws Failure if no moment has an image through a window, or a target's pose cannot be found.
-CheckResult checkTilts(const CheckBasis& basis, const std::vector<Moment>& moments, double falseAlarm);
+//! Throws Failure if no view has an image through a window, or a target's pose cannot be found.
+CheckResult checkTilts(const CheckInput& input, const std::vector<View>& views, double falseAlarm);
 
 /** Probability that a tilt of this size, in the direction in which it shows least, is found.
 @param share of the covariance: 1/2 for twice as many images */
-double powerOf(const WindowCheck& window, size_t windowCount, double freedom, double falseAlarm, double tiltDeg,
+double powerOf(const WindowCheck& window, size_t windowCount, double dof, double falseAlarm, double tiltDeg,
                double share = 1.);
 
 } // namespace tools

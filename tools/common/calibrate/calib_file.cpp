@@ -245,7 +245,7 @@ Calibration readCalibration(const std::string& filename)
         calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), rig.Rs[c], rig.Ts[c]);
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
-    calibration.freedom = readNotNegative(fs, "degrees_of_freedom", 0., filename);
+    calibration.dof = readNotNegative(fs, "degrees_of_freedom", 0., filename);
     if (fs["unit"].isString())
         fs["unit"] >> calibration.unit;
     calibration.square = readNumber(fs["target_square"], 0.);
@@ -283,11 +283,11 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
 void warnOfContradictions(const Calibration& calibration, const std::string& filename, const Command& command)
 {
     if (!calibration.contradictions.empty())
-        command.warn("'" + filename + "' was found not usable when it was made, and what comes of it may be off by more than its +-: "
-                     + calibration.contradictions[0] + "; calibrate again with what is right");
+        command.warn("'" + filename + "' was marked as not usable when it was made, and the errors of its results may be larger than "
+                     "their +-: " + calibration.contradictions[0] + "; calibrate again with the right values");
 }
 
-void writeRig(FileStorage& fs, const Calibration& calibration)
+void writeCameras(FileStorage& fs, const Calibration& calibration)
 {
     if (calibration.single())
     {
@@ -323,9 +323,9 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
             fs << "unit" << calibration.unit << "target_square" << calibration.square;
         if (calibration.channel != BRIGHTNESS)
             fs << "channel" << nameOf(calibration.channel);
-        writeRig(fs, calibration);
-        if (calibration.freedom > 0)
-            fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.freedom;
+        writeCameras(fs, calibration);
+        if (calibration.dof > 0)
+            fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.dof;
         if (!calibration.covariance.empty())
             fs << "covariance" << calibration.covariance;
     });

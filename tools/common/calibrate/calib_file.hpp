@@ -40,7 +40,7 @@ struct CameraCalibration
     double normalLength = 1.;           //!< as the file has it; the camera's own is 1
 };
 
-//! What people call the thing that was calibrated.
+//! Names and notes of the calibrated device.
 struct Label
 {
     std::string serial;                                         //!< of the window; may be empty
@@ -56,12 +56,12 @@ struct Calibration
     double rms = -1.;                           //!< px, over all cameras; negative where unknown
     cv::Mat covariance;     //!< of calibrateGlassRig, in its order; empty where unknown
     double sigma = -1.;     //!< standard deviation of a pixel coordinate, from the residuals; negative where unknown
-    double freedom = 0.;    //!< degrees of freedom of those residuals; 0 where unknown
+    double dof = 0.;        //!< degrees of freedom of those residuals; 0 where unknown
     std::string unit;       //!< of length; empty where unknown
     double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
     Channel channel = BRIGHTNESS;   //!< of colour images, in which the points were found: it is valid for that one
-    std::string verdict;    //!< of those who made it; empty where unknown
-    /** Of the images to what was given, a sentence each: points may be off by more than their +-. */
+    std::string verdict;    //!< of refract_calib; empty where unknown
+    /** Between the images and given values, a sentence each: errors of points may be larger than their +-. */
     std::vector<std::string> contradictions;
     Label label;
     std::string command;    //!< the command line that made it
@@ -83,10 +83,10 @@ was written by hand may have any length.
 void requireWindows(const Calibration& calibration, const std::string& filename, bool noWindow,
                     const std::string& option = "--no-window");
 
-//! Whoever uses a calibration that its own images contradict is told so.
+//! Warns the user of a calibration that its own images contradict.
 void warnOfContradictions(const Calibration& calibration, const std::string& filename, const Command& command);
 
-//! A lens that a file tells, and how well.
+//! A lens from a file, and its covariance.
 struct KnownLens
 {
     cv::Ptr<cv::refract::RefractiveCamera> camera;
@@ -98,9 +98,9 @@ struct KnownLens
 KnownLens readLens(const std::string& filename, const std::string& name = "");
 
 //! The cameras, their windows and places, as all files of a rig have them.
-void writeRig(cv::FileStorage& fs, const Calibration& calibration);
+void writeCameras(cv::FileStorage& fs, const Calibration& calibration);
 
-//! Complete or not at all. Adds versions.
+//! Writes the complete file or none. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);
 
 /** The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, else of the newest input, so that the same

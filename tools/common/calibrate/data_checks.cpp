@@ -20,11 +20,11 @@ const double PARALLEL_DEG = 5.;
 const int FEW_BOARDS = 3;               // to say that all are parallel
 const double USUAL_FOCAL = 1.5;         // in image widths: tilts need no better
 
-std::set<std::string> stemsOf(const ViewSet& set, bool found)
+std::set<std::string> stemsOf(const DetectedImages& set, bool found)
 {
     std::set<std::string> stems;
-    for (const DetectedView& view : set.views)
-        stems.insert(view.stem);
+    for (const DetectedImage& image : set.images)
+        stems.insert(image.stem);
     for (size_t i = 0; !found && i < set.withoutTarget.size(); i++)
         stems.insert(stemOf(set.withoutTarget[i]));
     return stems;
@@ -50,7 +50,7 @@ std::string examples(const std::set<std::string>& stems)
     return text;
 }
 
-bool areOneImage(const DetectedView& a, const DetectedView& b)
+bool areOneImage(const DetectedImage& a, const DetectedImage& b)
 {
     if (a.points.size() != b.points.size())
         return false;
@@ -64,20 +64,20 @@ bool areOneImage(const DetectedView& a, const DetectedView& b)
     return a.seenCount() > 0;
 }
 
-void noticeDuplicates(const RigViewSets& sets, std::vector<std::string>& notices)
+void noticeDuplicates(const RigImages& sets, std::vector<std::string>& notices)
 {
-    struct Named { const DetectedView* view; std::string name; };
+    struct Named { const DetectedImage* image; std::string name; };
     std::vector<Named> all;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
-            for (const DetectedView& view : (through ? sets.glass : sets.direct)[c].views)
-                all.push_back({&view, "'" + view.path + "'"});
+            for (const DetectedImage& image : (through ? sets.glass : sets.direct)[c].images)
+                all.push_back({&image, "'" + image.path + "'"});
     for (size_t i = 0; i < all.size(); i++)
         for (size_t j = 0; j < i; j++)
-            if (areOneImage(*all[i].view, *all[j].view))
+            if (areOneImage(*all[i].image, *all[j].image))
             {
-                notices.push_back(all[j].name + " and " + all[i].name + " are one image (the same corners to 0.0001 px): what it "
-                                  "says counts twice, and the +- come out too small. Leave one out");
+                notices.push_back(all[j].name + " and " + all[i].name + " are one image (the same corners to 0.0001 px): it "
+                                  "counts twice, so that the +- are too small. Leave one out");
                 break;
             }
 }
@@ -106,9 +106,9 @@ double tiltSpreadDeg(const RigData& data, int camera, bool through)
 {
     std::vector<Vec3d> normals;
     Vec3d middle;
-    for (const Moment& m : data.moments)
+    for (const View& view : data.views)
     {
-        const Vec3d normal = boardNormal(m.objectPoints, (through ? m.glass : m.direct)[camera], data.imageSize[camera]);
+        const Vec3d normal = boardNormal(view.objectPoints, (through ? view.glass : view.direct)[camera], data.imageSize[camera]);
         if (normal == Vec3d())
             continue;
         normals.push_back(normal[2] < 0 ? -normal : normal);
@@ -133,18 +133,18 @@ void noticeParallel(const RigData& data, std::vector<std::string>& notices)
             notices.push_back((data.cameraCount == 1 ? "" : format("camera %d: ", c + 1))
                 + format("all boards in the %s are parallel within %.1f deg: ", through ? "images through the window"
                          : "direct images", spread)
-                + (through ? "they hardly tell the window's tilt from their own" : "they hardly tell the focal length from the "
-                   "distance") + ". Tilt the board by 10 to 35 degrees, to all sides");
+                + (through ? "they hardly determine the window's tilt" : "they hardly determine the focal length")
+                + ". Tilt the board by 10 to 35 degrees, to all sides");
         }
 }
 
-void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
+void noticeNotFound(const RigImages& sets, std::vector<std::string>& notices)
 {
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
         {
-            const ViewSet& set = (through ? sets.glass : sets.direct)[c];
-            const size_t found = set.views.size(), count = found + set.withoutTarget.size();
+            const DetectedImages& set = (through ? sets.glass : sets.direct)[c];
+            const size_t found = set.images.size(), count = found + set.withoutTarget.size();
             if (2*found < count)
                 notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
                                          "inner corners or dots), light and focus", found, count,
@@ -155,12 +155,12 @@ void noticeNotFound(const RigViewSets& sets, std::vector<std::string>& notices)
 
 } // namespace
 
-void requirePairs(const RigViewSets& sets)
+void requirePairs(const RigImages& sets)
 {
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
-        const ViewSet &direct = sets.direct[c], &glass = sets.glass[c];
-        if (direct.views.empty() || glass.views.empty() || !common(stemsOf(direct, true), stemsOf(glass, true)).empty())
+        const DetectedImages &direct = sets.direct[c], &glass = sets.glass[c];
+        if (direct.images.empty() || glass.images.empty() || !common(stemsOf(direct, true), stemsOf(glass, true)).empty())
             continue;
         const std::string suffix = cameraSuffix(c);
         const std::set<std::string> directStems = stemsOf(direct, false), glassStems = stemsOf(glass, false);
@@ -169,14 +169,14 @@ void requirePairs(const RigViewSets& sets)
             throw Failure(format("the target was not found in both images of any of the %zu pair(s) of --direct%s and --glass%s "
                                  "('%s'): check light and focus, or say --unpaired if no pairs are meant", lost.size(),
                                  suffix.c_str(), suffix.c_str(), lost.front().c_str()));
-        if (direct.views.size() > 1 && glass.views.size() > 1)
+        if (direct.images.size() > 1 && glass.images.size() > 1)
             throw Failure("no image of --direct" + suffix + " (" + examples(directStems) + ") has the name of one of --glass"
                           + suffix + " (" + examples(glassStems) + "), so there is no pair: where the board did not move between "
                           "the two images, give them the same file name in two folders; if it did (hand-held), add --unpaired");
     }
 }
 
-std::vector<std::string> noticesOf(const RigViewSets& sets, const RigData& data)
+std::vector<std::string> noticesOf(const RigImages& sets, const RigData& data)
 {
     std::vector<std::string> notices;
     noticeNotFound(sets, notices);

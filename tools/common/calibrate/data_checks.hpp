@@ -11,10 +11,10 @@ namespace tools {
 
 /** Direct and glass images belong together by their names. Throws Failure if both are there and no name is common, or if the
 target was found in both images of no pair: the user meant pairs, and a calibration without them is far worse. */
-void requirePairs(const RigViewSets& sets);
+void requirePairs(const RigImages& sets);
 
 //! What spoils a calibration without showing in its residuals: one image under two names, boards that are all parallel.
-std::vector<std::string> noticesOf(const RigViewSets& sets, const RigData& data);
+std::vector<std::string> noticesOf(const RigImages& sets, const RigData& data);
 
 } // namespace tools
 

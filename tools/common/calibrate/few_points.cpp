@@ -33,15 +33,15 @@ bool areOnLine(const std::vector<Point3d>& points)
 }
 
 //! Why the view has no pose; empty if it may have one.
-std::string faultOf(const DetectedView& view, const Target* target)
+std::string faultOf(const DetectedImage& image, const Target* target)
 {
-    const std::vector<Point3d>& object = view.objectPoints.empty() ? target->objectPoints() : view.objectPoints;
+    const std::vector<Point3d>& object = image.objectPoints.empty() ? target->objectPoints() : image.objectPoints;
     std::vector<Point3d> points;
-    for (size_t i = 0; i < view.points.size(); i++)
-        if (seen(view.points[i]))
+    for (size_t i = 0; i < image.points.size(); i++)
+        if (seen(image.points[i]))
             points.push_back(object[i]);
-    const std::string pose = format("the target's pose needs %d that are not on a line", POINTS_OF_POSE);
-    if ((int)points.size() < POINTS_OF_POSE)
+    const std::string pose = format("the target's pose needs %d that are not on a line", MIN_POSE_POINTS);
+    if ((int)points.size() < MIN_POSE_POINTS)
         return format("%zu point%s, but ", points.size(), points.size() == 1 ? "" : "s") + pose;
     if (areOnLine(points))
         return format("%zu points, of which all or all but one are on a line, but ", points.size()) + pose;
@@ -49,41 +49,41 @@ std::string faultOf(const DetectedView& view, const Target* target)
 }
 
 //! What is left; of what is taken out, why.
-ViewSet leaveOut(const Target* target, int camera, bool glass, const ViewSet& set, std::vector<Dropped>& dropped)
+DetectedImages leaveOut(const Target* target, int camera, bool glass, const DetectedImages& set, std::vector<Rejected>& rejected)
 {
-    ViewSet rest = set;
-    rest.views.clear();
+    DetectedImages rest = set;
+    rest.images.clear();
     std::string first;
-    for (const DetectedView& view : set.views)
+    for (const DetectedImage& image : set.images)
     {
-        const std::string fault = faultOf(view, target);
+        const std::string fault = faultOf(image, target);
         if (fault.empty())
-            rest.views.push_back(view);
-        else if (view.seenCount())
-            dropped.push_back({view.stem, camera, glass, view.seenCount(), true, fault});
+            rest.images.push_back(image);
+        else if (image.seenCount())
+            rejected.push_back({image.stem, camera, glass, image.seenCount(), true, fault});
         if (first.empty())
             first = fault;
     }
-    if (rest.views.empty() && !set.views.empty())
+    if (rest.images.empty() && !set.images.empty())
         throw Failure(format("camera %d, --%s%s='%s': view '%s' has ", camera + 1, glass ? "glass" : "direct",
-                             cameraSuffix(camera).c_str(), set.views[0].path.c_str(), set.views[0].stem.c_str()) + first
-                      + (set.views.size() == 1 ? "" : ", and so it is with the other views")
+                             cameraSuffix(camera).c_str(), set.images[0].path.c_str(), set.images[0].stem.c_str()) + first
+                      + (set.images.size() == 1 ? "" : ", and the other views have no pose either")
                       + ". Give more points of a view, or leave the option out");
     return rest;
 }
 
 } // namespace
 
-std::vector<Dropped> leaveOutFewPoints(const Target* target, RigViewSets& sets)
+std::vector<Rejected> leaveOutFewPoints(const Target* target, RigImages& sets)
 {
-    std::vector<Dropped> dropped;
+    std::vector<Rejected> rejected;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool glass : {true, false})
         {
-            ViewSet& set = (glass ? sets.glass : sets.direct)[c];
-            set = leaveOut(target, c, glass, set, dropped);
+            DetectedImages& set = (glass ? sets.glass : sets.direct)[c];
+            set = leaveOut(target, c, glass, set, rejected);
         }
-    return dropped;
+    return rejected;
 }
 
 } // namespace tools

@@ -4,16 +4,16 @@
 #ifndef REFRACT_TOOLS_FEW_POINTS_HPP
 #define REFRACT_TOOLS_FEW_POINTS_HPP
 
-#include "calibrate/wrong_points.hpp"
+#include "calibrate/outliers.hpp"
 
-/* Views of which no pose can be found, as they show too few points of the target, or points on one line. */
+/* Images that have no pose: they show too few points of the target, or points on one line. */
 namespace tools {
 
-/** Takes them out of the sets.
+/** Removes them from the sets.
 @param target null: all points have coordinates of their own
-@return what was taken out; a view of which nothing was seen is not worth a word
+@return what was removed; images without any point are not listed
 Throws Failure where nothing would be left of a camera's direct images, or of those through the window. */
-std::vector<Dropped> leaveOutFewPoints(const Target* target, RigViewSets& sets);
+std::vector<Rejected> leaveOutFewPoints(const Target* target, RigImages& sets);
 
 } // namespace tools
 

@@ -21,21 +21,21 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
     for (int c = 0; c < data.cameraCount; c++)
     {
         const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = copyWithWindow(through, GlassWindow());
-        for (size_t k = 0; k < fit.moments.size(); k++)
+        for (size_t k = 0; k < fit.views.size(); k++)
         {
             Vec3d rvec, tvec;
             poseInCamera(fit, k, c, rvec, tvec);
             for (bool glass : {true, false})
             {
-                const Moment& m = data.moments[fit.moments[k]];
-                const std::vector<Point2d>& pixels = glass ? m.glass[c] : m.direct[c];
+                const View& view = data.views[fit.views[k]];
+                const std::vector<Point2d>& pixels = glass ? view.glass[c] : view.direct[c];
                 if (pixels.empty())
                     continue;
                 std::vector<Point2d> modelled;
-                refractiveProjectPoints(m.objectPoints, rvec, tvec, glass ? through : bare, modelled);
+                refractiveProjectPoints(view.objectPoints, rvec, tvec, glass ? through : bare, modelled);
                 for (size_t i = 0; i < pixels.size(); i++)
                     if (seen(pixels[i]))
-                        residuals.push_back({c, fit.moments[k], glass, pixels[i], pixels[i] - modelled[i]});
+                        residuals.push_back({c, fit.views[k], glass, pixels[i], pixels[i] - modelled[i]});
             }
         }
     }

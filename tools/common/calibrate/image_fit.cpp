@@ -14,28 +14,28 @@ namespace tools {
 
 namespace {
 
-//! The moments that a fit with these flags learns from.
-std::vector<int> usefulMoments(const RigData& data, int flags)
+//! The views that give information to a fit with these flags.
+std::vector<int> usefulViews(const RigData& data, int flags)
 {
     std::vector<int> useful;
-    for (int i = 0; i < (int)data.moments.size(); i++)
+    for (int i = 0; i < (int)data.views.size(); i++)
     {
-        const Moment& m = data.moments[i];
-        // Without glass a moment says something about R and T if several cameras see it, and about free lenses always.
-        const bool any = m.hasGlass() || m.countDirect() > 0;      // else all its images were left out
-        if (m.hasGlass() || m.countDirect() > 1 || (any && (flags & GLASS_FREE_INTRINSICS)))
+        const View& view = data.views[i];
+        // Without glass a view says something about R and T if several cameras see it, and about free lenses always.
+        const bool any = view.hasGlass() || view.countDirect() > 0; // else all its images were left out
+        if (view.hasGlass() || view.countDirect() > 1 || (any && (flags & GLASS_FREE_INTRINSICS)))
             useful.push_back(i);
     }
     return useful;
 }
 
 //! As calibrateGlassRig wants them: per camera, per view.
-std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<int>& moments, bool glass)
+std::vector<std::vector<Mat>> imagesOf(const RigData& data, const std::vector<int>& views, bool glass)
 {
     std::vector<std::vector<Mat>> images(data.cameraCount);
     for (int c = 0; c < data.cameraCount; c++)
-        for (int i : moments)
-            images[c].push_back(Mat((glass ? data.moments[i].glass : data.moments[i].direct)[c], true));
+        for (int i : views)
+            images[c].push_back(Mat((glass ? data.views[i].glass : data.views[i].direct)[c], true));
     return images;
 }
 
@@ -67,12 +67,12 @@ std::vector<Mat> covariancesOf(const RigModel& rig)
 }
 
 //! The library counts views from 0; whoever took them knows them by name.
-cv::Exception inNames(const cv::Exception& e, const RigData& data, const std::vector<int>& moments)
+cv::Exception inNames(const cv::Exception& e, const RigData& data, const std::vector<int>& views)
 {
     cv::Exception named = e;
     std::smatch found;
-    if (std::regex_search(e.err, found, std::regex("^view ([0-9]{1,6})\\b")) && std::stoul(found[1]) < moments.size())
-        named.err = "view '" + data.moments[moments[std::stoul(found[1])]].stem + "'" + found.suffix().str();
+    if (std::regex_search(e.err, found, std::regex("^view ([0-9]{1,6})\\b")) && std::stoul(found[1]) < views.size())
+        named.err = "view '" + data.views[views[std::stoul(found[1])]].stem + "'" + found.suffix().str();
     return named;
 }
 
@@ -93,23 +93,23 @@ int countPriors(const RigModel& rig)
 
 } // namespace
 
-Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& moments, int flags, int maxIterations)
+Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& views, int flags, int maxIterations)
 {
     Fit fit;
     fit.rig = start.clone();
     startAtKnown(fit.rig);
-    fit.moments = moments;
+    fit.views = views;
     std::vector<std::vector<Point3d>> objectPoints;
     std::vector<Mat> poseCovariances;
-    for (int i : moments)
+    for (int i : views)
     {
-        const Moment& m = data.moments[i];
-        objectPoints.push_back(m.objectPoints);
+        const View& view = data.views[i];
+        objectPoints.push_back(view.objectPoints);
         if (!(flags & GLASS_USE_POSES))
             continue;
-        fit.rvecs.push_back(m.pose->rvec);
-        fit.tvecs.push_back(m.pose->tvec);
-        poseCovariances.push_back(m.pose->covariance);
+        fit.rvecs.push_back(view.pose->rvec);
+        fit.tvecs.push_back(view.pose->tvec);
+        poseCovariances.push_back(view.pose->covariance);
     }
     std::vector<Mat> Rs, Ts;
     for (int c = 0; c < data.cameraCount; c++)
@@ -121,7 +121,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                                 flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
     try
     {
-        fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, moments, false), imagesOf(data, moments, true), fit.rig.cameras,
+        fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras,
                                     fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
                                     fit.imageStatus, fit.inliers, fit.otherMinima,
                                     data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
@@ -129,7 +129,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     }
     catch (const cv::Exception& e)
     {
-        throw inNames(e, data, moments);
+        throw inNames(e, data, views);
     }
     for (int c = 1; c < data.cameraCount; c++)
     {
@@ -140,21 +140,21 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);
     const size_t free = estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size();
-    const size_t poses = flags & GLASS_USE_POSES ? 0 : moments.size();      // known ones bring as many numbers as they have
-    fit.freedom = 2.*points + countPriors(fit.rig) - (double)free - 6.*(double)poses;
-    fit.sigma = fit.rms*std::sqrt(points/fit.freedom);
+    const size_t poses = flags & GLASS_USE_POSES ? 0 : views.size();        // known ones bring as many numbers as they have
+    fit.dof = 2.*points + countPriors(fit.rig) - (double)free - 6.*(double)poses;
+    fit.sigma = fit.rms*std::sqrt(points/fit.dof);
     return fit;
 }
 
 Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags)
 {
-    const Fit held = fitImages(data, start, usefulMoments(data, flags), flags);
+    const Fit held = fitImages(data, start, usefulViews(data, flags), flags);
     const bool fromImages = std::any_of(lensSources.begin(), lensSources.end(),
                                         [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
     if (!fromImages || (flags & GLASS_FREE_INTRINSICS))
         return held;
     flags |= GLASS_FREE_INTRINSICS;
-    Fit fit = fitImages(data, held.rig, usefulMoments(data, flags), flags);
+    Fit fit = fitImages(data, held.rig, usefulViews(data, flags), flags);
     fit.otherMinima = held.otherMinima;     // only looked for while the lens is held
     return fit;
 }

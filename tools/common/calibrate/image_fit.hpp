@@ -12,8 +12,8 @@ namespace tools {
 
 const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
 
-//! calibrateGlassRig on some of the moments.
-Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& moments, int flags,
+//! calibrateGlassRig on some of the views.
+Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& views, int flags,
               int maxIterations = MAX_ITERATIONS);
 
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct

@@ -49,7 +49,7 @@ std::vector<Ptr<RefractiveCamera>> camerasInColours(const Ptr<RefractiveCamera>&
 {
     const GlassWindow window = camera->window();
     if (refracts(window) && window.materials.empty())
-        throw Failure("'" + of + "' does not say what the window is made of, so nothing tells how it bends other colours: calibrate "
+        throw Failure("'" + of + "' does not name the window's materials, so its indices for other colours are not known: calibrate "
                       "with the names of the materials (refract_calib --index=N-BK7 --outer-index=water), or add them to "
                       "glass_window, from the camera outwards, as in materials: [ air, N-BK7, water ]");
     std::vector<Ptr<RefractiveCamera>> cameras;

@@ -37,12 +37,12 @@ ParameterColumns columnsOf(const RigModel& rig, int camera)
     return columnsOf(*rig.cameras[camera], first);
 }
 
-int placeColumn(const RigModel& rig, int camera)
+int extrinsicsColumn(const RigModel& rig, int camera)
 {
     return columnsOf(rig, (int)rig.cameras.size() - 1).end + 6*(camera - 1);
 }
 
-int columnCount(const RigModel& rig) { return placeColumn(rig, (int)rig.cameras.size()); }
+int columnCount(const RigModel& rig) { return extrinsicsColumn(rig, (int)rig.cameras.size()); }
 
 std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
 {

@@ -19,7 +19,7 @@ ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int firs
 ParameterColumns columnsOf(const RigModel& rig, int camera);
 
 //! Where R (a rotation vector) and T of a camera after the first begin: after the parameters of all cameras.
-int placeColumn(const RigModel& rig, int camera);
+int extrinsicsColumn(const RigModel& rig, int camera);
 //! Of all of them.
 int columnCount(const RigModel& rig);
 

@@ -16,24 +16,24 @@ namespace {
 const size_t MIN_VIEWS = 3;         // of a flat board, to determine a lens
 const size_t MIN_POINTS = 4;        // in common, of a view
 
-//! Points that both cameras saw through their windows, moment by moment.
-void commonPoints(const RigData& data, const std::vector<int>& moments, int camera1, int camera2,
+//! Points that both cameras saw through their windows, view by view.
+void commonPoints(const RigData& data, const std::vector<int>& views, int camera1, int camera2,
                   std::vector<std::vector<Point3f>>& object, std::vector<std::vector<Point2f>>& image1,
                   std::vector<std::vector<Point2f>>& image2)
 {
-    for (int moment : moments)
+    for (int i : views)
     {
-        const Moment& m = data.moments[moment];
-        if (!m.hasGlass(camera1) || !m.hasGlass(camera2))
+        const View& view = data.views[i];
+        if (!view.hasGlass(camera1) || !view.hasGlass(camera2))
             continue;
         std::vector<Point3f> points;
         std::vector<Point2f> pixels1, pixels2;
-        for (size_t i = 0; i < m.objectPoints.size(); i++)
-            if (seen(m.glass[camera1][i]) && seen(m.glass[camera2][i]))
+        for (size_t k = 0; k < view.objectPoints.size(); k++)
+            if (seen(view.glass[camera1][k]) && seen(view.glass[camera2][k]))
             {
-                points.emplace_back(m.objectPoints[i]);
-                pixels1.emplace_back(m.glass[camera1][i]);
-                pixels2.emplace_back(m.glass[camera2][i]);
+                points.emplace_back(view.objectPoints[k]);
+                pixels1.emplace_back(view.glass[camera1][k]);
+                pixels2.emplace_back(view.glass[camera2][k]);
             }
         if (points.size() < MIN_POINTS)
             continue;
@@ -59,14 +59,14 @@ Mat coefficientsLeft(const refract::RefractiveCamera& camera)
 }
 
 //! R and T of camera 2 from camera 1; returns cv::stereoCalibrate's RMS.
-double placeBeside(const RigData& data, const std::vector<int>& moments, const Calibration& rig, int camera1, int camera2,
+double placeBeside(const RigData& data, const std::vector<int>& views, const Calibration& rig, int camera1, int camera2,
                    Matx33d& R, Vec3d& T)
 {
     std::vector<std::vector<Point3f>> object;
     std::vector<std::vector<Point2f>> image1, image2;
-    commonPoints(data, moments, camera1, camera2, object, image1, image2);
+    commonPoints(data, views, camera1, camera2, object, image1, image2);
     if (object.empty())
-        throw Failure(format("--pinhole-out needs a moment that camera %d and camera %d see through their windows", camera1 + 1,
+        throw Failure(format("--pinhole-out needs a view that camera %d and camera %d see through their windows", camera1 + 1,
                              camera2 + 1));
     straighten(*rig.cameras[camera1].camera, image1);
     straighten(*rig.cameras[camera2].camera, image2);
@@ -88,29 +88,29 @@ int pinholeCoefficients(const refract::RefractiveCamera& camera)
     return isOpenCV ? camera.lensParameters().rows - 4 : RICHEST;
 }
 
-CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
+CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& views,
                                                int coefficients)
 {
-    std::vector<TargetView> views;
+    std::vector<TargetView> targetViews;
     bool solid = false;
-    for (int i : moments)
-        if (data.moments[i].hasGlass(camera))
+    for (int i : views)
+        if (data.views[i].hasGlass(camera))
         {
-            views.push_back({data.moments[i].objectPoints, data.moments[i].glass[camera]});
-            solid = solid || isSolid(data.moments[i].objectPoints);
+            targetViews.push_back({data.views[i].objectPoints, data.views[i].glass[camera]});
+            solid = solid || isSolid(data.views[i].objectPoints);
         }
-    if (views.size() < MIN_VIEWS && !solid)
+    if (targetViews.size() < MIN_VIEWS && !solid)
         throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
     CameraCalibration result;
-    result.camera = calibratePinhole(views, data.imageSize[camera], coefficients, result.rms);
+    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, result.rms);
     return result;
 }
 
-Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients)
+Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& views, int coefficients)
 {
     Calibration rig;
     for (int c = 0; c < data.cameraCount; c++)
-        rig.add(calibratePinholeThroughGlass(data, c, moments, coefficients));
+        rig.add(calibratePinholeThroughGlass(data, c, views, coefficients));
     rig.rms = rig.cameras[0].rms;
     if (rig.single())
         return rig;
@@ -119,7 +119,7 @@ Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& mom
     {
         Matx33d R;
         Vec3d T;
-        squares += std::pow(placeBeside(data, moments, rig, link.first, link.second, R, T), 2);
+        squares += std::pow(placeBeside(data, views, rig, link.first, link.second, R, T), 2);
         rig.Rs[link.second] = R*rig.Rs[link.first];
         rig.Ts[link.second] = R*rig.Ts[link.first] + T;
     }

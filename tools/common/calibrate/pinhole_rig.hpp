@@ -13,11 +13,12 @@ namespace tools {
 cv::stereoCalibrate as if there were none. They throw Failure (or cv::Exception) where that cannot be done. */
 
 //! @param coefficients of the lens: 0, 4, 5, 8, 12 or 14, or FISHEYE_LENS
-CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& moments,
+CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& views,
                                                int coefficients);
 
-//! All cameras, each placed beside the one with most moments in common; rms is that of cv::stereoCalibrate, root mean square.
-Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& moments, int coefficients);
+/** All cameras, the extrinsics of each from the camera with which it has most views in common; rms is the root mean square of those of
+cv::stereoCalibrate. */
+Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& views, int coefficients);
 
 //! Number of coefficients of a lens as cv::calibrateCamera would find it, or FISHEYE_LENS.
 int pinholeCoefficients(const cv::refract::RefractiveCamera& camera);

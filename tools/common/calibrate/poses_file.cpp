@@ -131,13 +131,13 @@ void readPoses(const std::string& path, const std::string& unit, RigData& data)
 {
     const std::map<std::string, KnownPose> poses = PosesFile(path, unit).poses();
     std::vector<std::string> missing;
-    for (Moment& m : data.moments)
+    for (View& view : data.views)
     {
-        const auto found = poses.find(m.stem);
+        const auto found = poses.find(view.stem);
         if (found == poses.end())
-            missing.push_back(m.stem);
+            missing.push_back(view.stem);
         else
-            m.pose = found->second;
+            view.pose = found->second;
     }
     if (!missing.empty())
         throw Failure("'" + path + "' has no pose of view " + listed(missing) + ": with --poses every view needs one; leave the "

@@ -53,9 +53,9 @@ bool RigSources::anyDirect() const
     return std::any_of(direct.begin(), direct.end(), [](const std::string& source) { return !source.empty(); });
 }
 
-std::vector<const ViewSet*> RigViewSets::all() const
+std::vector<const DetectedImages*> RigImages::all() const
 {
-    std::vector<const ViewSet*> sets;
+    std::vector<const DetectedImages*> sets;
     for (int c = 0; c < MAX_CAMERAS; c++)
         sets.insert(sets.end(), {&direct[c], &glass[c]});
     return sets;
@@ -66,13 +66,13 @@ static int countTaken(const PerCamera<std::vector<Point2d>>& images)
     return (int)std::count_if(images.begin(), images.end(), [](const std::vector<Point2d>& pixels) { return !pixels.empty(); });
 }
 
-int Moment::countDirect() const { return countTaken(direct); }
+int View::countDirect() const { return countTaken(direct); }
 
-int Moment::countGlass() const { return countTaken(glass); }
+int View::countGlass() const { return countTaken(glass); }
 
 int RigData::countPairs(int camera) const
 {
-    return (int)std::count_if(moments.begin(), moments.end(), [=](const Moment& m) { return m.isPair(camera); });
+    return (int)std::count_if(views.begin(), views.end(), [=](const View& view) { return view.isPair(camera); });
 }
 
 int RigData::countPairs() const
@@ -86,8 +86,8 @@ int RigData::countPairs() const
 std::vector<std::pair<int, int>> cameraLinks(const RigData& data, bool throughOnly)
 {
     const auto common = [&](int a, int b) {
-        return std::count_if(data.moments.begin(), data.moments.end(), [&](const Moment& m) {
-            return (m.hasGlass(a) && m.hasGlass(b)) || (!throughOnly && m.hasDirect(a) && m.hasDirect(b));
+        return std::count_if(data.views.begin(), data.views.end(), [&](const View& view) {
+            return (view.hasGlass(a) && view.hasGlass(b)) || (!throughOnly && view.hasDirect(a) && view.hasDirect(b));
         });
     };
     std::vector<std::pair<int, int>> links;
@@ -109,8 +109,8 @@ std::vector<std::pair<int, int>> cameraLinks(const RigData& data, bool throughOn
             for (int c = 0; c < data.cameraCount; c++)
                 if (std::find(placed.begin(), placed.end(), c) == placed.end())
                     alone += (alone.empty() ? "" : ", ") + std::to_string(c + 1);
-            throw Failure("no moment is seen by " + (data.cameraCount == 2 ? "both cameras, so their places to each other cannot"
-                              : "camera " + alone + " and another one, so its place in the rig cannot")
+            throw Failure((data.cameraCount == 2 ? "both cameras have no view in common, so their relative pose cannot"
+                           : "camera " + alone + " has no view in common with the others, so its pose in the rig cannot")
                           + " be found: images of one moment must have equal names in the folders of all cameras");
         }
         links.push_back(best);
@@ -119,22 +119,22 @@ std::vector<std::pair<int, int>> cameraLinks(const RigData& data, bool throughOn
     return links;
 }
 
-std::vector<int> allMoments(const RigData& data)
+std::vector<int> allViews(const RigData& data)
 {
-    std::vector<int> all(data.moments.size());
+    std::vector<int> all(data.views.size());
     std::iota(all.begin(), all.end(), 0);
     return all;
 }
 
-RigViewSets readViewSets(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
+RigImages readRigImages(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
 {
-    RigViewSets sets;
+    RigImages sets;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
         {
             const std::string& source = (through ? sources.glass : sources.direct)[c];
             if (!source.empty())
-                (through ? sets.glass : sets.direct)[c] = readViews(source, target, imageSize[c], quiet,
+                (through ? sets.glass : sets.direct)[c] = readDetectedImages(source, target, imageSize[c], quiet,
                                                                           sources.channel);
         }
     return sets;
@@ -142,103 +142,103 @@ RigViewSets readViewSets(const RigSources& sources, const Target* target, const 
 
 namespace {
 
-int countCameras(const RigViewSets& sets)
+int countCameras(const RigImages& sets)
 {
     int count = 1;
     for (int c = 0; c < MAX_CAMERAS; c++)
-        if (!sets.glass[c].views.empty())
+        if (!sets.glass[c].images.empty())
             count = c + 1;
     return count;
 }
 
-void setImageSize(RigData& data, const RigViewSets& sets, int camera)
+void setImageSize(RigData& data, const RigImages& sets, int camera)
 {
-    const ViewSet &direct = sets.direct[camera], &glass = sets.glass[camera];
-    if (!direct.views.empty() && !glass.views.empty() && direct.imageSize != glass.imageSize)
+    const DetectedImages &direct = sets.direct[camera], &glass = sets.glass[camera];
+    if (!direct.images.empty() && !glass.images.empty() && direct.imageSize != glass.imageSize)
         throw Failure(format("camera %d: direct images ('%s') are %dx%d, glass images ('%s') %dx%d: they must come from the "
                              "same camera at the same resolution", camera + 1, direct.files[0].c_str(), direct.imageSize.width,
                              direct.imageSize.height, glass.files[0].c_str(), glass.imageSize.width, glass.imageSize.height));
-    data.imageSize[camera] = direct.views.empty() ? glass.imageSize : direct.imageSize;
+    data.imageSize[camera] = direct.images.empty() ? glass.imageSize : direct.imageSize;
 }
 
-std::vector<std::vector<Point2d>*> imagesOf(Moment& m)
+std::vector<std::vector<Point2d>*> imagesOf(View& view)
 {
     std::vector<std::vector<Point2d>*> images;
     for (int c = 0; c < MAX_CAMERAS; c++)
-        for (std::vector<Point2d>* pixels : {&m.direct[c], &m.glass[c]})
+        for (std::vector<Point2d>* pixels : {&view.direct[c], &view.glass[c]})
             if (!pixels->empty())
                 images.push_back(pixels);
     return images;
 }
 
-void alignImages(const Target& target, Moment& m)
+void alignImages(const Target& target, View& view)
 {
-    const std::vector<std::vector<Point2d>*> images = imagesOf(m);
+    const std::vector<std::vector<Point2d>*> images = imagesOf(view);
     for (size_t i = 1; i < images.size(); i++)
         *images[i] = target.alignWith(*images[0], *images[i]);
 }
 
-//! Puts points with coordinates of their own where the moment has these, or at its end.
-std::vector<Point2d> matched(const DetectedView& view, Moment& m)
+//! Puts points with coordinates of their own where the view has these, or at its end.
+std::vector<Point2d> matched(const DetectedImage& image, View& view)
 {
     using Coordinates = std::tuple<double, double, double>;
     std::map<Coordinates, size_t> indexOf;
-    for (size_t i = 0; i < m.objectPoints.size(); i++)
-        indexOf.emplace(Coordinates(m.objectPoints[i].x, m.objectPoints[i].y, m.objectPoints[i].z), i);
-    std::vector<Point2d> pixels(m.objectPoints.size(), Point2d(NAN, NAN));
-    for (size_t i = 0; i < view.points.size(); i++)
+    for (size_t i = 0; i < view.objectPoints.size(); i++)
+        indexOf.emplace(Coordinates(view.objectPoints[i].x, view.objectPoints[i].y, view.objectPoints[i].z), i);
+    std::vector<Point2d> pixels(view.objectPoints.size(), Point2d(NAN, NAN));
+    for (size_t i = 0; i < image.points.size(); i++)
     {
-        const Point3d& X = view.objectPoints[i];
-        const auto place = indexOf.emplace(Coordinates(X.x, X.y, X.z), m.objectPoints.size());
+        const Point3d& X = image.objectPoints[i];
+        const auto place = indexOf.emplace(Coordinates(X.x, X.y, X.z), view.objectPoints.size());
         if (place.second)
         {
-            m.objectPoints.push_back(X);
+            view.objectPoints.push_back(X);
             pixels.emplace_back();
         }
-        pixels[place.first->second] = view.points[i];
+        pixels[place.first->second] = image.points[i];
     }
     return pixels;
 }
 
 } // namespace
 
-RigData pairViews(const Target* target, const RigViewSets& sets, bool unpaired, int fewest)
+RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaired, int fewest)
 {
     RigData data;
     data.cameraCount = countCameras(sets);
-    std::map<std::pair<std::string, bool>, Moment> moments;
+    std::map<std::pair<std::string, bool>, View> views;
     // Boards first: their points, and where each is, must stand before others are matched with them.
     for (bool board : {true, false})
     {
         for (int c = 0; c < data.cameraCount; c++)
             for (bool through : {false, true})
             {
-                const ViewSet& set = (through ? sets.glass : sets.direct)[c];
-                for (const DetectedView& view : set.views)
+                const DetectedImages& set = (through ? sets.glass : sets.direct)[c];
+                for (const DetectedImage& image : set.images)
                 {
-                    if (view.seenCount() < fewest || view.objectPoints.empty() != board)
+                    if (image.seenCount() < fewest || image.objectPoints.empty() != board)
                         continue;
-                    Moment& m = moments[{view.stem, unpaired && through}];
-                    m.stem = view.stem;
+                    View& view = views[{image.stem, unpaired && through}];
+                    view.stem = image.stem;
                     if (board)
                     {
-                        m.objectPoints = target->objectPoints();
-                        m.neighbours = target->neighbours();
+                        view.objectPoints = target->objectPoints();
+                        view.neighbours = target->neighbours();
                     }
-                    (through ? m.glass : m.direct)[c] = board ? view.points : matched(view, m);
+                    (through ? view.glass : view.direct)[c] = board ? image.points : matched(image, view);
                 }
             }
         if (board)
-            for (auto& entry : moments)
+            for (auto& entry : views)
                 alignImages(*target, entry.second);
     }
     for (int c = 0; c < data.cameraCount; c++)
         setImageSize(data, sets, c);
-    for (auto& entry : moments)
+    for (auto& entry : views)
     {
         for (std::vector<Point2d>* pixels : imagesOf(entry.second))
             pixels->resize(entry.second.objectPoints.size(), Point2d(NAN, NAN));
-        data.moments.push_back(entry.second);
+        data.views.push_back(entry.second);
     }
     return data;
 }

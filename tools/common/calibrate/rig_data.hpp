@@ -4,25 +4,25 @@
 #ifndef REFRACT_TOOLS_RIG_DATA_HPP
 #define REFRACT_TOOLS_RIG_DATA_HPP
 
-#include "target/detected_views.hpp"
+#include "target/detected_images.hpp"
 #include <array>
 #include <optional>
 
 namespace CLI { class App; }
 
-/* Which images belong together: what the cameras saw of a target at each of its poses. */
+/* Which images belong together: the observations of a target at each of its poses by all cameras. */
 namespace tools {
 
 const int MAX_CAMERAS = 16;
-const int POINTS_OF_POSE = 4;           // a view of fewer has none
+const int MIN_POSE_POINTS = 4;          // an image with fewer has no pose
 
-//! Something of each camera; empty for one that is not there.
+//! One value for each camera; empty for cameras that the rig does not have.
 template <typename T> using PerCamera = std::array<T, MAX_CAMERAS>;
 
 //! "" for the first camera, then "2", "3", ...: what follows the names of options and keys.
 inline std::string cameraSuffix(int camera) { return camera ? std::to_string(camera + 1) : ""; }
 
-//! Where the images of the cameras are, without and through the window; empty: there are none.
+//! The image files of each camera, direct and through the window; empty: none.
 struct RigSources
 {
     PerCamera<std::string> direct, glass;
@@ -35,16 +35,16 @@ struct RigSources
     bool anyDirect() const;
 };
 
-//! What was found in them; no views: there are none.
-struct RigViewSets
+//! What was found in them; no images: there are none.
+struct RigImages
 {
-    PerCamera<ViewSet> direct, glass;
+    PerCamera<DetectedImages> direct, glass;
 
-    std::vector<const ViewSet*> all() const;        //!< direct and glass of camera 1, of camera 2, ...
+    std::vector<const DetectedImages*> all() const; //!< direct and glass of camera 1, of camera 2, ...
 };
 
-//! readViews of each source; imageSize[c]: of each camera.
-RigViewSets readViewSets(const RigSources& sources, const Target* target, const PerCamera<cv::Size>& imageSize, bool quiet);
+//! readDetectedImages of each source; imageSize[c]: of each camera.
+RigImages readRigImages(const RigSources& sources, const Target* target, const PerCamera<cv::Size>& imageSize, bool quiet);
 
 //! A pose that is known from outside: object -> camera 1.
 struct KnownPose
@@ -53,8 +53,8 @@ struct KnownPose
     cv::Mat covariance;         //!< 6x6 of (rvec, tvec); empty: exact
 };
 
-//! One pose of the target, and what each camera saw of it. An empty array: no image, or the target was not found.
-struct Moment
+//! One pose of the target, and its images in all cameras. An empty array: no image, or the target was not found.
+struct View
 {
     std::string stem;
     std::vector<cv::Point3d> objectPoints;              //!< of the target
@@ -73,29 +73,29 @@ struct Moment
 struct RigData
 {
     int cameraCount = 1;
-    std::vector<Moment> moments;
+    std::vector<View> views;
     PerCamera<cv::Size> imageSize;
 
     int countPairs(int camera) const;
     int countPairs() const;                     //!< of all cameras
 };
 
-/** The order in which cameras can be placed, each beside one that is placed already, from camera 1: (from, to), the most moments in
-common first.
+/** The order in which the extrinsics of the cameras can be found, from camera 1 on: (known, new), the pair with most views in common
+first.
 @param throughOnly only images through the window count
-Throws Failure if some cannot be. */
+Throws Failure if a camera has no view in common with the others. */
 std::vector<std::pair<int, int>> cameraLinks(const RigData& data, bool throughOnly);
 
 //! 0, 1, 2, ...
-std::vector<int> allMoments(const RigData& data);
+std::vector<int> allViews(const RigData& data);
 
-/** Sorts views into moments. Equal stems are one moment; with `unpaired` a direct and a glass image never are, while
-the two cameras of a rig still are. Points are renumbered where the target's symmetry makes two images of a moment
-disagree; points with coordinates of their own (points.csv) are one if these are equal. There are as many cameras as the last
-with views through the window says.
+/** Groups images into views. Images with the same stem are one view. With `unpaired` a direct and a glass image never are one
+view, but the images of several cameras still are. Points are renumbered if the target's symmetry makes two images of a view
+disagree. Points with coordinates of their own (points.csv) are the same point if these are equal. The last camera with images
+through the window gives the number of cameras.
 @param target null: all points have coordinates of their own
-@param fewest points of a view that counts */
-RigData pairViews(const Target* target, const RigViewSets& sets, bool unpaired, int fewest = POINTS_OF_POSE);
+@param fewest points that an image must show */
+RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaired, int fewest = MIN_POSE_POINTS);
 
 } // namespace tools
 

@@ -90,7 +90,7 @@ Calibration firstPair(const Calibration& rig)
     if (rig.covariance.empty())
         return pair;
     const RigModel all = modelOf(rig);
-    const int ofPair = columnsOf(all, 1).end, place = placeColumn(all, 1);
+    const int ofPair = columnsOf(all, 1).end, place = extrinsicsColumn(all, 1);
     const Range here[] = {Range(0, ofPair), Range(ofPair, ofPair + 6)}, there[] = {Range(0, ofPair), Range(place, place + 6)};
     pair.covariance = Mat::zeros(ofPair + 6, ofPair + 6, CV_64F);
     for (int i = 0; i < 2; i++)

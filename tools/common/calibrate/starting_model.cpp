@@ -18,13 +18,13 @@ namespace tools {
 
 namespace {
 
-//! Of the moments that have one.
+//! Of the views that have one.
 std::vector<TargetView> viewsOf(const RigData& data, int camera, bool glass)
 {
     std::vector<TargetView> views;
-    for (const Moment& m : data.moments)
-        if (!(glass ? m.glass : m.direct)[camera].empty())
-            views.push_back({m.objectPoints, (glass ? m.glass : m.direct)[camera]});
+    for (const View& view : data.views)
+        if (!(glass ? view.glass : view.direct)[camera].empty())
+            views.push_back({view.objectPoints, (glass ? view.glass : view.direct)[camera]});
     return views;
 }
 
@@ -38,7 +38,7 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (views.empty())
     {
         if (!(options.flags & GLASS_FREE_INTRINSICS))
-            throw Failure("there is nothing to take the lens from: give --direct" + suffix + " images or --camera" + suffix
+            throw Failure("there are no images for the lens: give --direct" + suffix + " images or --camera" + suffix
                           + ", or --free=intrinsics to find the lens through the window");
         views = viewsOf(data, camera, true);    // a pinhole through the glass is a good start
         source.kind = LensSource::FROM_GLASS;
@@ -70,13 +70,13 @@ void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camer
                            "or show the target in the image's corners too"));
 }
 
-//! Object -> camera of one image of a moment; false if there is none.
-bool solveView(const Moment& m, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, Matx33d& R, Vec3d& t)
+//! Object -> camera of one image of a view; false if there is none.
+bool solveView(const View& view, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, Matx33d& R, Vec3d& t)
 {
     if (pixels.empty())
         return false;
     Vec3d rvec;
-    if (!refractiveSolvePnP(m.objectPoints, pixels, camera, rvec, t))
+    if (!refractiveSolvePnP(view.objectPoints, pixels, camera, rvec, t))
         return false;
     Rodrigues(rvec, R);
     return true;
@@ -89,10 +89,10 @@ struct BoardInBoth
     Vec3d t1, t2;
 };
 
-double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const Matx33d& R, const Vec3d& T)
+double relativePoseError(const std::vector<BoardInBoth>& boards, const Matx33d& R, const Vec3d& T)
 {
     // The median over the boards, as single-view poses of a flat board may be mirrored.
-    std::vector<double> misfits;
+    std::vector<double> errors;
     for (const BoardInBoth& b : boards)
     {
         double sum = 0.;
@@ -102,10 +102,10 @@ double relativePoseMisfit(const std::vector<BoardInBoth>& boards, const Matx33d&
             const Vec3d there = R*(b.R1*p + b.t1) + T, here = b.R2*p + b.t2;
             sum += norm(there - here, NORM_L2SQR)/here.dot(here);
         }
-        misfits.push_back(sum);
+        errors.push_back(sum);
     }
-    std::nth_element(misfits.begin(), misfits.begin() + misfits.size()/2, misfits.end());
-    return misfits[misfits.size()/2];
+    std::nth_element(errors.begin(), errors.begin() + errors.size()/2, errors.end());
+    return errors[errors.size()/2];
 }
 
 //! R, T of camera 2 from camera 1: of the boards, the one that fits the others best.
@@ -116,10 +116,10 @@ void placeByBest(const std::vector<BoardInBoth>& boards, Matx33d& bestR, Vec3d& 
     {
         const Matx33d R = b.R2*b.R1.t();
         const Vec3d T = b.t2 - R*b.t1;
-        const double misfit = relativePoseMisfit(boards, R, T);
-        if (misfit < best)
+        const double error = relativePoseError(boards, R, T);
+        if (error < best)
         {
-            best = misfit;
+            best = error;
             bestR = R;
             bestT = T;
         }
@@ -139,13 +139,13 @@ RigModel bareOf(const RigModel& rig)
 std::vector<BoardInBoth> boardsInBoth(const RigData& data, const RigModel& rig, int camera1, int camera2, bool glass)
 {
     std::vector<BoardInBoth> boards;
-    for (const Moment& m : data.moments)
+    for (const View& view : data.views)
     {
-        const PerCamera<std::vector<Point2d>>& images = glass ? m.glass : m.direct;
+        const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
         BoardInBoth b;
-        b.object = &m.objectPoints;
-        if (solveView(m, rig.cameras[camera1], images[camera1], b.R1, b.t1) &&
-            solveView(m, rig.cameras[camera2], images[camera2], b.R2, b.t2))
+        b.object = &view.objectPoints;
+        if (solveView(view, rig.cameras[camera1], images[camera1], b.R1, b.t1) &&
+            solveView(view, rig.cameras[camera2], images[camera2], b.R2, b.t2))
             boards.push_back(b);
     }
     return boards;
@@ -155,13 +155,13 @@ std::vector<BoardInBoth> boardsInBoth(const RigData& data, const RigModel& rig, 
 std::vector<BoardInBoth> boardsAtKnownPoses(const RigData& data, const RigModel& rig, int camera, bool glass)
 {
     std::vector<BoardInBoth> boards;
-    for (const Moment& m : data.moments)
+    for (const View& view : data.views)
     {
         BoardInBoth b;
-        b.object = &m.objectPoints;
-        Rodrigues(m.pose->rvec, b.R1);
-        b.t1 = m.pose->tvec;
-        if (solveView(m, rig.cameras[camera], (glass ? m.glass : m.direct)[camera], b.R2, b.t2))
+        b.object = &view.objectPoints;
+        Rodrigues(view.pose->rvec, b.R1);
+        b.t1 = view.pose->tvec;
+        if (solveView(view, rig.cameras[camera], (glass ? view.glass : view.direct)[camera], b.R2, b.t2))
             boards.push_back(b);
     }
     return boards;
@@ -240,9 +240,9 @@ double startDistance(const RigData& data, double square)
         return square;
     const double SHARE = 0.1;           // of the target
     double width = 0.;
-    for (const Moment& m : data.moments)
-        for (const Point3d& X : m.objectPoints)
-            width = std::max(width, norm(X - m.objectPoints[0]));
+    for (const View& view : data.views)
+        for (const Point3d& X : view.objectPoints)
+            width = std::max(width, norm(X - view.objectPoints[0]));
     return SHARE*width;
 }
 

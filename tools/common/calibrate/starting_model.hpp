@@ -8,7 +8,7 @@
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
 
-/* Where a fit starts: the lens from a file or from the direct images, the windows as given, R and T from single views. */
+/* Initial values of a fit: the lens from a file or from the direct images, the windows as given, R and T from single views. */
 namespace tools {
 
 struct RigOptions
@@ -42,7 +42,7 @@ double startDistance(const RigData& data, double square);
 with the given deviations. */
 KnownCamera knownOf(const cv::refract::RefractiveCamera& camera, const RigOptions& options, int c);
 
-//! The start: lenses, the windows as given, and R, T from the moment that explains the others best.
+//! Initial values: lenses, the windows as given, and R, T from the view that fits the others best.
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
 
 } // namespace tools

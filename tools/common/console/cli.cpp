@@ -102,8 +102,8 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     {
         const int code = body(command);
         if (!std::cout.flush())
-            throw Failure("what is printed could not be written: is the disk full?");
-        const std::string turned = takeTurnedImagesNotice();
+            throw Failure("the output could not be written: is the disk full?");
+        const std::string turned = takeRotationNotice();
         if (!turned.empty())
             command.warn(turned);
         return code;

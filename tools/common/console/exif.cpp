@@ -17,7 +17,7 @@ std::vector<std::string> turned;
 
 } // namespace
 
-bool asksForTurn(const std::vector<unsigned char>& bytes)
+bool hasExifRotation(const std::vector<unsigned char>& bytes)
 {
     const size_t EARLY = 1 << 20;       // bytes; EXIF data are before the picture, but may hold a small one of their own
     const auto end = bytes.begin() + (long)std::min(bytes.size(), EARLY);
@@ -30,14 +30,14 @@ bool asksForTurn(const std::vector<unsigned char>& bytes)
     return turned.size() != stored.size() || (!stored.empty() && cv::norm(turned, stored, cv::NORM_INF) > 0);
 }
 
-void noteTurnedImage(const std::string& path)
+void noteRotatedImage(const std::string& path)
 {
     const std::lock_guard<std::mutex> lock(turnedMutex);
     if (std::find(turned.begin(), turned.end(), path) == turned.end())
         turned.push_back(path);
 }
 
-std::string takeTurnedImagesNotice()
+std::string takeRotationNotice()
 {
     const std::lock_guard<std::mutex> lock(turnedMutex);
     std::vector<std::string> names;

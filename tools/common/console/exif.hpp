@@ -7,19 +7,19 @@
 #include <string>
 #include <vector>
 
-/* Cameras that know how they were held say so in the EXIF data, and viewers turn the picture. The lens does not turn: pixels are
-used as they are stored, and users are told. */
+/* Many cameras store their orientation in the EXIF data, and viewers rotate the picture by it. The lens does not rotate: the tools use
+the pixels as they are stored, and warn the user. */
 namespace tools {
 
-/** Whether the EXIF data of a JPEG or PNG file ask for another picture than the stored one: OpenCV's own reader says so, by what it
-makes of the file with and without them. (A picture that looks the same when turned does not ask.) */
-bool asksForTurn(const std::vector<unsigned char>& bytes);
+/** Whether the EXIF data of a JPEG or PNG file rotate the picture: OpenCV's reader decides, with and without them. (A picture that is the
+same when rotated counts as not rotated.) */
+bool hasExifRotation(const std::vector<unsigned char>& bytes);
 
 //! The file is read as stored; one warning at the end of the tool names all such files.
-void noteTurnedImage(const std::string& path);
+void noteRotatedImage(const std::string& path);
 
 //! The sentence, once; empty if no file was noted.
-std::string takeTurnedImagesNotice();
+std::string takeRotationNotice();
 
 } // namespace tools
 

@@ -63,7 +63,7 @@ std::string targetOfLinks(const std::string& path)
     for (int i = 0; i < MOST_LINKS && fs::is_symlink(target, ignored); i++)
         target = folderOf(target)/fs::read_symlink(target, ignored);
     if (fs::is_symlink(target, ignored))
-        throw Failure("cannot write '" + path + "': its links lead round in a circle");
+        throw Failure("cannot write '" + path + "': its symbolic links form a loop");
     return target.string();
 }
 
@@ -79,7 +79,7 @@ void requireWritable(const std::string& path)
     if (isSpecialFile(path))
     {
         if (access(path.c_str(), W_OK) != 0)
-            throw Failure("cannot write '" + path + "': no right to write into it");
+            throw Failure("cannot write '" + path + "': no permission to write into it");
         return;
     }
     const fs::path target = targetOfLinks(path), folder = folderOf(target);
@@ -88,10 +88,10 @@ void requireWritable(const std::string& path)
     if (!isFolder(folder))
         throw Failure("cannot write '" + path + "': the folder '" + folder.string() + "' does not exist; make it first");
     if (isReadOnly(target))
-        throw Failure("cannot write '" + path + "': it is there and may not be written: name another, or allow it "
+        throw Failure("cannot write '" + path + "': it exists and is read-only: name another file, or allow it "
                       "(chmod u+w)");
     if (access(folder.c_str(), W_OK) != 0)
-        throw Failure("cannot write '" + path + "': no right to write in the folder '" + folder.string() + "'");
+        throw Failure("cannot write '" + path + "': no permission to write in the folder '" + folder.string() + "'");
 }
 
 fs::path temporaryFolder()

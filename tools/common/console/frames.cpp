@@ -160,11 +160,11 @@ FramePairs pairsOf(const Frames& first, const Frames& second)
             if (partners.count(image.first))
                 result.pairs.push_back({image.first, image.second, partners.at(image.first)});
             else
-                result.alone1.push_back(image.first);
+                result.unpaired1.push_back(image.first);
         for (const auto& image : partners)
             if (std::none_of(result.pairs.begin(), result.pairs.end(), [&](const FramePair& pair) {
                     return pair.second == image.second; }))
-                result.alone2.push_back(image.first);
+                result.unpaired2.push_back(image.first);
     }
     if (result.pairs.empty())
         throw Failure("no image of '" + first.source() + "' has the name of one of '" + second.source()

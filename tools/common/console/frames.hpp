@@ -55,7 +55,7 @@ struct FramePair
 struct FramePairs
 {
     std::vector<FramePair> pairs;
-    std::vector<std::string> alone1, alone2;    //!< stems without partner
+    std::vector<std::string> unpaired1, unpaired2;  //!< stems without partner
 };
 
 /** Frames by their number, images by their stem; single images are a pair whatever their names. Throws Failure if there is no

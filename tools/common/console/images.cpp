@@ -30,7 +30,7 @@ std::vector<uchar> readBytes(const std::string& path)
     std::ifstream in(path, std::ios::binary);
     std::vector<uchar> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (!in)
-        throw Failure("cannot read '" + path + "': have you the right to?");
+        throw Failure("cannot read '" + path + "': check its access rights");
     if (bytes.empty())
         throw Failure("'" + path + "' is empty: take or copy the image again");
     return bytes;
@@ -82,8 +82,8 @@ cv::Mat decode(const std::string& path, int flags)
     if (image.empty())
         throw Failure("'" + path + "' is not an image of a kind that can be read (PNG, JPEG, TIFF, BMP, PGM, PPM are), or is cut "
                       "short: turn it into one of these, or take or copy it again");
-    if (asksForTurn(bytes))
-        noteTurnedImage(path);
+    if (hasExifRotation(bytes))
+        noteRotatedImage(path);
     requireOnePage(path, bytes);
     return image;
 }

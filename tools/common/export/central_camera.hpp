@@ -10,11 +10,11 @@
 
 namespace tools {
 
-/* The camera without a window that comes nearest to one with it, for what lies between two depths: lens and place are fitted to
-exact projections of points all over the image and the range. It stands elsewhere than the true one: a pane in air moves the place
-from which a scene seems to be seen, a port in water also the focal length. What it leaves is said. */
+/* The central camera (without a window) that best approximates a camera behind a window, between two depths: its lens and pose are
+fitted to exact projections of points all over the image and the range. Its centre is not that of the true camera: a pane in air
+shifts the apparent centre of projection, a port in water also changes the focal length. The error that remains is reported. */
 
-//! By how much the central camera's projections are off all over the range.
+//! Errors of the central camera's projections over the whole range.
 struct CentralError
 {
     double rms = 0, max = 0;                //!< px

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-//! A camera of a rig, as those who know no windows are told of it.
+//! A camera of a rig for programs that have no model of a window.
 struct ExportedCamera
 {
     std::string name;           //!< camera1, ...
@@ -20,7 +20,7 @@ struct ExportedCamera
     cv::Vec3d T;
 };
 
-//! What is exported, and for what it holds.
+//! The cameras to export, and the range for which they are valid.
 struct CentralRig
 {
     std::vector<ExportedCamera> cameras;
@@ -31,7 +31,7 @@ struct CentralRig
 
 //! "rms 0.12 px, max 0.5 px, ..." of a camera.
 std::string errorText(const CentralRig& rig, const ExportedCamera& camera);
-//! What every file says first, without the comment sign.
+//! The first lines of every file, without the comment sign.
 std::string headText(const CentralRig& rig);
 
 } // namespace tools

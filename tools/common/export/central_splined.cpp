@@ -154,10 +154,10 @@ private:
 };
 
 //! A camera without a window is its own central camera.
-CentralCamera itself(const Ptr<RefractiveCamera>& camera, const SeenPoints& judged)
+CentralCamera itself(const Ptr<RefractiveCamera>& camera, const SeenPoints& tested)
 {
     CentralCamera central = { camera->clone(), cv::Matx33d::eye(), Vec3d(), CentralError() };
-    central.error = errorOf(judged, central);
+    central.error = errorOf(tested, central);
     return central;
 }
 
@@ -165,12 +165,12 @@ CentralCamera itself(const Ptr<RefractiveCamera>& camera, const SeenPoints& judg
 
 CentralCamera fitCentralSplined(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range, const std::string& name)
 {
-    const SeenPoints judged = seenPoints(camera, range, 40, 30, 12);
+    const SeenPoints tested = seenPoints(camera, range, 40, 30, 12);
     const cv::refract::GlassWindow window = camera->window();
     if (window.thickness.empty() && window.innerIndex == window.outerIndex)
-        return itself(camera, judged);
-    requireEnough(judged, range, name);
-    const Grid grid = gridFor(camera, judged);
+        return itself(camera, tested);
+    requireEnough(tested, range, name);
+    const Grid grid = gridFor(camera, tested);
     const int PER_CELL = 2, DEPTHS = 5, ENOUGH = 30;
     const SeenPoints fitted = seenPoints(camera, range, PER_CELL*grid.nx + 1, PER_CELL*grid.ny + 1, DEPTHS);
     SplinedFit fit(camera, grid, fitted);
@@ -180,7 +180,7 @@ CentralCamera fitCentralSplined(const Ptr<RefractiveCamera>& camera, const cv::V
     if (!(step < 1e-3))
         throw Failure("no splined central camera comes near " + name + " over the whole image: give a range farther from the window");
     CentralCamera central = fit.result();
-    central.error = errorOf(judged, central);       // elsewhere, too
+    central.error = errorOf(tested, central);       // elsewhere, too
     return central;
 }
 

@@ -35,7 +35,7 @@ cv::Vec4d quaternionOf(const cv::Matx33d& R)
     return {std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]};
 }
 
-//! A camera at a moment.
+//! A camera at a view.
 struct Image
 {
     int camera;
@@ -113,14 +113,14 @@ public:
     const std::string& points() const { return points_; }
 
 private:
-    int imageOf(int camera, const std::string& moment)
+    int imageOf(int camera, const std::string& view)
     {
-        const auto key = std::make_pair(camera, moment);
+        const auto key = std::make_pair(camera, view);
         const auto known = index_.find(key);
         if (known != index_.end())
             return known->second;
         const std::string& name = rig_.cameras[camera].name;
-        images_.push_back({camera, moment.empty() ? name : name + "/" + moment, {}});
+        images_.push_back({camera, view.empty() ? name : name + "/" + view, {}});
         return index_[key] = (int)images_.size() - 1;
     }
 

@@ -7,7 +7,7 @@
 #include "export/central_rig.hpp"
 #include "export/measured_points.hpp"
 
-/* The files of those who know no windows. Each says how far off it is. */
+/* Files for programs that have no model of a window. Each states its error. */
 namespace tools {
 
 //! A file of a folder, and its text.

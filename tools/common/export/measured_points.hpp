@@ -13,7 +13,7 @@ namespace tools {
 //! A line of what refract_measure wrote.
 struct MeasuredPoint
 {
-    std::string image;                      //!< stem: the moment
+    std::string image;                      //!< stem: the view
     std::vector<cv::Point2d> pixels;        //!< of each camera, raw; NaN: not seen
     cv::Point3d X;                          //!< frame of camera 1
 };

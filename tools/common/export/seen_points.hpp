@@ -8,7 +8,7 @@
 
 namespace tools {
 
-//! Scene points, camera frame, and the pixels where they are seen: what central cameras are fitted to and judged by.
+//! Scene points, camera frame, and their pixels: central cameras are fitted to them and compared with them.
 struct SeenPoints
 {
     std::vector<cv::Point3d> points;
@@ -19,14 +19,14 @@ struct SeenPoints
 //! Pixels all over the image, seen at depths whose inverses are evenly spaced.
 SeenPoints seenPoints(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths);
 
-//! Throws where the camera of that name sees next to nothing of the range.
+//! Throws Failure if the camera of that name sees hardly anything of the range.
 void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name);
 
 /** Where a fit begins: the true camera matrix, as if the window's outer medium were all round. A flat port makes the focal length
 longer by the ratio of the indices. */
 cv::Mat startingMatrix(const cv::refract::RefractiveCamera& camera);
 
-//! By how much a central camera is off.
+//! The error of a central camera.
 CentralError errorOf(const SeenPoints& seen, const CentralCamera& central);
 
 } // namespace tools

@@ -22,18 +22,18 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
             rows.push_back({map.pixels[i].x, map.pixels[i].y, halfWidth, halfHeight, map.total[i]});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.most()
+    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.percentile95()
          << "]\nunset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
     return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, where the colours end; at worst %.3g %s",
-                               map.median(), c.unit.c_str(), map.most(), c.unit.c_str(), map.worst(), c.unit.c_str())};
+                               map.median(), c.unit.c_str(), map.percentile95(), c.unit.c_str(), map.worst(), c.unit.c_str())};
 }
 
 Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
 {
     std::vector<std::vector<double>> rows, limits;
     for (const ErrorMap& map : assessment.errors)
-        rows.push_back({map.range, map.median(), map.worst(), map.worstOfPixels(), map.most()});
+        rows.push_back({map.range, map.median(), map.worst(), map.worstPixelNoise(), map.percentile95()});
     for (const ErrorLimit& limit : c.limits.errors)
         limits.push_back({limit.range, limit.error});
     const Vec3d depth = workingDepth(c, 0);

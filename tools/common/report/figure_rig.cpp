@@ -59,13 +59,13 @@ class RigDrawing
 public:
     explicit RigDrawing(const RigCalibration& c) : c_(c), rig_(c.fit.rig)
     {
-        for (size_t k = 0; k < c.fit.moments.size(); k++)
+        for (size_t k = 0; k < c.fit.views.size(); k++)
         {
-            const Moment& m = c.data.moments[c.fit.moments[k]];
+            const View& view = c.data.views[c.fit.views[k]];
             Matx33d R;
             Rodrigues(c.fit.rvecs[k], R);
-            for (const Point3d& X : m.objectPoints)
-                if (m.hasGlass())
+            for (const Point3d& X : view.objectPoints)
+                if (view.hasGlass())
                     points_.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
         }
         for (const Vec3d& X : points_)

@@ -71,16 +71,16 @@ public:
     std::vector<Path> boards() const
     {
         std::vector<Path> outlines;
-        for (size_t k = 0; k < c_.fit.moments.size(); k++)
+        for (size_t k = 0; k < c_.fit.views.size(); k++)
         {
-            if (!c_.data.moments[c_.fit.moments[k]].hasGlass(camera_))
+            if (!c_.data.views[c_.fit.views[k]].hasGlass(camera_))
                 continue;
             Vec3d rvec, tvec;
             poseInCamera(c_.fit, k, camera_, rvec, tvec);
             Matx33d R;
             Rodrigues(rvec, R);
             std::vector<Vec3d> points;
-            for (const Point3d& X : c_.data.moments[c_.fit.moments[k]].objectPoints)
+            for (const Point3d& X : c_.data.views[c_.fit.views[k]].objectPoints)
                 points.push_back(R*Vec3d(X) + tvec);
             outlines.push_back(outlineOf(onPaper(points)));
         }

@@ -28,12 +28,12 @@ double roundFactor(double x)
     return power*(lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
-//! "set xtics" with the names of the moments that are shown.
-std::string viewTics(const RigCalibration& c, const std::vector<int>& moments)
+//! "set xtics" with the names of the views that are shown.
+std::string viewTics(const RigCalibration& c, const std::vector<int>& views)
 {
     std::string tics = "set xtics rotate by -60 out scale 0.5 font ',10' (";
-    for (size_t k = 0; k < moments.size(); k++)
-        tics += (k ? ", " : "") + Plot::quoted(c.data.moments[moments[k]].stem) + format(" %zu", k);
+    for (size_t k = 0; k < views.size(); k++)
+        tics += (k ? ", " : "") + Plot::quoted(c.data.views[views[k]].stem) + format(" %zu", k);
     return tics + ")\n";
 }
 
@@ -95,20 +95,20 @@ Figure drawDisplacement(const RigCalibration& c, int camera)
 
 Figure drawViewRms(const RigCalibration& c, int camera)
 {
-    std::vector<int> moments;
+    std::vector<int> views;
     Rows rows;
-    for (int i : c.fit.moments)
+    for (int i : c.fit.views)
     {
         const Rms direct = rmsOf(c, camera, false, i), glass = rmsOf(c, camera, true, i);
         if (direct.points + glass.points == 0)
             continue;
-        const double k = (double)moments.size();
-        moments.push_back(i);
+        const double k = (double)views.size();
+        views.push_back(i);
         rows.push_back({k, direct.px, glass.px});
     }
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, moments) << "set ylabel 'RMS, px'\nset yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
+    plot << viewTics(c, views) << "set ylabel 'RMS, px'\nset yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
          << "set style fill solid 0.9 noborder\nset boxwidth 0.36\nset key outside top center horizontal maxrows 1 samplen 2\n"
          << "unset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using ($1-0.19):2 with boxes linecolor rgb '" << DIRECT_COLOUR << "' title 'direct', "
@@ -197,9 +197,9 @@ Figure drawResidualHistogram(const RigCalibration& c, int camera)
 Figure drawCoverage(const RigCalibration& c, int camera)
 {
     Rows direct, glass;
-    for (const Moment& m : c.data.moments)
+    for (const View& view : c.data.views)
         for (bool through : {false, true})
-            for (const Point2d& p : through ? m.glass[camera] : m.direct[camera])
+            for (const Point2d& p : through ? view.glass[camera] : view.direct[camera])
                 if (seen(p))
                     (through ? glass : direct).push_back({p.x, p.y});
     Plot plot(c.data.imageSize[camera]);
@@ -217,17 +217,17 @@ Figure drawCoverage(const RigCalibration& c, int camera)
 
 Figure drawInfluence(const RigCalibration& c, int camera)
 {
-    std::vector<int> moments;
+    std::vector<int> views;
     Rows rows;
     for (const Influence& influence : c.influences)
     {
         rows.push_back({(double)rows.size(), influence.turnDeg[camera]});
-        moments.push_back(influence.moment);
+        views.push_back(influence.view);
     }
     const double sigma = windowStd(c.fit, camera).normalDeg[0];
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, moments) << "set ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
+    plot << viewTics(c, views) << "set ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
          << "set xrange [-0.7:" << rows.size() - 0.3 << "]\nset style fill solid 0.9 noborder\nset boxwidth 0.6\n"
          << "set key outside top center horizontal maxrows 1 samplen 2\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'without this view', "

@@ -226,31 +226,31 @@ void setSightings(data& page, const RigCalibration& c)
 {
     data rows{data::type::list};
     std::vector<int> pointsSeenBy(c.data.cameraCount + 1);
-    for (int i : c.fit.moments)
+    for (int i : c.fit.views)
     {
-        const Moment& m = c.data.moments[i];
-        std::vector<int> seenBy(m.objectPoints.size());
+        const View& view = c.data.views[i];
+        std::vector<int> seenBy(view.objectPoints.size());
         data cells{data::type::list};
         for (int k = 0; k < c.data.cameraCount; k++)
         {
             int count = 0;
-            for (size_t p = 0; p < m.glass[k].size(); p++)
-                if (seen(m.glass[k][p]))
+            for (size_t p = 0; p < view.glass[k].size(); p++)
+                if (seen(view.glass[k][p]))
                 {
                     count++;
                     seenBy[p]++;
                 }
-            const int direct = (int)std::count_if(m.direct[k].begin(), m.direct[k].end(), seen);
+            const int direct = (int)std::count_if(view.direct[k].begin(), view.direct[k].end(), seen);
             data cell;
             cell.set("value", (count ? std::to_string(count) : std::string(direct ? "" : "-"))
                               + (direct ? format("%s%d direct", count ? " + " : "", direct) : ""));
-            cell.set("colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)m.objectPoints.size()));
+            cell.set("colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)view.objectPoints.size()));
             cells << cell;
         }
         for (int count : seenBy)
             pointsSeenBy[count]++;
         data row;
-        row.set("name", m.stem);
+        row.set("name", view.stem);
         row.set("cells", cells);
         rows << row;
     }
@@ -309,11 +309,11 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("without_target", listOf(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
 
-    std::vector<std::string> dropped;
-    for (const Dropped& d : leftOutOf(c))
-        dropped.push_back(d.sentence());
-    page.set("dropped", listOf(dropped));
-    page.set("has_dropped", !dropped.empty());
+    std::vector<std::string> rejected;
+    for (const Rejected& d : rejectedOf(c))
+        rejected.push_back(d.sentence());
+    page.set("dropped", listOf(rejected));
+    page.set("has_dropped", !rejected.empty());
     page.set("stereo", c.data.cameraCount > 1);
     page.set("fold_cameras", c.data.cameraCount > 2);
     page.set("few_cameras", c.data.cameraCount <= 2);

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-//! One self-contained HTML page that a technician can judge the calibration by.
+//! One self-contained HTML page by which a technician can assess the calibration.
 std::string makeReport(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
                        const std::string& commandLine, bool quiet);
 

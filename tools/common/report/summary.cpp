@@ -43,7 +43,7 @@ std::string lensOf(const RigCalibration& c, int camera)
 std::string worstViews(const RigCalibration& c, int camera)
 {
     std::vector<std::pair<double, int>> views;
-    for (int i : c.fit.moments)
+    for (int i : c.fit.views)
     {
         const Rms rms = rmsOf(c, camera, true, i);
         if (rms.points)
@@ -52,7 +52,7 @@ std::string worstViews(const RigCalibration& c, int camera)
     std::sort(views.rbegin(), views.rend());
     std::string text;
     for (size_t k = 0; k < std::min<size_t>(3, views.size()); k++)
-        text += (k ? ", " : "") + c.data.moments[views[k].second].stem + format(" %.3f", views[k].first);
+        text += (k ? ", " : "") + c.data.views[views[k].second].stem + format(" %.3f", views[k].first);
     return text;
 }
 
@@ -199,7 +199,7 @@ std::vector<SummaryRow> heldOutRows(const RigCalibration& c)
         add("  board where its direct image is, px", px(h.transferPx), "-");
     if (h.folds)
         add("  error over stated (1: as stated)",
-            h.misfit.directions ? format("%.2f", h.misfit.calibrationRatio()) : std::string("not known"), "-");
+            h.covarianceTest.directions ? format("%.2f", h.covarianceTest.calibrationRatio()) : std::string("not known"), "-");
     if (!std::isnan(h.lengthRms))
         add("lengths between corners, RMS, " + c.unit, format("%.3g", h.lengthRms),
             std::isnan(h.pinholeLengthRms) ? "-" : format("%.3g", h.pinholeLengthRms));
@@ -211,9 +211,9 @@ std::vector<SummaryRow> pointErrorRows(const RigCalibration& c, const Assessment
     std::vector<SummaryRow> rows;
     for (const ErrorMap& map : a.errors)
         rows.push_back({format("z = %.4g %s", map.range, c.unit.c_str()),
-                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.most()),
-                                                              format("%.3g", map.worst()), format("%.3g", map.worstOfPixels()),
-                                                              format("%.0f %%", 100.*map.share())}
+                        map.seen() ? std::vector<std::string>{format("%.3g", map.median()), format("%.3g", map.percentile95()),
+                                                              format("%.3g", map.worst()), format("%.3g", map.worstPixelNoise()),
+                                                              format("%.0f %%", 100.*map.seenShare())}
                                    : std::vector<std::string>{"-", "-", "-", "-", "0 %"}});
     return rows;
 }
@@ -227,7 +227,7 @@ std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
     if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return !map.seen(); }))
         note += cameras == 1 ? " 0 %: that z lies within or before the window."
                 : cameras == 2 ? " 0 %: no point there is in both images." : " 0 %: no point there is in two images.";
-    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE*map.most(); }))
+    if (std::any_of(a.errors.begin(), a.errors.end(), [](const ErrorMap& map) { return map.worst() > FAR_WORSE*map.percentile95(); }))
         note += " Where the worst is far above the rest it is a few points at the border of what is seen: leave them out.";
     return note;
 }
@@ -267,17 +267,17 @@ std::vector<SummaryRow> toleranceRows(const Assessment& a)
 std::vector<SummaryRow> adviceRows(const Advice& advice)
 {
     std::vector<SummaryRow> rows;
-    const auto add = [&rows](const std::string& name, const Worth& worth) {
+    const auto add = [&rows](const std::string& name, const Quality& quality) {
         std::string normals;
-        for (double std : worth.normalStdDeg)
+        for (double std : quality.normalStdDeg)
             normals += (normals.empty() ? "" : ", ") + format("%.2g", std);
-        rows.push_back({name, {normals, format("%.3g", worth.worstPoint), format("%.3g", worth.calibrationPart)}});
+        rows.push_back({name, {normals, format("%.3g", quality.worstPoint), format("%.3g", quality.calibrationPart)}});
     };
     add("now", advice.now);
     for (size_t i = 0; i < advice.pairs.size(); i++)
-        add(format("pair %zu: ", i + 1) + advice.pairs[i].words, advice.pairs[i].worth);
-    for (const Shot& shot : advice.instead)
-        add("instead: " + shot.words, shot.worth);
+        add(format("pair %zu: ", i + 1) + advice.pairs[i].placement, advice.pairs[i].quality);
+    for (const PlannedImage& image : advice.instead)
+        add("instead: " + image.placement, image.quality);
     return rows;
 }
 
@@ -317,10 +317,10 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
                   adviceRows(assessment.advice));
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);
-    std::vector<std::string> dropped;
-    for (const Dropped& d : leftOutOf(c))
-        dropped.push_back(d.sentence());
-    printSentences(out, "Left out:", dropped);
+    std::vector<std::string> rejected;
+    for (const Rejected& d : rejectedOf(c))
+        rejected.push_back(d.sentence());
+    printSentences(out, "Left out:", rejected);
     printSentences(out, "Contradictions:", findings.contradictions);
     printSentences(out, "Weak:", findings.weak);
     printSentences(out, "The data cannot tell:", findings.cannotTell);
@@ -337,7 +337,7 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     }
     file.rms = c.fit.rms;
     file.sigma = c.fit.sigma;
-    file.freedom = c.fit.freedom;
+    file.dof = c.fit.dof;
     file.covariance = c.fit.covariance;
     file.unit = c.unit;
     file.square = c.square;

@@ -16,11 +16,11 @@ struct SummaryRow
     std::vector<std::string> cells;
 };
 
-//! What was found, with one standard deviation, and how well it fits. The same in the terminal and in the report.
+//! The estimates with one standard deviation, and how well they fit. The same in the terminal and in the report.
 std::vector<SummaryRow> windowRows(const RigCalibration& calibration);
 std::vector<SummaryRow> fitRows(const RigCalibration& calibration);
 
-//! On boards that the calibration has not seen; cells: lens and window, a pinhole calibrated through the glass.
+//! On held-out boards; cells: lens and window, a pinhole calibrated through the glass.
 std::vector<SummaryRow> heldOutRows(const RigCalibration& calibration);
 
 //! Expected error of a measured point; cells: half of the image within, 95 % within, worst, worst of pixel noise alone, seen.

@@ -99,7 +99,7 @@ Json cameraJson(const RigCalibration& c, int camera)
 Json viewsJson(const RigCalibration& c)
 {
     Json views = Json::array();
-    for (int i : c.fit.moments)
+    for (int i : c.fit.views)
     {
         Json rms = Json::object();
         for (int camera = 0; camera < c.data.cameraCount; camera++)
@@ -109,7 +109,7 @@ Json viewsJson(const RigCalibration& c)
                 if (image.points)
                     rms[(glass ? "glass" : "direct") + std::to_string(camera + 1)] = image.px;
             }
-        views.push_back({{"name", c.data.moments[i].stem}, {"rms_px", rms}});
+        views.push_back({{"name", c.data.views[i].stem}, {"rms_px", rms}});
     }
     return views;
 }
@@ -117,7 +117,7 @@ Json viewsJson(const RigCalibration& c)
 Json droppedJson(const RigCalibration& c)
 {
     Json list = Json::array();
-    for (const Dropped& d : leftOutOf(c))
+    for (const Rejected& d : rejectedOf(c))
         list.push_back({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
                         {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
     return list;
@@ -129,7 +129,7 @@ Json heldOutJson(const HeldOut& h)
         return nullptr;
     return {{"folds", h.folds}, {"views", h.views}, {"views_without_result", h.failed}, {"rms_px", h.px},
             {"rms_px_pinhole_through_glass", h.pinholePx}, {"rms_px_board_from_direct_image", h.transferPx},
-            {"error_over_stated", h.misfit.calibrationRatio()}, {"length_rms", h.lengthRms},
+            {"error_over_stated", h.covarianceTest.calibrationRatio()}, {"length_rms", h.lengthRms},
             {"length_mean", h.lengthMean}, {"length_rms_pinhole_through_glass", h.pinholeLengthRms}};
 }
 
@@ -151,17 +151,17 @@ Json limitsJson(const Findings& findings)
     return list;
 }
 
-Json worthJson(const Worth& worth)
+Json qualityJson(const Quality& quality)
 {
-    return {{"normal_std_deg", worth.normalStdDeg}, {"worst_point_error", worth.worstPoint},
-            {"calibration_part", worth.calibrationPart}};
+    return {{"normal_std_deg", quality.normalStdDeg}, {"worst_point_error", quality.worstPoint},
+            {"calibration_part", quality.calibrationPart}};
 }
 
-Json shotsJson(const std::vector<Shot>& shots)
+Json shotsJson(const std::vector<PlannedImage>& shots)
 {
     Json list = Json::array();
-    for (const Shot& shot : shots)
-        list.push_back({{"image", shot.words}, {"predicted", worthJson(shot.worth)}});
+    for (const PlannedImage& image : shots)
+        list.push_back({{"image", image.placement}, {"predicted", qualityJson(image.quality)}});
     return list;
 }
 
@@ -169,14 +169,14 @@ void addAssessment(Json& json, const Assessment& a)
 {
     Json errors = Json::array(), tolerances = Json::array();
     for (const ErrorMap& map : a.errors)
-        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.most()}, {"worst", map.worst()},
-                          {"share_seen", map.share()},
-                          {"worst_of_pixel_noise", map.worstOfPixels()}});
+        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
+                          {"share_seen", map.seenShare()},
+                          {"worst_of_pixel_noise", map.worstPixelNoise()}});
     for (const Tolerance& t : a.tolerances)
         tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
     json["point_error"] = errors;
     json["tolerances"] = tolerances;
-    json["next_images"] = {{"now", worthJson(a.advice.now)}, {"pairs", shotsJson(a.advice.pairs)},
+    json["next_images"] = {{"now", qualityJson(a.advice.now)}, {"pairs", shotsJson(a.advice.pairs)},
                            {"instead_of_the_first", shotsJson(a.advice.instead)}};
 }
 
@@ -198,7 +198,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         {"held_out", heldOutJson(c.heldOut)},
         {"not_checked", findings.notChecked.empty() ? Json() : Json(findings.notChecked)},
         {"near_far", nearFarJson(c.nearFar)},
-        {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.freedom}}}};
+        {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.dof}}}};
     Json cameras = Json::array();
     for (int k = 0; k < c.data.cameraCount; k++)
         cameras.push_back(cameraJson(c, k));

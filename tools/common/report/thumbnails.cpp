@@ -58,13 +58,13 @@ std::vector<PointFate> fatesOf(const RigCalibration& c, const Photo& photo)
         if (px == px)
             fate.px = px;
     };
-    for (const Moment& m : c.data.moments)
-        if (m.stem == photo.stem)
-            for (const Point2d& p : (photo.glass ? m.glass : m.direct)[photo.camera])
+    for (const View& view : c.data.views)
+        if (view.stem == photo.stem)
+            for (const Point2d& p : (photo.glass ? view.glass : view.direct)[photo.camera])
                 if (seen(p))
                     mark(p, NONE);
     for (const Residual& r : c.residuals)
-        if (r.camera == photo.camera && r.glass == photo.glass && c.data.moments[r.moment].stem == photo.stem)
+        if (r.camera == photo.camera && r.glass == photo.glass && c.data.views[r.view].stem == photo.stem)
             mark(r.pixel, norm(r.error));
     return fates;
 }
@@ -102,17 +102,17 @@ double concernOf(const RigCalibration& c, const Photo& photo)
 
 } // namespace
 
-std::vector<Photo> photosOf(const RigViewSets& sets)
+std::vector<Photo> photosOf(const RigImages& sets)
 {
     std::vector<Photo> photos;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool glass : {false, true})
         {
-            const ViewSet& set = (glass ? sets.glass : sets.direct)[c];
+            const DetectedImages& set = (glass ? sets.glass : sets.direct)[c];
             if (set.files.size() == 1 && isPointFile(set.files[0]))
                 continue;
-            for (const DetectedView& view : set.views)
-                photos.push_back({view.path, view.stem, c, glass, view.points});
+            for (const DetectedImage& image : set.images)
+                photos.push_back({image.path, image.stem, c, glass, image.points});
             for (const std::string& path : set.withoutTarget)
                 photos.push_back({path, stemOf(path), c, glass, {}});
         }

@@ -6,7 +6,7 @@
 
 #include "assess/rig_calibration.hpp"
 
-/* The images themselves, small, with the points that were found in them: what no number says is seen at a glance. */
+/* Small copies of the images with the detected points, as some mistakes are seen at once in an image and in no number. */
 namespace tools {
 
 //! A small JPEG of an image with dots on its points, for the src of an <img>.
@@ -18,7 +18,7 @@ struct Thumbnail
 };
 
 //! The images that the views of the sets came from; none for corners that came from a file.
-std::vector<Photo> photosOf(const RigViewSets& sets);
+std::vector<Photo> photosOf(const RigImages& sets);
 
 //! Colours of points in CSS, and how far these lie from where the calibration puts them, in words.
 struct PhotoScale
@@ -27,7 +27,7 @@ struct PhotoScale
 };
 std::vector<PhotoScale> photoScale(const RigCalibration& calibration);
 
-/** Those that are worth their place in a page, in the order that they have: all, or of very many those to look at first, which are
+/** The images for the page, in their order: all of them, or of very many those to look at first, which are
 images without target or with points left out, then those whose points lie farthest off. */
 std::vector<Photo> photosToShow(const RigCalibration& calibration);
 

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-//! What a camera adds to the light that reaches it. Grey levels 0 ... 255.
+//! Blur, noise and vignetting of a camera. Grey levels 0 ... 255.
 struct Exposure
 {
     double dark = 35., light = 205., background = 110.;

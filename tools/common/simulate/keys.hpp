@@ -26,7 +26,7 @@ public:
     cv::Vec3d vector(const std::string& key) const;
     cv::Vec3d vector(const std::string& key, const cv::Vec3d& otherwise) const;
 
-    //! Any other key is a slip of the pen.
+    //! Throws Failure for any other key: it is a typing error.
     void allowOnly(const std::vector<std::string>& known) const;
 
 private:

@@ -33,7 +33,7 @@ Box boxOf(const Triangle& triangle)
 class Search
 {
 public:
-    Search(const SceneRay& ray, const std::vector<Triangle>& triangles, Meeting& first)
+    Search(const SceneRay& ray, const std::vector<Triangle>& triangles, Intersection& first)
         : ray_(ray), origin_(toEigen(ray.origin)), triangles_(triangles), first_(first)
     {
         for (int axis = 0; axis < 3; axis++)        // not 1/0, as 0*inf is no number
@@ -69,7 +69,7 @@ private:
     Eigen::Vector3d origin_;
     Eigen::Array3d inverse_;        //!< 1/direction
     const std::vector<Triangle>& triangles_;
-    Meeting& first_;
+    Intersection& first_;
     bool found_ = false;
 };
 
@@ -85,7 +85,7 @@ Mesh::Mesh(const std::vector<Triangle>& triangles, const Vec3d& color) : Surface
     tree_.init(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
 }
 
-bool Mesh::meet(const SceneRay& ray, Meeting& first) const
+bool Mesh::intersect(const SceneRay& ray, Intersection& first) const
 {
     Search search(ray, triangles_, first);
     Eigen::BVIntersect(tree_, search);

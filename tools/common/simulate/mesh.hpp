@@ -22,7 +22,7 @@ public:
     //! @param triangles at least one
     Mesh(const std::vector<Triangle>& triangles, const cv::Vec3d& color);
 
-    bool meet(const SceneRay& ray, Meeting& first) const override;
+    bool intersect(const SceneRay& ray, Intersection& first) const override;
 
 private:
     std::vector<Triangle> triangles_;

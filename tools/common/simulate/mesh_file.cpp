@@ -71,7 +71,7 @@ std::vector<Triangle> readTriangles(const std::string& path, const std::string& 
         throw Failure(name + ": cannot read '" + path + "': " + importer.GetErrorString());
     for (unsigned i = 0; i < scene->mNumMeshes; i++)        // before anything follows them
         if (!namesItsVertices(*scene->mMeshes[i]))
-            throw Failure(name + ": '" + path + "' is no mesh: a face names a vertex that is not there");
+            throw Failure(name + ": '" + path + "' is not a mesh: a face refers to a missing vertex");
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
     std::vector<Triangle> triangles;
     for (unsigned i = 0; i < scene->mNumMeshes; i++)

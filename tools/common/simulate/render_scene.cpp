@@ -19,28 +19,28 @@ namespace {
 const Vec3d LAMP = cv::normalize(Vec3d(-0.5, -0.6, -0.8));      // towards it
 const double AMBIENT = 0.35;                                    // share of the light that comes from everywhere
 
-//! What a sample sees: no surface, or one, and where.
-struct Sight
+//! The first surface on the ray of a sample, or none.
+struct SurfaceHit
 {
     const Surface* surface = nullptr;
-    Meeting meeting;
+    Intersection intersection;
 };
 
-Sight firstSurface(const TexturedScene& scene, const SceneRay& ray)
+SurfaceHit firstSurface(const TexturedScene& scene, const SceneRay& ray)
 {
-    Sight sight;
+    SurfaceHit hit;
     if (!std::isnan(ray.direction[0]))
         for (const auto& surface : scene.surfaces)
-            if (surface->meet(ray, sight.meeting))
-                sight.surface = surface.get();
-    return sight;
+            if (surface->intersect(ray, hit.intersection))
+                hit.surface = surface.get();
+    return hit;
 }
 
 using PixelOfSample = std::function<Point2d(int x, int y)>;
-using Visit = std::function<void(int x, int y, const SceneRay& ray, const Sight& sight)>;
+using Visit = std::function<void(int x, int y, const SceneRay& ray, const SurfaceHit& hit)>;
 
 //! Row by row, as unprojecting wants many pixels at a time.
-void lookAlong(const TexturedScene& scene, const Viewpoint& view, Size samples, const PixelOfSample& pixelOf, const Visit& visit)
+void traceRays(const TexturedScene& scene, const Viewpoint& view, Size samples, const PixelOfSample& pixelOf, const Visit& visit)
 {
     cv::parallel_for_(cv::Range(0, samples.height), [&](const cv::Range& range) {
         std::vector<Point2d> pixels(samples.width);
@@ -56,9 +56,9 @@ void lookAlong(const TexturedScene& scene, const Viewpoint& view, Size samples, 
 }
 
 //! Share of the light that a surface sends back, whichever of its sides is seen.
-double lambert(const Meeting& meeting, const Vec3d& direction)
+double lambert(const Intersection& hit, const Vec3d& direction)
 {
-    const double towards = meeting.normal.dot(LAMP)*(meeting.normal.dot(direction) > 0 ? -1 : 1);
+    const double towards = hit.normal.dot(LAMP)*(hit.normal.dot(direction) > 0 ? -1 : 1);
     return AMBIENT + (1 - AMBIENT)*std::max(0., towards);
 }
 
@@ -67,9 +67,9 @@ double lambert(const Meeting& meeting, const Vec3d& direction)
 Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view)
 {
     Mat depth(view.camera->imageSize(), CV_32F);
-    lookAlong(scene, view, depth.size(), [](int x, int y) { return Point2d(x, y); },
-              [&](int x, int y, const SceneRay& ray, const Sight& sight) {
-        depth.at<float>(y, x) = sight.surface ? (float)view.depthOf(ray.at(sight.meeting.s)) : NAN;
+    traceRays(scene, view, depth.size(), [](int x, int y) { return Point2d(x, y); },
+              [&](int x, int y, const SceneRay& ray, const SurfaceHit& hit) {
+        depth.at<float>(y, x) = hit.surface ? (float)view.depthOf(ray.at(hit.intersection.s)) : NAN;
     });
     return depth;
 }
@@ -80,15 +80,15 @@ static Mat lightOf(const TexturedScene& scene, const Viewpoint& view, const Expo
     const SolidTexture texture(scene.texture, scene.seed);
     const double spacing = pixelAngle(view)/FINE;       // of samples, at range 1
     Mat levels(paddedSize(view.camera->imageSize())*FINE, CV_32FC3);
-    lookAlong(scene, view, levels.size(), pixelOfSample,
-              [&](int x, int y, const SceneRay& ray, const Sight& sight) {
+    traceRays(scene, view, levels.size(), pixelOfSample,
+              [&](int x, int y, const SceneRay& ray, const SurfaceHit& hit) {
         Vec3f& level = levels.at<Vec3f>(y, x);
         level = Vec3f::all((float)exposure.background);
-        if (!sight.surface)
+        if (!hit.surface)
             return;
-        const double s = sight.meeting.s;
-        const double light = texture.at(ray.at(s), s*spacing)*lambert(sight.meeting, ray.direction);
-        const Vec3d& color = sight.surface->color();
+        const double s = hit.intersection.s;
+        const double light = texture.at(ray.at(s), s*spacing)*lambert(hit.intersection, ray.direction);
+        const Vec3d& color = hit.surface->color();
         for (int channel = 0; channel < 3; channel++)
             level[channel] = (float)(exposure.dark + (exposure.light - exposure.dark)*light*color[2 - channel]);
     });

@@ -226,7 +226,7 @@ Scene readScene(const std::string& filename)
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
     const FileStorage fs(filename, FileStorage::READ);
     if (fs["target"].empty() && fs["scene"].empty())
-        throw Failure("'" + filename + "' has no 'target' and no 'scene' and so says nothing to render (see refract_simulate "
+        throw Failure("'" + filename + "' has no 'target' and no 'scene', so there is nothing to render (see refract_simulate "
                       "--help)");
     scene.exposure = readExposure(fs["exposure"]);
     scene.seed = (uint64_t)Keys(fs.root(), filename).number("seed", 0, 2147483647, 1);

@@ -36,7 +36,7 @@ private:
         uint64_t seed;
     };
 
-    cv::Matx33d turn_;          //!< so that no plane that people choose lies along the lattice
+    cv::Matx33d turn_;          //!< so that usual planes are not parallel to the lattice
     double contrast_, scale_;
     std::vector<Octave> octaves_;
 };

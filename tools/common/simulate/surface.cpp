@@ -15,7 +15,7 @@ const double INF = std::numeric_limits<double>::infinity();
 
 } // namespace
 
-bool Sphere::meet(const SceneRay& ray, Meeting& first) const
+bool Sphere::intersect(const SceneRay& ray, Intersection& first) const
 {
     // Both distances from the point of the ray nearest to the centre: without the cancellation of the textbook's formula.
     const double middle = ray.direction.dot(center_ - ray.origin);
@@ -39,7 +39,7 @@ Plane::Plane(const Vec3d& point, const Vec3d& normal, const Vec3d& right, const 
 {
 }
 
-bool Plane::meet(const SceneRay& ray, Meeting& first) const
+bool Plane::intersect(const SceneRay& ray, Intersection& first) const
 {
     const double s = normal_.dot(point_ - ray.origin)/normal_.dot(ray.direction);
     if (!(s > ray.least && s < first.s))

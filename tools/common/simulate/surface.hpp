@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <limits>
 
-/* What rays meet. All in the frame of the scene, which is that of camera 1. */
+/* Surfaces that rays intersect. All in the frame of the scene, which is that of camera 1. */
 namespace tools {
 
 struct SceneRay
@@ -19,7 +19,7 @@ struct SceneRay
 };
 
 //! Where a ray meets a surface.
-struct Meeting
+struct Intersection
 {
     double s = std::numeric_limits<double>::infinity();
     cv::Vec3d normal;               //!< unit vector, to either side
@@ -34,8 +34,8 @@ public:
     //! Red, green, blue of its brightest grains, 0 ... 1.
     const cv::Vec3d& color() const { return color_; }
 
-    //! Replaces `first` if the ray meets this surface before; returns whether.
-    virtual bool meet(const SceneRay& ray, Meeting& first) const = 0;
+    //! Replaces `first` if the ray intersects this surface before it; returns whether it does.
+    virtual bool intersect(const SceneRay& ray, Intersection& first) const = 0;
 
 private:
     cv::Vec3d color_;
@@ -46,7 +46,7 @@ class Sphere : public Surface
 public:
     Sphere(const cv::Vec3d& center, double radius, const cv::Vec3d& color)
         : Surface(color), center_(center), radius_(radius) {}
-    bool meet(const SceneRay& ray, Meeting& first) const override;
+    bool intersect(const SceneRay& ray, Intersection& first) const override;
 
 private:
     cv::Vec3d center_;
@@ -65,7 +65,7 @@ public:
     Plane(const cv::Vec3d& point, const cv::Vec3d& normal, const cv::Vec3d& right, const cv::Size2d& half,
           const cv::Vec3d& color);
 
-    bool meet(const SceneRay& ray, Meeting& first) const override;
+    bool intersect(const SceneRay& ray, Intersection& first) const override;
 
 private:
     cv::Vec3d point_, normal_, right_, down_;

@@ -8,8 +8,8 @@
 
 namespace tools {
 
-/** The first pass: depths of both rectified images, CV_32F of the rig's size, from images of half the size. They are left as they
-were if next to nothing was found. The seconds that it took are added. */
+/** The first pass: depths of both rectified images, CV_32F of the rig's size, from images of half the size. They stay as they
+were if hardly anything was matched. The seconds that it took are added. */
 void findCoarseDepth(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, const MatcherOptions& options,
                      cv::Mat& depth1, cv::Mat& depth2, double& mapSeconds, double& matchSeconds);
 

@@ -41,7 +41,7 @@ void findPoints(const RectifiedRig& rig, const RectifiedImages& rectified, Dense
     cv::refract::refractiveReprojectImageTo3D(result.disparity, points, c.cameras[0].camera, c.cameras[1].camera, c.Rs[1], c.Ts[1], rig.R1,
                                               rig.R2, rig.P1, rig.P2, result.depth1, result.depth2);
     cv::transform(points, result.points, rig.R1.t());
-    dropImpossible(rig, rectified, result.disparity, result.points);
+    removeInconsistentPoints(rig, rectified, result.disparity, result.points);
     result.mapSeconds += secondsSince(start);
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/* A depth map for eyes. */
+/* A depth map as a picture. */
 namespace tools {
 
 //! The depths that are neither NaN nor infinite, in ascending order.

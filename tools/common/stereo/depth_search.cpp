@@ -75,7 +75,7 @@ bool isBeyondWindows(const Calibration& calibration, double z)
     return std::isfinite(X[0][2]);
 }
 
-std::vector<float> depthsOfDetails(const Calibration& calibration, const Mat& image1, const Mat& image2)
+std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {
     std::vector<Point2d> pixels1, pixels2;
     findPartners(greyOf(image1, calibration.channel), greyOf(image2, calibration.channel), pixels1, pixels2);
@@ -109,8 +109,8 @@ std::vector<float> depthsOfDetails(const Calibration& calibration, const Mat& im
 cv::Vec2d depthRangeOf(const std::vector<float>& depths)
 {
     const double rare = 0.02, wider = 0.1;      // what has no details may reach a little farther
-    if ((int)depths.size() < FEWEST_DETAILS)
-        throw Failure(cv::format("how deep the scene is could not be found, as only %d details were seen in both images: give "
+    if ((int)depths.size() < MIN_FEATURES)
+        throw Failure(cv::format("the depth range of the scene could not be found, as only %d features match in both images: give "
                                  "--depth=NEAR,FAR, and check that the images are of one moment and LEFT is of camera 1",
                                  (int)depths.size()));
     return cv::Vec2d(percentile(depths, rare)/(1 + wider), percentile(depths, 1 - rare)*(1 + wider));

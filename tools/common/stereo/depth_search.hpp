@@ -6,21 +6,21 @@
 
 #include "calibrate/calib_file.hpp"
 
-/* How deep a scene is, from details that both raw images show. */
+/* The depth range of a scene, from features that are matched in both raw images. */
 namespace tools {
 
 //! What findDepthRange needs at least.
-const int FEWEST_DETAILS = 30;
+const int MIN_FEATURES = 30;
 
 //! Cameras in which imageSize() is known and a z that their windows leave free.
 bool isBeyondWindows(const Calibration& calibration, double z);
 
-/** z (camera-1 frame) of details found in both images, whose two rays meet; ascending.
+/** z (camera-1 frame) of features matched in both images, whose two rays meet; ascending.
 @param image1, image2 of one moment, 8-bit, grey or colour */
-std::vector<float> depthsOfDetails(const Calibration& calibration, const cv::Mat& image1, const cv::Mat& image2);
+std::vector<float> depthsOfFeatures(const Calibration& calibration, const cv::Mat& image1, const cv::Mat& image2);
 
 /** Robust ends of the depths, a little wider.
-@param depths ascending; throws Failure that asks for --depth if there are fewer than FEWEST_DETAILS */
+@param depths ascending; throws Failure that asks for --depth if there are fewer than MIN_FEATURES */
 cv::Vec2d depthRangeOf(const std::vector<float>& depths);
 
 } // namespace tools

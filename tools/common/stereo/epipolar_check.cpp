@@ -37,7 +37,7 @@ Vec2f partnerOf(const Mat& map, bool vertical, int x, int y, float disparity)
 
 } // namespace
 
-void dropImpossible(const RectifiedRig& rig, const RectifiedImages& rectified, const Mat& disparity, Mat& points)
+void removeInconsistentPoints(const RectifiedRig& rig, const RectifiedImages& rectified, const Mat& disparity, Mat& points)
 {
     const Calibration& c = rig.calibration();
     cv::parallel_for_(cv::Range(0, points.rows), [&](const cv::Range& range) {

@@ -8,10 +8,10 @@
 
 namespace tools {
 
-/** Takes away the points whose two raw pixels are no images of one point, as they miss each other's epipolar curve by more than
-a pixel: where an edge of the scene makes the maps of the second pass wrong, the matcher still finds something in the row.
+/** Removes the points whose two raw pixels are not images of one point: each is more than a pixel off the other's epipolar curve.
+Where an edge of the scene makes the maps of the second pass wrong, the matcher still finds a match in the row.
 @param points CV_32FC3, camera-1 frame, of each pixel of the rectified image 1 */
-void dropImpossible(const RectifiedRig& rig, const RectifiedImages& rectified, const cv::Mat& disparity, cv::Mat& points);
+void removeInconsistentPoints(const RectifiedRig& rig, const RectifiedImages& rectified, const cv::Mat& disparity, cv::Mat& points);
 
 } // namespace tools
 

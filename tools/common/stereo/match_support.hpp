@@ -6,11 +6,11 @@
 
 #include "stereo/dense_stereo.hpp"
 
-/* A matcher fills a flat wall with what its neighbours have, and finds a best partner for noise too. What a match rests on is
-seen afterwards: the two patches must have a texture, and the same. */
+/* A matcher fills areas without texture from their neighbours, and finds a best match for noise too. Afterwards the two patches of a
+match are compared: both must have texture, and the same. */
 namespace tools {
 
-/** Matched pixels of rectified1 whose patch correlates with its partner's; what flat areas and chance give does not.
+/** The number of matched pixels of rectified1 whose patch correlates with that of the match; in flat areas and by chance it does not.
 @param vertical disparity runs along columns */
 int supportedMatches(const DenseStereo& stereo, bool vertical);
 

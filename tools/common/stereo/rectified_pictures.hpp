@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/* A rectified pair for eyes, and for other matchers. */
+/* A rectified pair as pictures, to look at and for other matchers. */
 namespace tools {
 
 //! Side by side with horizontal lines, on which partners lie; one above the other with vertical lines for a vertical rig.

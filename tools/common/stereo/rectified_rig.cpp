@@ -32,7 +32,7 @@ RectifiedRig::RectifiedRig(const Calibration& calibration, const Vec2d& depthRan
     findDisparities();
     const int across = vertical_ ? size_.height : size_.width;
     if (disparities_ >= across)
-        throw Failure(cv::format("--depth=%g,%g: over that range, what one image shows moves by %d pixels in the other, and they have "
+        throw Failure(cv::format("--depth=%g,%g: over that range the disparity changes by %d pixels, and the images have "
                                  "%d: give a smaller range", depthRange[0], depthRange[1], disparities_, across));
 }
 
@@ -84,7 +84,7 @@ void RectifiedRig::findDisparities()
     disparities_ = cvCeil((most + 1 - minDisparity_)/16)*16;
     const int LARGEST = 2047;       // that cv::StereoSGBM can say, in 16 bits of which 4 are fractions
     if (minDisparity_ < -LARGEST || minDisparity_ + disparities_ > LARGEST)
-        throw Failure(cv::format("disparities would be from %d to %d pixels, and cv::StereoSGBM knows up to %d: make images and "
+        throw Failure(cv::format("disparities would be from %d to %d pixels, and cv::StereoSGBM allows up to %d: make images and "
                                  "calibration half as large", minDisparity_, minDisparity_ + disparities_, LARGEST));
 }
 

@@ -6,19 +6,19 @@
 
 #include <opencv2/core.hpp>
 
-/* A matcher that compares whole pixels and puts a parabola through three costs answers fractions that lean towards whole ones,
-by up to a fifth of a pixel, and does not say how sure it is. What is left is a matter of least squares: by how much must the
-patch of the other image move along the row until it is the patch of the first (Lucas and Kanade 1981, in one dimension). */
+/* A matcher that fits a parabola to the costs of three whole pixels has sub-pixel disparities that are biased towards whole pixels
+(pixel locking), by up to a fifth of a pixel, and states no uncertainty. Least squares refines them: the shift along the row that
+makes the patch of the other image equal to that of the first (Lucas and Kanade 1981, in one dimension). */
 namespace tools {
 
 struct RefinedDisparity
 {
     cv::Mat disparity;      //!< CV_32F; NaN where it was, or where the patch would move by more than a pixel
     /** CV_32F, one standard deviation; NaN as disparity. Patches with more contrast have a smaller one; the scale of all is that
-    by which neighbours on smooth surfaces differ, and NaN if too few tell it. */
+    by which neighbours on smooth surfaces differ, and NaN if there are too few. */
     cv::Mat sigma;
     /** RMS over the image of the medians, in some regions, by which patches would have to move across the row: 0 if the
-    calibration is right. NaN if too few tell it. */
+    calibration is right. NaN if there are too few. */
     double rowOffset;
 };
 

@@ -8,8 +8,8 @@
 
 namespace tools {
 
-/** What the images of a board that were taken so far still lack, before any lens is known: corners in each ninth of the picture,
-boards tilted to four sides, near ones and far ones. */
+/** The coverage of the images of a board taken so far, before any lens is known: corners in each ninth of the image, boards tilted to
+four sides, near and far boards. */
 class NextView
 {
 public:

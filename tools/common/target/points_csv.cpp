@@ -12,10 +12,10 @@
 
 namespace tools {
 
-std::vector<DetectedView> readPointsCsv(const std::string& path)
+std::vector<DetectedImage> readPointsCsv(const std::string& path)
 {
     const CsvTable table(path, {"view", "x", "y", "z", "u", "v"}, "a file of observed points");
-    std::vector<DetectedView> views;
+    std::vector<DetectedImage> views;
     std::map<std::string, size_t> viewOf;
     std::set<std::tuple<std::string, double, double, double>> known;
     for (const CsvTable::Row& row : table.rows())
@@ -31,7 +31,7 @@ std::vector<DetectedView> readPointsCsv(const std::string& path)
         views[viewOf[name]].objectPoints.push_back(X);
         views[viewOf[name]].points.push_back(pixel);
     }
-    std::sort(views.begin(), views.end(), [](const DetectedView& a, const DetectedView& b) { return a.stem < b.stem; });
+    std::sort(views.begin(), views.end(), [](const DetectedImage& a, const DetectedImage& b) { return a.stem < b.stem; });
     return views;
 }
 

@@ -4,14 +4,14 @@
 #ifndef REFRACT_TOOLS_POINTS_CSV_HPP
 #define REFRACT_TOOLS_POINTS_CSV_HPP
 
-#include "target/detected_views.hpp"
+#include "target/detected_images.hpp"
 
 namespace tools {
 
 /** Points of any target that someone else has found: `view,x,y,z,u,v`, one row an observed point, `view` in place of an
 image's stem. x, y, z are in the frame of the target and in the unit of all lengths; a point without u and v was not seen.
 Throws Failure that names file and line, also if a view has a point twice. */
-std::vector<DetectedView> readPointsCsv(const std::string& path);
+std::vector<DetectedImage> readPointsCsv(const std::string& path);
 
 } // namespace tools
 

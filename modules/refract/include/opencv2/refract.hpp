@@ -17,9 +17,10 @@
 /**
 @defgroup refract Cameras that look through a flat window
 
-A camera behind a flat window (safety glass, a pressure vessel's port, an aquarium wall) is not a pinhole: every
-ray is shifted and, with different media on the two sides, bent. This module projects, unprojects, corrects,
-matches, triangulates and calibrates such cameras, with the calls that calib3d has for cameras without a window.
+A camera behind a flat window (safety glass, the port of a pressure vessel, the wall of an aquarium) is not a pinhole camera.
+The window shifts every ray. It also bends the ray if the media on its two sides are different. This module projects,
+unprojects, undistorts, matches, triangulates and calibrates such cameras. Its calls are those that calib3d has for cameras
+without a window.
 
 ### Conventions
 
@@ -28,24 +29,23 @@ matches, triangulates and calibrates such cameras, with the calls that calib3d h
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
-- **No answer is an answer**: a point without a geometric solution becomes NaN in every output coordinate, and
-  `status` (CV_8U, one per point, see RefractiveStatus) says why. One bad point never throws and never changes
-  its neighbours.
+- **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
+  RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
-  index < 1) throws cv::Exception whose text names the argument and the value. Empty input gives empty output.
-- **Without Ceres**: a build without Ceres has all but calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and
-  refractiveBundleAdjust, which then throw with the code Error::StsNotImplemented; the text says what to install.
+  index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty input gives empty output.
+- **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust need Ceres. In a build
+  without it they throw with the code Error::StsNotImplemented, and the text says what to install. All other functions work.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
   channel (2x2 and 3x3 are a point a row), std::vector; float32 or float64; non-continuous views included, as inputs and
   as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth unless the caller fixed
   the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
   Matx33d, or rotation vectors.
-- **Infinity**: where a far end may be infinite, DBL_MAX and more stands for infinity, too.
+- **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
 
 ### The model
 
-With the unit normal n, the inner direction w, c = n.w and \f$p = n_{inner}\sin\theta_{inner}\f$, which Snell's law
-keeps through all layers, and \f$q_i = \sqrt{n_i^2 - p^2}\f$, the outgoing ray meets the axis at
+Let n be the unit normal, w the inner direction and c = n.w. By Snell's law \f$p = n_{inner}\sin\theta_{inner}\f$ is the same
+in all layers. With \f$q_i = \sqrt{n_i^2 - p^2}\f$ the outgoing ray meets the axis at
 \f[ \tau(p) = \sum_i h_i \left(1 - q_{out}/q_i\right) \f]
 (inner gap and all layers). For one pane in air this is equations (12) and (16) of @cite Plate2024.
 
@@ -63,18 +63,18 @@ namespace cv { namespace refract {
 //! @addtogroup refract
 //! @{
 
-//! Why a point has no answer. 0 = it has one.
+//! Why a point has no solution. 0: it has one.
 enum RefractiveStatus {
     REFRACT_OK = 0,
     REFRACT_NOT_FINITE = 1,         //!< the input point (or its depth) is NaN or infinite
     REFRACT_BEHIND_CAMERA = 2,      //!< the point lies behind the camera (or, after R, behind the rectified camera)
     REFRACT_BEHIND_WINDOW = 3,      //!< the point lies before or inside the window, or the ray never reaches it
-    REFRACT_TOTAL_REFLECTION = 4,   //!< no light gets from there to here: total reflection in some layer
+    REFRACT_TOTAL_REFLECTION = 4,   //!< no light path exists: total reflection in a layer
     REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
     REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, are parallel
-    REFRACT_NO_INTERSECTION = 8,    //!< the rays come closest, or the ray meets the plane, behind an origin
-    REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than two cameras saw the point (9: what refract_measure finds contradictory)
+    REFRACT_NO_INTERSECTION = 8,    //!< the closest point of the rays, or of ray and plane, is behind an origin
+    REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than two cameras saw the point (9 is used by refract_measure)
 };
 
 //! @}
@@ -103,18 +103,18 @@ enum RectifyFlags {
 //! @addtogroup refract_calibrate
 //! @{
 
-/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust; the normal is free
-but for GLASS_FIX_NORMAL.
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust. The normal is free
+unless GLASS_FIX_NORMAL is set.
 
-With GLASS_FREE_INTRINSICS the number of the lens's coefficients says what is estimated, also where they start at 0: a lens
-without coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. The GLASS_FIX_... flags keep what
-they name at its start, as CALIB_FIX_... do in cv::calibrateCamera and cv::fisheye::calibrate; one that names what the lens
-does not have changes nothing.
+With GLASS_FREE_INTRINSICS the coefficients that the lens has are estimated, also if they are 0 at the start: a lens without
+coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. A GLASS_FIX_... flag keeps a parameter at its
+initial value, as CALIB_FIX_... does in cv::calibrateCamera and cv::fisheye::calibrate. If the lens does not have the
+parameter, the flag has no effect.
 
-A rig is sealed if GLASS_FREE_INTRINSICS is set and nothing but images through the windows tells of it: no direct image, no
-known pose, no known camera. Lens, window and place are exchanged for each other there, along directions that hardly change
-what is measured; such a parameter comes with its large standard deviation and its correlations, which carry what is known of
-lengths, and is refused only where a GLASS_REQUIRE_... flag asks for it. Otherwise each free parameter must be determined by
+A rig is called sealed if GLASS_FREE_INTRINSICS is set and all observations are images through the windows: no direct image, no
+known pose, no known camera. Lens, window and pose are then strongly correlated, but measured lengths hardly depend on these
+correlated directions. Each parameter is returned with its large standard deviation and the full covariance. The calibration is
+refused for this only if a GLASS_REQUIRE_... flag is set. If the rig is not sealed, each free parameter must be determined by
 itself.
 */
 enum GlassCalibrationFlags {
@@ -126,7 +126,7 @@ enum GlassCalibrationFlags {
     GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
-    GLASS_ROBUST = 256,             //!< leave out wrong points and images; without: pure maximum likelihood of all points
+    GLASS_ROBUST = 256,             //!< reject outliers, points and images; without: maximum likelihood of all points
     GLASS_USE_POSES = 512,          //!< the views' poses are known (the Extended forms only)
     GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
     GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
@@ -139,17 +139,17 @@ enum GlassCalibrationFlags {
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
     GLASS_FIX_NORMAL = 1048576,         //!< the normal stays (refractiveBundleAdjust only)
-    GLASS_REQUIRE_WINDOW = 2097152,     //!< a sealed rig is refused if a free parameter of a window is undetermined by itself
+    GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
     GLASS_REQUIRE_EXTRINSICS = 8388608  //!< the same of R and T
 };
 
-//! What became of one image in calibrateGlassRig
+//! How calibrateGlassRig used one image
 enum GlassImageStatus {
-    GLASS_IMAGE_USED = 0,           //!< used, but for the points that inliers marks 0
+    GLASS_IMAGE_USED = 0,           //!< used, except the points that inliers marks 0
     GLASS_IMAGE_ABSENT = 1,         //!< not taken, or no point seen
-    GLASS_IMAGE_MOVED = 2,          //!< left out: its target is not where the view's other images have it
-    GLASS_IMAGE_UNUSABLE = 3        //!< left out: fewer than a third of its points, or fewer than 4, fit one pose
+    GLASS_IMAGE_MOVED = 2,          //!< rejected: its target was moved, compared with the view's other images
+    GLASS_IMAGE_UNUSABLE = 3        //!< rejected: fewer than a third of its points, or fewer than 4, fit one pose
 };
 
 //! @}
@@ -214,10 +214,10 @@ CV_EXPORTS void read(const FileNode& node, GlassWindow& window, const GlassWindo
 
 /** @brief Index of refraction of a material by its name.
 
-All indices are relative to dry air of 20 C and 101325 Pa at the same wavelength, whose own index is then 1: as glass catalogues
-give them, and as GlassWindow's defaults mean them, so that names and numbers of data sheets may stand side by side. Times the
-air's absolute index (1.000272 at 550 nm) they become relative to vacuum. One absolute index among relative ones is wrong by
-2.7e-4 of itself: by 4e-4 for glass, as much as N-BK7's tolerance.
+All indices are relative to dry air of 20 C and 101325 Pa at the same wavelength, so that the index of this air is 1. Glass
+catalogues and GlassWindow's defaults use the same convention: names and numbers of data sheets may be mixed. Multiplied by the
+absolute index of air (1.000272 at 550 nm) they become relative to vacuum. One absolute index among relative ones has an error
+of 2.7e-4 of itself: 4e-4 for glass, as much as N-BK7's tolerance.
 
 | material | source | nm | stated accuracy | tolerance |
 |---|---|---|---|---|
@@ -234,21 +234,23 @@ air's absolute index (1.000272 at 550 nm) they become relative to vacuum. One ab
 | `seawater`: `T` 0-30 C (20), `S` 0-35 g/kg (35) | @cite QuanFry1995 | 400-700 | 1.5e-5 on average | 0.0009: 5 C and 2 g/kg |
 | `air`: `T` -40-100 C (20), `P` 1e4-1.4e5 Pa (101325), `RH` 0-100 % (0) | @cite Ciddor1996 | 300-1690 | 5e-8 | 2e-5: 10 C |
 
-Glasses at 20 C. Water at atmospheric pressure: 100 m deep its index is 1.4e-4 more. Air warmer or thinner than at 20 C and
-101325 Pa has an index below 1, which GlassWindow refuses: divide all indices of the window by it, as only their ratios count.
+Glasses are at 20 C. Water is at atmospheric pressure: at a depth of 100 m its index is 1.4e-4 larger. Air that is warmer or
+thinner than at 20 C and 101325 Pa has an index below 1, which GlassWindow refuses. Divide all indices of the window by it:
+only their ratios matter.
 
-@param material name, in any case; parameters after a colon, as `seawater:T=12,S=35`. Those left out have the value in brackets.
-@param wavelengthNm wavelength in air, nm. 550 is the middle of the visible, 400 to 700, and the mean of white light on a sensor
-that sees all of it alike.
-@return the index. Throws cv::Exception for an unknown name (with the known ones, and the nearest), for parameters that the
-material does not have, and outside the ranges above.
+@param material name, upper or lower case; parameters after a colon, as in `seawater:T=12,S=35`. A missing parameter has the
+value in brackets.
+@param wavelengthNm wavelength in air, nm. 550 is the middle of the visible range, 400 to 700, and the mean wavelength of white
+light on a sensor with the same sensitivity to all of it.
+@return the index. Throws cv::Exception for an unknown name (the text lists the known names and the most similar one), for
+parameters that the material does not have, and for values outside the ranges above.
 */
 CV_EXPORTS_W double refractiveIndex(const String& material, double wavelengthNm = 550.);
 
-/** @brief How far the index of a real piece or medium of that name may be from refractiveIndex.
+/** @brief Tolerance of refractiveIndex: how much a real piece or medium of that name may differ.
 @param material as in refractiveIndex.
-@return the last column of the table there: half the spread of what is sold under the name, or, for media, what temperature,
-salinity and pressure change if they are not known better than stated. The wavelength is not in it.
+@return the last column of the table there. For materials: half the range of what is sold under the name. For media: the change
+by temperature, salinity and pressure, if these are known only as stated. The wavelength is not included.
 */
 CV_EXPORTS_W double refractiveIndexTolerance(const String& material);
 
@@ -256,14 +258,15 @@ class Camera;
 
 /** @brief A lens plus a window.
 
-Made once, used for many calls; every function of the module has an overload that takes it in place of (cameraMatrix,
-distCoeffs, window), and the calibrators of several cameras take nothing else.
+Make it once and use it for many calls. Every function of the module has an overload that takes it in place of (cameraMatrix,
+distCoeffs, window). The calibrators of several cameras take only this form.
 
-Ptr copies share one camera; clone() makes another. There are no other implementations: the module needs more of a camera
-than its public functions, so that nobody else can derive from it.
+Copies of a Ptr share one camera; clone() makes a new one. Other code cannot derive from this class, because the module uses
+more of a camera than its public functions.
 
-**Threads**: any number of threads may use one camera at a time in const calls and in the module's functions, which leave it
-as it is. The setters, and the calibrators, whose result it is, must have it for themselves; give each thread its clone().
+**Threads**: any number of threads may use one camera at the same time in const calls and in the module's functions that do not
+change it. The setters, and the calibrators that store their result in it, need exclusive access: give each thread its own
+clone().
 */
 class CV_EXPORTS_W RefractiveCamera
 {
@@ -292,9 +295,9 @@ public:
     CV_WRAP static Ptr<RefractiveCamera> createMrcal(const String& lensModel, InputArray intrinsics,
                                                      const GlassWindow& window = GlassWindow());
 
-    /** @brief A lens of any model, by its name, behind a window: what a file calls `lens_model`.
+    /** @brief A lens of any model, by its name (`lens_model` in files), behind a window.
     @param lensModel one of lensModels().
-    @param cameraMatrix 3x3 float32/float64; skew for `fisheye` alone.
+    @param cameraMatrix 3x3 float32/float64; skew only for `fisheye`.
     @param distCoeffs as many coefficients (or control points) as the model has.
     @param window see GlassWindow.
     */
@@ -318,7 +321,7 @@ public:
 
     virtual ~RefractiveCamera();
 
-    //! A camera of its own with the same lens, window and image size.
+    //! A new camera with the same lens, window and image size.
     CV_WRAP virtual Ptr<RefractiveCamera> clone() const = 0;
 
     //! Writes the camera's keys into the map that is open in fs.
@@ -330,8 +333,8 @@ public:
     */
     CV_WRAP void write(const Ptr<FileStorage>& fs, const String& name = String()) const;
 
-    /** @brief Writes a file that read() reads: the whole of it or, if that fails (which throws), nothing. A file of that name
-    is replaced.
+    /** @brief Writes a file that read() reads. An existing file is replaced. If writing fails, this throws and keeps the old
+file.
     @param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (without a window), else YAML.
     */
     CV_WRAP void save(const String& filename) const;
@@ -360,47 +363,47 @@ private:
     RefractiveCamera& operator=(const RefractiveCamera&);
 };
 
-/** @brief Reads all cameras of a rig and where they are, from a file such as refract_calib writes (YAML, XML or JSON).
+/** @brief Reads all cameras of a rig and their extrinsics from a file as refract_calib writes it (YAML, XML or JSON).
 
 One camera is at the top level of the file. Several are in the maps `camera1`, `camera2`, ..., as RefractiveCamera::write
 writes each; beside them are `R`, `T` (camera 1 -> camera 2), `R3`, `T3` (camera 1 -> camera 3), and so on.
 
-A .cameramodel of mrcal is one camera; of a rig, `camera-%d.cameramodel` are the files camera-0.cameramodel (or 1), the next
-number, and so on, whose `extrinsics` place each camera in a frame that all share.
+A .cameramodel file of mrcal holds one camera. For a rig, `camera-%d.cameramodel` stands for the files camera-0.cameramodel (or
+1), the next number, and so on. Their `extrinsics` give the pose of each camera in a common frame.
 
-@param filename path; of .cameramodel files the number may stand as %d.
+@param filename path; %d stands for the number of .cameramodel files.
 @param cameras one or more.
 @param Rs 3x3 CV_64F rotation camera 1 -> camera, one per camera; the first is the identity.
 @param Ts 3x1 CV_64F, as Rs; the first is 0.
 
-Throws cv::Exception with the file's name and the key if something is missing or is not what it should be.
+Throws cv::Exception with the name of the file and the key if something is missing or wrong.
 */
 CV_EXPORTS_W void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
         OutputArrayOfArrays Rs, OutputArrayOfArrays Ts);
 
-/** @brief readRig with what else the module's functions take of a calibration.
+/** @brief readRig with the shared windows and the covariance of the calibration.
 @param filename path.
 @param cameras as above.
 @param Rs as above.
 @param Ts as above.
-@param windowOfCamera which window each camera looks through, equal numbers share one, as calibrateGlassRig takes it (key
-`window_of_camera`); empty where the file does not say.
+@param windowOfCamera index of the window of each camera, as for calibrateGlassRig (key `window_of_camera`): cameras with equal
+numbers share one window. Empty if the file does not have it.
 @param covariance PxP CV_64F of all cameras' parameters, then rvec (3) and T (3) of each but the first, as
 calibrateGlassRigExtended returns it (key `covariance`); empty where the file has none.
 */
 CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
         OutputArrayOfArrays Rs, OutputArrayOfArrays Ts, CV_OUT std::vector<int>& windowOfCamera, OutputArray covariance);
 
-/** @brief Writes a file that readRig() reads: the whole of it or, if that fails (which throws), nothing. A file of that name is
-replaced, with whatever else was in it.
-@param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (of cameras without windows; of
-several, with %d for the number, which begins with 0, each file whole; camera 1 is the reference), else YAML.
+/** @brief Writes a file that readRig() reads. An existing file is replaced, with all other keys in it. If writing fails, this
+throws and keeps the old file.
+@param filename path; its extension chooses the format: .xml, .json, mrcal's .cameramodel (only for cameras without windows;
+for several cameras with %d for the number, from 0; camera 1 is the reference), else YAML.
 @param cameras one or more.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding. May
 be empty for one camera.
 @param Ts 3x1, as Rs.
-@param windowOfCamera see readRig; empty: the file does not say.
-@param covariance see readRig; empty: none.
+@param windowOfCamera see readRig; empty: not written.
+@param covariance see readRig; empty: not written.
 */
 CV_EXPORTS_W void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >& cameras,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, const std::vector<int>& windowOfCamera = std::vector<int>(),
@@ -413,8 +416,8 @@ CV_EXPORTS_W void writeRig(const String& filename, const std::vector<Ptr<Refract
 
 /** @brief Projects object points through lens and window.
 
-The refracted path is found by Newton's method in the tangent of the angle in the rarest medium, where the function is
-increasing and concave (no polynomial, no bracketing), to the accuracy of double.
+Newton's method finds the refracted path, to the accuracy of double. The unknown is the tangent of the angle in the medium with
+the smallest index: in it the function is increasing and concave, so that neither a polynomial nor bracketing is needed.
 
 @param objectPoints N 3-D points, object coordinates.
 @param rvec rotation vector (or 3x3 matrix) object -> camera.
@@ -448,11 +451,12 @@ CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
         InputArray objectPoints, InputArray rvec, InputArray tvec, const Ptr<RefractiveCamera>& camera,
         OutputArray imagePoints, OutputArray status, OutputArray jacobian);
 
-/** @brief The derivatives that refractiveProjectPoints' jacobian leaves out, those by the control points of a splined lens: a
-pixel depends on few of them, and linearly.
+/** @brief The derivatives with respect to the control points of a splined lens, which refractiveProjectPoints' jacobian does
+not contain. A pixel depends on few control points, and linearly.
 
-With c[k] = (distCoeffs()[2k], distCoeffs()[2k + 1]) the control point k, du/dc[k][0] = fx w and dv/dc[k][1] = fy w; u does not
-depend on c[k][1], nor v on c[k][0]. A window does not come in, as a point's direction at the lens does not depend on the lens.
+Control point k is c[k] = (distCoeffs()[2k], distCoeffs()[2k + 1]). The derivatives are du/dc[k][0] = fx w and dv/dc[k][1] = fy
+w; u does not depend on c[k][1], nor v on c[k][0]. The window has no effect on them, because the direction of a point at the
+lens does not depend on the lens.
 
 @param objectPoints N 3-D points, object coordinates.
 @param rvec rotation vector (or 3x3 matrix) object -> camera.
@@ -465,7 +469,7 @@ depend on c[k][1], nor v on c[k][0]. A window does not come in, as a point's dir
 CV_EXPORTS_W void refractiveSplineWeights(InputArray objectPoints, InputArray rvec, InputArray tvec,
         const Ptr<RefractiveCamera>& camera, OutputArray controls, OutputArray weights, OutputArray status = noArray());
 
-/** @brief Rays in the scene that pixels look along. Closed form but for the lens.
+/** @brief Rays of pixels in the scene. Closed form, except for the lens.
 @param imagePoints N raw pixels.
 @param origins N points on the window's axis, camera coordinates: tau * normal.
 @param directions N unit vectors in the outer medium, camera coordinates.
@@ -481,18 +485,18 @@ CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray 
 CV_EXPORTS_W void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, OutputArray directions,
         const Ptr<RefractiveCamera>& camera, OutputArray status = noArray());
 
-/** @brief Where a pinhole camera without window and lens distortion would see the same scene points, all at one depth.
+/** @brief The pixels at which a pinhole camera without window and lens distortion would see the same scene points.
 
-As cv::undistortPoints: without P the result is normalised coordinates, with P pixels.
+As in cv::undistortPoints, the result is normalised coordinates without P, and pixels with P.
 
 @param src N raw pixels.
 @param dst N corrected points, Nx1 2-channel.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z > 0 of the plane that the scene points are on, camera frame. Infinity is allowed, but must be said: for a window
-between equal media an infinitely far scene needs no correction at all. It may be 0 (Python: None) for a camera without window,
-where it has no effect.
+@param depth z > 0 of the scene points, camera frame; infinity is allowed. There is no default, because the correction depends
+on it: a window between equal media has no effect on an infinitely far scene. For a camera without a window the depth has no
+effect and may be 0 (Python: None).
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -511,10 +515,10 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, con
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z of the scene points, camera frame: one number for all, or N numbers. A bad one among N is that point's own
-problem (status). (d, 0, 0, 0) is the number d, as Scalar(d) is; for exactly four points, where that could as well be a depth
-each, it is refused: give a double, or an array of one number. It may be empty for a camera without window, where it has no
-effect.
+@param depth z of the scene points, camera frame: one number for all, or N numbers. A bad one among N concerns only its point
+(status). (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this would be ambiguous
+and is refused: give a double, or an array of one number. For a camera without a window the depth has no effect and may be
+empty.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -527,7 +531,8 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst,
 CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
         InputArray depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
 
-/** @brief The way back from refractiveUndistortPoints: raw pixels of what a pinhole without window and lens distortion sees.
+/** @brief The inverse of refractiveUndistortPoints: raw pixels of points that a pinhole camera without window and lens
+distortion sees.
 @param undistorted N points as refractiveUndistortPoints gives them: normalised coordinates, with P pixels.
 @param distorted N raw pixels, Nx1 2-channel.
 @param cameraMatrix 3x3.
@@ -565,7 +570,7 @@ CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray di
 CV_EXPORTS_W void refractiveDistortPoints(InputArray undistorted, OutputArray distorted, const Ptr<RefractiveCamera>& camera,
         InputArray depth, InputArray R = noArray(), InputArray P = noArray(), OutputArray status = noArray());
 
-/** @brief Where the refracted rays of pixels meet a plane (@cite Plate2024, section 3.1.3).
+/** @brief Intersections of the refracted rays of pixels with a plane (@cite Plate2024, section 3.1.3).
 @param imagePoints N raw pixels.
 @param points3D N points, camera coordinates, Nx1 3-channel.
 @param cameraMatrix 3x3.
@@ -582,7 +587,7 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         const Ptr<RefractiveCamera>& camera, const Vec4d& plane, OutputArray status = noArray());
 
-/** @brief Maps for cv::remap that turn a raw image into the one a pinhole without window would take of the plane z = depth.
+/** @brief Maps for cv::remap from a raw image to the image of the plane z = depth in a pinhole camera without window.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
@@ -591,7 +596,7 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
-@param map1 first map, right to 1e-6 px before rounding to its type; pixels with no answer map to (-1, -1).
+@param map1 first map, accurate to 1e-6 px before rounding to its type; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
 CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
@@ -615,7 +620,7 @@ refractiveUndistortPoints.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
-@param map1 first map, right to 1e-6 px before rounding to its type; pixels with no answer map to (-1, -1).
+@param map1 first map, accurate to 1e-6 px before rounding to its type; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
 CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
@@ -628,16 +633,16 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
         InputArray depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
         OutputArray map1, OutputArray map2);
 
-/** @brief The image that a pinhole without window would take of a plane: cv::undistort through a window.
+/** @brief The image of a plane in a pinhole camera without window: cv::undistort through a window.
 @param src raw image.
-@param dst corrected image, of the size and type of src; black where there is no answer or the raw image has no pixel.
+@param dst corrected image, of the size and type of src; black where there is no solution or no pixel of the raw image.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param depth z > 0 of the plane, camera frame; may be infinity.
 @param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
 
-initRefractiveUndistortRectifyMap and cv::remap, bilinear. For many images make the maps once.
+Calls initRefractiveUndistortRectifyMap and cv::remap (bilinear). For many images compute the maps once.
 */
 CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
         const GlassWindow& window, double depth, InputArray newCameraMatrix = noArray());
@@ -662,19 +667,19 @@ CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, Inpu
 CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera,
         InputArray depth, InputArray newCameraMatrix = noArray());
 
-/** @brief The new camera matrix that keeps the view, for the maps of a plane: cv::getOptimalNewCameraMatrix through a window.
+/** @brief The new camera matrix for the maps of a plane: cv::getOptimalNewCameraMatrix through a window.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param depth z > 0 of the plane, camera frame; may be infinity.
 @param imageSize of the raw image.
-@param alpha 0: all new pixels are valid, 1: no raw pixel is lost; between them in between.
+@param alpha 0: all new pixels are valid, 1: no raw pixel is lost; values between interpolate.
 @param newImageSize of the new image; Size(): imageSize.
 @param validPixROI rectangle of the new image in which all pixels are valid.
 @param centerPrincipalPoint the principal point is in the middle of the new image.
-@return 3x3 CV_64F. Without window and with OpenCV's lens it is what cv::getOptimalNewCameraMatrix answers.
+@return 3x3 CV_64F. Without window and with OpenCV's lens the result is that of cv::getOptimalNewCameraMatrix.
 
-Throws where a border of the raw image sees nothing that a pinhole could show (a lens too wide).
+Throws if no point on a border of the raw image can be shown by a pinhole camera (the lens is too wide).
 */
 CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
         double depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
@@ -704,8 +709,8 @@ CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>
         double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0, bool centerPrincipalPoint = false);
 
 /** @brief Draws the axes of an object's frame into a raw image: cv::drawFrameAxes through a window.
-@param image raw image with 1, 3 or 4 channels; x is drawn red, y green, z blue (BGR). Axes are curves; what of them has no
-image is left out.
+@param image raw image with 1, 3 or 4 channels; x is drawn red, y green, z blue (BGR). Axes are curves; parts without an image
+are not drawn.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
@@ -721,7 +726,7 @@ CV_EXPORTS_W void drawRefractiveFrameAxes(InputOutputArray image, InputArray cam
 CV_EXPORTS_W void drawRefractiveFrameAxes(InputOutputArray image, const Ptr<RefractiveCamera>& camera, InputArray rvec,
         InputArray tvec, float length, int thickness = 3);
 
-/** @brief The curve of possible partners of each point in the other raw image (@cite Plate2024, section 3.2).
+/** @brief The epipolar curve of each point: the possible matches in the other raw image (@cite Plate2024, section 3.2).
 @param points N raw pixels of image whichImage.
 @param whichImage 1 or 2.
 @param cameraMatrix1 3x3.
@@ -733,11 +738,11 @@ CV_EXPORTS_W void drawRefractiveFrameAxes(InputOutputArray image, const Ptr<Refr
 @param R 3x3 or rotation vector, camera 1 -> camera 2.
 @param T translation, camera 1 -> camera 2.
 @param depthRange z of the scene, near and far, in the frame of camera whichImage; far may be infinity.
-@param lines N polylines, each Mx1 2-channel, raw pixels of the other image in order of growing depth. Parts with no
-image are left out; a point without any partner gives an empty Mat.
+@param lines N polylines, each Mx1 2-channel, raw pixels of the other image, ordered by increasing depth. Parts without an
+image are left out; a point without a curve gives an empty Mat.
 @param tolerance largest distance in pixels between polyline and exact curve.
-@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty. REFRACT_NOT_CONVERGED: the tolerance takes more
-than 100000 points, as where depthRange begins so near that the curve ends millions of pixels off.
+@param status Nx1 CV_8U, see RefractiveStatus: 0 where the line is not empty. REFRACT_NOT_CONVERGED: the tolerance needs more
+than 100000 points, for example if depthRange begins so near that the curve ends millions of pixels away.
 */
 CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -751,16 +756,15 @@ CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
         InputArray R, InputArray T, const Vec2d& depthRange,
         OutputArrayOfArrays lines, double tolerance = 0.01, OutputArray status = noArray());
 
-/** @brief How far the two pixels of each match are from agreeing: the distance of one from the curve of the other's possible
-partners (computeRefractiveEpilines), to filter matches by.
+/** @brief The distance of each match from its epipolar curve (computeRefractiveEpilines), to find wrong matches.
 
-The curve is that of a pixel's ray from depthRange's near end, or where it leaves the window, to its far end. A pixel beyond an
-end of the curve has its distance from the end, so that a small distance always tells of a match whose point is there. Exact to
-1e-6 px near the curve; of a pixel hundreds of pixels off it is seldom (one in some hundred) that from a stretch of the curve
-which is not quite the nearest, and of one thousands off it is exact to some percent.
+The curve is the image of a pixel's ray between the near and far end of depthRange; it begins where the ray leaves the window.
+For a pixel beyond an end of the curve the distance is that from the end. So a small distance means that the match has a point
+in the depth range. The distance is exact to 1e-6 px near the curve. For pixels hundreds of pixels away, about 1 in some
+hundred distances refers to a neighbouring part of the curve. For pixels thousands of pixels away it is exact to some percent.
 
 @param points1 N raw pixels of camera 1.
-@param points2 N raw pixels of camera 2, the supposed partners.
+@param points2 N raw pixels of camera 2, the supposed matches.
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
 @param window1 of camera 1.
@@ -769,12 +773,12 @@ which is not quite the nearest, and of one thousands off it is exact to some per
 @param window2 of camera 2.
 @param R 3x3 or rotation vector, camera 1 -> camera 2.
 @param T translation, camera 1 -> camera 2.
-@param distances Nx1, pixels: positive to the right of the curve as it runs to larger depths (u to the right, v down). NaN where
-status is not 0.
+@param distances Nx1, pixels: positive to the right of the curve in the direction of increasing depth (u to the right, v down).
+NaN where status is not 0.
 @param status Nx1 CV_8U, see RefractiveStatus.
 @param whichImage 1: the curves are those of points1, distances are in image 2; 2: the other way.
-@param depthRange z of the scene, near and far, in the frame of camera whichImage; near may be 0, far infinity: all that the ray
-meets.
+@param depthRange z of the scene, near and far, in the frame of camera whichImage; near may be 0 and far infinity: the whole
+ray.
 */
 CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray points2,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -799,11 +803,11 @@ CV_EXPORTS_W void refractiveEpipolarDistance(InputArray points1, InputArray poin
 @param status Nx1 CV_8U.
 @param whichImage as above.
 @param depthRange as above.
-@param depths Nx1 CV_64F: z of the point of the curve that is nearest, in the frame of camera whichImage; an end of depthRange
-(infinity too) where the pixel lies beyond it.
+@param depths Nx1 CV_64F: z of the nearest point of the curve, in the frame of camera whichImage; an end of depthRange (also
+infinity) where the pixel lies beyond it.
 @param jacobian Nx10 CV_64F: derivative of the distance by u1, v1, u2, v2, by the rotation vector of R (3) and by T (3). The
-distance over the root of the sum of the squares of the first four is, to first order, how far the two pixels are from agreeing
-(Sampson's error), and a standard normal number times the pixels' noise.
+distance divided by the norm of the first four is the Sampson error. For a right match it is normally distributed, with the
+standard deviation of the pixels' noise.
 */
 CV_EXPORTS_AS(refractiveEpipolarDistanceExtended) void refractiveEpipolarDistance(InputArray points1, InputArray points2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
@@ -847,9 +851,9 @@ CV_EXPORTS_W void triangulateRefractive(const Ptr<RefractiveCamera>& camera1, co
 @param status Nx1 CV_8U, see RefractiveStatus.
 @param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
 @param pixelSigma standard deviation of each pixel coordinate.
-@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
+@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is propagated to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
-@param reprojectionErrors Nx2 CV_64F, pixels: how far each point's image is from the pixel that was given, in each camera; NaN
+@param reprojectionErrors Nx2 CV_64F, pixels: distance of each point's projection from the given pixel, in each camera; NaN
 where there is no point.
 */
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
@@ -859,18 +863,18 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
         OutputArray reprojectionErrors = noArray());
 
-/** @brief Triangulates points seen by any number of cameras, each behind its own window, several behind one, or none.
+/** @brief Triangulates points seen by any number of cameras, behind separate windows, shared windows or none.
 @param cameras lens and window of each.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
 @param Ts 3x1 translation, as Rs; the first is 0.
 @param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
 @param points3D N points in the frame of camera 1, Nx1 3-channel.
-@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than two cameras saw the point. A pixel that
-was seen must have a ray: the reason of the first one that has none is the point's.
+@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than two cameras saw the point. Every observed
+pixel must have a ray: otherwise the point has the status of the first pixel without one.
 @param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
 
-Of two cameras, the same as triangulateRefractive for two. Wrong matches are not looked for: one among many cameras moves the
-point.
+With two cameras the result is that of triangulateRefractive for two. Outliers are not rejected: one wrong observation among
+many cameras shifts the point.
 */
 CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& cameras,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
@@ -886,10 +890,10 @@ CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> 
 @param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
 @param pixelSigma standard deviation of each pixel coordinate.
 @param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras,
-then rvec and T of each but the first; it is carried to the points.
+then rvec and T of each but the first; it is propagated to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
-@param reprojectionErrors N x cameras CV_64F, pixels: how far each point's image is from the pixel that was given; NaN where
-there is no point, or the camera did not see it.
+@param reprojectionErrors N x cameras CV_64F, pixels: distance of each point's projection from the given pixel; NaN where there
+is no point, or the camera did not see it.
 */
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const std::vector<Ptr<RefractiveCamera> >& cameras,
@@ -903,16 +907,16 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
 //! @addtogroup refract_stereo
 //! @{
 
-/** @brief cv::stereoRectify for cameras behind windows, in any mix: in air, in water, one shared wall, none.
+/** @brief cv::stereoRectify for cameras behind windows: in air, in water, behind a shared wall, without a window, also mixed.
 
-Each camera is replaced by a pinhole at its *virtual centre*, a point of the axis through its centre of projection along the
-window's normal, that is chosen so that over depthRange the rows of both new images differ least; on one plane in the middle
-of it, z = 2/(1/near + 1/far) in the rectified frame, they agree exactly. With maps for that plane any matcher finds most of the
-scene; with maps for the depths that it found (refractiveRectifiedDepth) rows agree everywhere. refractiveReprojectImageTo3D is
-exact whatever the rows do.
+Each camera is replaced by a pinhole camera at its *virtual centre*, a point on the axis through its centre of projection along
+the window's normal. The virtual centres minimise the row differences of both new images over depthRange. On one plane in the
+middle of it, z = 2/(1/near + 1/far) in the rectified frame, the rows agree exactly. With maps for that plane any matcher finds
+most of the scene. With maps for the depths that it found (refractiveRectifiedDepth) the rows agree everywhere.
+refractiveReprojectImageTo3D is exact for any row differences.
 
-The *rectified frame* is that of camera 1 turned by R1; P1 and P2 project points of it, so that their last columns hold the
-virtual centres (and, as calib3d has it, in P2 the base line).
+The *rectified frame* is the frame of camera 1 rotated by R1. P1 and P2 project points of it: their last columns contain the
+virtual centres and, as in calib3d, P2 the baseline.
 
 @param camera1 lens and window of camera 1.
 @param camera2 lens and window of camera 2.
@@ -924,20 +928,20 @@ virtual centres (and, as calib3d has it, in P2 the base line).
 @param R2 3x3 rotation camera 2 -> rectified frame.
 @param P1 3x4, rectified frame -> new image 1.
 @param P2 3x4, rectified frame -> new image 2.
-@param Q 4x4, (x, y, disparity, 1) -> rectified frame, for cv::reprojectImageTo3D: nearly right on maps for a plane, right on
-maps for a depth per pixel.
+@param Q 4x4, (x, y, disparity, 1) -> rectified frame, for cv::reprojectImageTo3D: approximate with maps for a plane, exact
+with maps for a depth per pixel.
 @param flags RECTIFY_ZERO_DISPARITY or 0.
-@param alpha as cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative:
-neither is asked for.
+@param alpha as in cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative:
+neither of them.
 @param newImageSize of the new images; Size(): imageSize.
-@param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty behind a lens so
-wide that a border of the raw image has no place in the new one.
+@param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty if the lens is
+so wide that a border of the raw image cannot be shown in the new image.
 @param validPixROI2 the same of the new image 2.
-@return RMS and largest difference of rows (columns, if the cameras stand one above the other) over the common view and
-depthRange with maps for the plane, in pixels.
+@return RMS and largest difference of rows (of columns, if one camera is above the other) over the common view and depthRange
+with maps for the plane, in pixels.
 
-Two cameras without windows and with OpenCV's lenses get what cv::stereoRectify answers. Throws if both cameras together see no
-point of depthRange beyond their windows.
+For two cameras without windows and with OpenCV's lenses the result is that of cv::stereoRectify. Throws if the cameras have no
+common point in depthRange beyond their windows.
 */
 CV_EXPORTS_W Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputArray R, InputArray T, Size imageSize, const Vec2d& depthRange,
@@ -953,17 +957,17 @@ CV_EXPORTS_W Vec2d refractiveStereoRectify(InputArray cameraMatrix1, InputArray 
         int flags = RECTIFY_ZERO_DISPARITY, double alpha = -1, Size newImageSize = Size(),
         CV_OUT Rect* validPixROI1 = 0, CV_OUT Rect* validPixROI2 = 0);
 
-/** @brief Maps for cv::remap that turn a raw image into one of a rectified pair, which shows the plane z = depth.
+/** @brief Maps for cv::remap from a raw image to an image of a rectified pair, for the plane z = depth.
 @param camera lens and window.
 @param depth z of the plane, rectified frame; may be infinity.
 @param R R1 or R2 of refractiveStereoRectify.
 @param P P1 or P2.
-@param T translation camera 1 -> camera for camera 2; empty for camera 1. P knows where the pinhole is, only T where the camera
-is. The pinhole must be on the axis of the camera's window (without window: at its centre of projection), as
-refractiveStereoRectify has it; else T, P and the camera do not belong together, which throws.
+@param T for camera 2: translation camera 1 -> camera 2; empty for camera 1. P contains the position of the pinhole, and only T
+that of the camera. The pinhole must be on the axis of the camera's window (without window: at its centre of projection), as
+refractiveStereoRectify returns it; otherwise T, P and the camera do not belong together, and this throws.
 @param size of the new image.
 @param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
-@param map1 first map; pixels with no answer map to (-1, -1).
+@param map1 first map; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
 CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, double depth,
@@ -975,15 +979,15 @@ CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputA
 
 /** @overload
 @param camera lens and window.
-@param depth what the new image shows: one number, the plane z = depth; four, the plane (a, b, c, d); or an array of the new
-image's size, of any type, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and empty as in
-initRefractiveUndistortRectifyMap.
+@param depth of the scene in the new image: one number: the plane z = depth; four numbers: the plane (a, b, c, d); or an array
+of the new image's size, of any type, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and
+an empty array mean the same as in initRefractiveUndistortRectifyMap.
 @param R R1 or R2 of refractiveStereoRectify.
 @param P P1 or P2.
 @param T as above.
 @param size of the new image.
 @param m1type as above.
-@param map1 first map; pixels with no answer, as those whose depth is NaN, map to (-1, -1).
+@param map1 first map; pixels without a solution, or whose depth is NaN, map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
 CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth,
@@ -993,8 +997,8 @@ CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& ca
 CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
         InputArray depth, InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
 
-/** @brief From a first disparity, which may be coarse and have gaps, to a smooth depth of every pixel of both rectified images,
-for the maps of a second pass.
+/** @brief Computes a smooth depth of every pixel of both rectified images from a first disparity, which may be coarse and have
+gaps: for the maps of a second pass.
 @param disparity of the new image 1, or of both new images made smaller by one factor; CV_8U, CV_16S, CV_32S or CV_32F, in its
 own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN or infinite: unknown.
 @param P1 of the full size.
@@ -1002,15 +1006,15 @@ own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN or
 @param size full size.
 @param depth1 z of each pixel of the new image 1, rectified frame, CV_32F.
 @param depth2 the same of the new image 2.
-@param handleMissingValues the smallest value of disparity means that it is unknown, as StereoMatcher marks it.
+@param handleMissingValues the smallest value of disparity means unknown, as in StereoMatcher.
 */
 CV_EXPORTS_W void refractiveRectifiedDepth(InputArray disparity, InputArray P1, InputArray P2, Size size,
         OutputArray depth1, OutputArray depth2, bool handleMissingValues = false);
 
-/** @brief cv::reprojectImageTo3D for cameras behind windows: the most likely point of each pair of raw pixels.
+/** @brief cv::reprojectImageTo3D for cameras behind windows: the maximum-likelihood point of each pair of raw pixels.
 
-Rectified pixels are taken back to the raw ones and these triangulated (triangulateRefractive), so that what the rectification
-left of row errors has no part in the result.
+Rectified pixels are mapped back to raw pixels, and these are triangulated (triangulateRefractive). So row errors of the
+rectification have no effect on the result.
 
 @param disparity of the new image 1; types as cv::reprojectImageTo3D, without fractional bits. NaN or infinite: none.
 @param _3dImage points of the rectified frame, three channels; multiply by R1's inverse for the frame of camera 1. NaN where
@@ -1023,9 +1027,9 @@ there is none.
 @param R2 of refractiveStereoRectify.
 @param P1 of refractiveStereoRectify.
 @param P2 of refractiveStereoRectify.
-@param depth1 with which the map of image 1 was made.
-@param depth2 with which the map of image 2 was made.
-@param handleMissingValues the smallest value of disparity means that there is none, as StereoMatcher marks it.
+@param depth1 of the map of image 1.
+@param depth2 of the map of image 2.
+@param handleMissingValues the smallest value of disparity means unknown, as in StereoMatcher.
 @param ddepth CV_32F or CV_64F; -1: CV_32F.
 @param status one CV_8U a pixel, see RefractiveStatus; REFRACT_NOT_FINITE where there is no disparity.
 */
@@ -1050,9 +1054,9 @@ CV_EXPORTS_W void refractiveReprojectImageTo3D(InputArray disparity, OutputArray
 @param handleMissingValues as above.
 @param ddepth as above.
 @param status as above.
-@param disparitySigma standard deviation of the disparity, one number or one per pixel; the pixel of image 1 is the one that was
-asked, so that the error is along its line of sight. NaN: unknown, and so is the covariance.
-@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is carried to the points.
+@param disparitySigma standard deviation of the disparity, one number or one per pixel. The pixel of image 1 is taken as exact,
+so that the error is along its line of sight. NaN: unknown, and so is the covariance.
+@param calibrationCovariance empty, or the covariance that stereoCalibrateGlass returns; it is propagated to the points.
 @param covariance 9 channels CV_64F: the 3x3 covariance of each point row by row, rectified frame.
 */
 CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImageTo3D(
@@ -1066,25 +1070,25 @@ CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImag
 //! @addtogroup refract_calibrate
 //! @{
 
-/** @brief The window's normal from image pairs taken without and with the window, the board not moved
-(@cite Plate2024, section 3.1.1).
+/** @brief The window's normal from image pairs without and with the window, of an unmoved board (@cite Plate2024, section
+3.1.1).
 
-Direct bearing, refracted bearing and normal are coplanar for every point at any depth, whatever the layers and the
-media; the normal is the vector closest to all these planes. Works on bearings, so the distortion centre may lie at
-infinity; each pair is weighted by its propagated noise, iterated. The lens model is undone first. Thickness and index
-need not be known.
+The direct bearing, the refracted bearing and the normal are coplanar for every point at any depth, for all layers and media.
+The estimate is the vector closest to all these planes. First the lens model is inverted. The method uses bearings, so that the
+distortion centre may be at infinity. Each pair is weighted by its propagated noise, iteratively. Thickness and index need not
+be known.
 
 @param imagePointsDirect one array of N_i points per view, seen without the window.
-@param imagePointsRefracted the same points through the window. A pair with a NaN coordinate is left out.
+@param imagePointsRefracted the same points through the window. A pair with a NaN coordinate is ignored.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param normal 3x1 CV_64F, unit, camera coordinates, normal[2] > 0.
 @param distortionCenter 2x1 CV_64F, pixels of the ideal image: (cx + fx n_x/n_z, cy + fy n_y/n_z).
 @param normalCovariance 3x3 CV_64F, rank 2 (tangent to the normal), scaled by the residuals.
-@return RMS in pixels of the points' distance to the lines through the centre.
+@return RMS distance in pixels of the points from the lines through the distortion centre.
 
-Throws if the data do not determine the normal (no displacement between the views, or all lines the same).
-Needs no Ceres.
+Throws if the data do not determine the normal (no displacement between the images of a pair, or all lines are the same). Needs
+no Ceres.
 */
 CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, InputArrayOfArrays imagePointsRefracted,
         InputArray cameraMatrix, InputArray distCoeffs,
@@ -1097,28 +1101,29 @@ CV_EXPORTS_W double calibrateGlassNormal(InputArrayOfArrays imagePointsDirect, I
 
 /** @brief Joint maximum-likelihood refinement of the window and the board poses.
 
-@param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
-@param imagePointsDirect the same points of the same, unmoved target seen without the window: noArray() or an empty view
-where there is none. A NaN point was not seen.
-@param imagePointsRefracted the points seen through the window, one array per view. A NaN point was not seen; an empty
-view is allowed where the direct one is not empty.
+@param objectPoints one array of N_i 3-D points per view: any target, planar or not, different views may have different
+targets.
+@param imagePointsDirect the same points of the same, unmoved target seen without the window; noArray() or an empty view if
+there are none. NaN: the point was not seen.
+@param imagePointsRefracted the points seen through the window, one array per view. NaN: the point was not seen. A view may be
+empty if its direct one is not.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
-@param window in: the known values and, for glass-only views, the start of the normal. With pairs the
-start of the normal comes from the data. Out: the estimate.
+@param window in: the known values and, if all views are through the window only, the initial normal. With pairs the initial
+normal comes from the data. Out: the estimate.
 @param rvecs object -> camera rotation vector of each view.
 @param tvecs object -> camera translation of each view.
 @param flags see GlassCalibrationFlags; 0: only the normal is free.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels, by cv::calibrateCamera's definition, over all observed points.
 
-Throws where the data cannot determine what is free; the text names the direction that is undetermined (sealed cameras: see
-GlassCalibrationFlags). What is returned is a minimum: its step to the least squares is below 1e-3 standard deviations. A
-sealed camera's is looked for from many starts, so that its focal length need be known to some 10 %, its window's distance to
-a factor of 3 only. Throws if criteria ask for a change (EPS) that the iterations (COUNT) do not reach; with COUNT alone the
-result so far is returned. Throws if pairs contradict the model far beyond what corners can have: direct and refracted points
-swapped, or not of the same unmoved target. A wrong thickness or index does not throw; it shows in the returned error.
-Throws Error::StsNotImplemented in a build without Ceres, as do the other forms of it.
+Throws if the data do not determine a free parameter; the text names the undetermined direction (for sealed cameras see
+GlassCalibrationFlags). The result is a minimum: the remaining step to it is below 1e-3 standard deviations. For a sealed
+camera many initial values are tried, so that its focal length must be known only to some 10 %, and its window's distance only
+to a factor of 3. Throws if the change that criteria ask for (EPS) is not reached in their iterations (COUNT); with COUNT alone
+the current result is returned. Throws if the residuals of pairs are far larger than errors of detected corners can be: direct
+and refracted points swapped, or not of the same unmoved target. A wrong thickness or index does not throw; it increases the
+returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other forms do.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
@@ -1126,18 +1131,18 @@ CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOf
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
-The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is start and result.
+The camera's window (and, with GLASS_FREE_INTRINSICS, its lens) is the initial value and the result.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, const Ptr<RefractiveCamera>& camera,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
-/** @brief calibrateGlass with what the estimate is worth.
+/** @brief calibrateGlass with the uncertainty of the estimate.
 @param objectPoints as above.
 @param imagePointsDirect as above.
 @param imagePointsRefracted as above.
-@param camera start and result.
+@param camera initial value and result.
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
@@ -1167,15 +1172,15 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
         int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
-/** @brief calibrateGlass for a rigid pair of cameras: one board pose serves all images of a moment.
+/** @brief calibrateGlass for a rigid pair of cameras: all images of a view share one board pose.
 
 @param objectPoints one array of N_i 3-D points per view.
 @param imagePointsDirect1 per view, camera 1 without window, or noArray().
-@param imagePointsRefracted1 per view, camera 1 through its window; a NaN point was not seen, an empty view not taken.
+@param imagePointsRefracted1 per view, camera 1 through its window. NaN: the point was not seen. Empty: there is no image.
 @param imagePointsDirect2 per view, camera 2 without window, or noArray().
 @param imagePointsRefracted2 per view, camera 2 through its window.
-@param camera1 start and result.
-@param camera2 start and result.
+@param camera1 initial value and result.
+@param camera2 initial value and result.
 @param R 3x3, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS.
 @param T 3x1.
 @param rvecs object -> camera 1 of each view.
@@ -1183,7 +1188,7 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 @param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
 @param covariance PxP in the same order, scaled by the residuals.
 @param perViewErrors Vx4: RMS of each view: direct 1, refracted 1, direct 2, refracted 2; NaN where there is none.
-@param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the start and camera 2's
+@param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the initial value, and camera 2's
 normal and distance follow from R and T.
 @param criteria iterations and relative change of the cost at which to stop.
 @return RMS reprojection error in pixels over all observed points.
@@ -1198,61 +1203,64 @@ CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
-/** @brief calibrateGlass for any number of cameras, each behind its own window or several behind one; the general form of
-calibrateGlass and stereoCalibrateGlass.
+/** @brief calibrateGlass for any number of cameras, with separate or shared windows: the general form of calibrateGlass and
+stereoCalibrateGlass.
 
-One target pose serves all images of a view (a moment), of all cameras, through the window and direct. A camera need not
-see every view, but views must tie the cameras together if R and T are free.
+All images of a view (all cameras at one time, through the window and direct) share one target pose. A camera need not see
+every view, but the cameras must be connected by common views if R and T are free.
 
-With GLASS_ROBUST hidden, smeared or wrongly detected points and images whose target was moved are found and left out: a
-start from random samples (the same ones every time), a graduated redescending loss per point, then a hard decision with a
-chance of 1e-4 for a good point, so that clean data give what they give without. For a view of an unmoved target whose
-direct and refracted images contradict each other, beyond what all views do, the direct images go.
+With GLASS_ROBUST outliers are rejected: hidden, smeared or wrongly detected points, and images whose target was moved. Initial
+values come from random samples (the same ones in every call). Then the fit uses a redescending loss per point, graduated.
+Last, each point is accepted or rejected; the probability to reject an inlier is 1e-4, so that clean data give the same result
+as without the flag. If direct and refracted images of a view contradict each other, more than in the other views, its direct
+images are rejected.
 
-A sealed rig (GlassCalibrationFlags) with GLASS_FREE_EXTRINSICS need not start well: each camera is calibrated alone, from
-many starts, then in pairs through the window that they share, then all. R and T then follow from the views. GLASS_ROBUST does
-without that.
+A sealed rig (GlassCalibrationFlags) with GLASS_FREE_EXTRINSICS does not need good initial values: first each camera is
+calibrated by itself, from many initial values, then pairs that share a window, then the rig. R and T follow from the views.
+This is not done with GLASS_ROBUST.
 
-With GLASS_USE_POSES the poses rvecs, tvecs are known from outside (a robot, a jig). A view with a covariance moves within
-it: one prior residual, weighed against the pixels' own noise, which is estimated. If also lens, thickness and index are
-known, one view determines the normal.
+With GLASS_USE_POSES the poses rvecs, tvecs are known from another source (a robot, a jig). The covariance of a pose is a
+prior, weighted against the noise of the pixels, which is estimated. If lens, thickness and index are known too, one view
+determines the normal.
 
-@param objectPoints one array of N_i 3-D points per view: any target, planar or not, each view its own.
+@param objectPoints one array of N_i 3-D points per view: any target, planar or not, different views may have different
+targets.
 @param imagePointsDirect per camera, per view: the same points of the same, unmoved target seen without the window; may be
-empty altogether.
-@param imagePointsRefracted per camera, per view: the points seen through the window. A NaN point was not seen; an empty
-view was not taken, an empty list holds no view.
-@param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
-@param windowOfCamera per camera: which window it looks through; equal numbers share one, empty: each has its own. The first
-camera of a shared window brings its start, what the others see of it follows from R and T.
+empty as a whole.
+@param imagePointsRefracted per camera, per view: the points seen through the window. NaN: the point was not seen. An empty
+array: there is no image. An empty list: the camera has none.
+@param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
+@param windowOfCamera per camera: the index of its window. Cameras with equal numbers share one window; empty: each camera has
+its own. The initial value of a shared window is that of its first camera; for the others it follows from R and T.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
 Result with GLASS_FREE_EXTRINSICS. Not used for one camera. May be empty, with Ts, for a sealed rig with GLASS_FREE_EXTRINSICS.
 @param Ts 3x1, as Rs.
-@param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view of which
-nothing is left.
+@param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view whose
+observations are all rejected.
 @param tvecs object -> camera 1 translation of each view; as rvecs.
 @param stdDeviations Px1: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
 @param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN where there is
-none or it was left out.
+@param perViewErrors Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN if there is no
+image or it was rejected.
 @param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
-@param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or is left out; empty
-where there is no image.
-@param otherMinima Cx5 CV_64F: where a window is found from images through it alone, the normal (3) of the second best
-minimum, how much worse it is, as the root of the difference of the squared errors in standard deviations of a pixel, and its
-distance. Below about 3 it cannot be told from the result: add a pair, or other tilts. NaN where no other minimum was found.
-The row, and the frame of the normal, is the first camera's of the window.
+@param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or was rejected; empty where
+there is no image.
+@param otherMinima Cx5 CV_64F: for a window that is estimated only from images through it: the normal (3) of the second best
+minimum, the root of the difference of its squared errors from the best, in standard deviations of a pixel, and its distance.
+If the root is below about 3, the data do not distinguish both minima: add a pair, or other tilts. NaN if no other minimum was
+found. The row, and the frame of the normal, are those of the first camera of the window.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop.
-@param cameraCovariances what an earlier step or a data sheet knows of each camera: an LxL covariance of its L lens parameters,
-or a PxP one of its P parameters in the order of stdDeviations; empty: nothing. A parameter with a variance is estimated,
-within it, and starts at the known value; a lens parameter with the variance 0 is exact, whatever the flags, with NaN it is as
-they say, and so are window parameters without a variance (rows of the normal are not used). noArray(): nothing is known.
+@param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance of its
+L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
+estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
+NaN the flags decide, also for window parameters without a variance (rows of the normal are not used). noArray(): no prior
+knowledge.
 @return RMS reprojection error in pixels over all points that were used.
 
-Throws as calibrateGlass, also without Ceres, and with GLASS_ROBUST if fewer than half of all points fit.
+Throws as calibrateGlass, also without Ceres, and with GLASS_ROBUST if fewer than half of all points are inliers.
 */
 CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -1267,7 +1275,7 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
         InputArrayOfArrays cameraCovariances = noArray());
 
 /** @overload
-The short form: lenses, windows and (with GLASS_FREE_EXTRINSICS) R and T are the result, in cameras, Rs and Ts.
+The short form: the results are lenses and windows in cameras and (with GLASS_FREE_EXTRINSICS) Rs and Ts.
 */
 CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -1277,48 +1285,49 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
-/** @brief Bundle adjustment without a target: cameras, their windows, poses and scene points from matches alone, in the unit of
-a known length.
+/** @brief Bundle adjustment without a target: estimates cameras, their windows, poses and scene points from matches, with the
+scale of known lengths.
 
-One view: the rig stands still, as in motion capture and particle tracking; each point is one place where something was seen, so
-that a wand of known length at M/2 moments gives M points, and M/2 lengths between them. Several views: the rig (or one camera)
-moves through a static scene. All of it is one maximum-likelihood fit under equal isotropic pixel noise, which is estimated; the
+One view: the rig does not move, as in motion capture and particle tracking. Each point is one observed position of an object:
+a wand of known length at M/2 times gives M points, and M/2 lengths between them. Several views: the rig (or one camera) moves
+through a static scene. Everything is one maximum-likelihood fit with equal isotropic pixel noise, which is estimated. The
 points are eliminated (Schur complement), as in @cite Triggs2000.
 
-The scene's frame is that of the first view, whose pose stays; with one view and without rvecs, tvecs that is camera 1's. Its
-scale comes from lengths, from R and T of several cameras if they are not free, or from the poses with GLASS_USE_POSES; without
-any of them this throws, as through windows the scale hardly shows (doc/uncertainty.md tells how little, and what the normal,
-the distance and the thickness can be told from without a target). What is determined, but hardly, is not refused: stdDeviations
-say so.
+The scene's frame is that of the first view, whose pose is fixed; with one view and without rvecs, tvecs it is the frame of
+camera 1. The scale comes from lengths, from R and T of several cameras if these are not free, or from the poses with
+GLASS_USE_POSES. Without any of them this throws, because refraction alone hardly determines the scale (doc/uncertainty.md has
+numbers, also for the normal, the distance and the thickness without a target). A parameter that is hardly determined is not
+refused: it has a large value in stdDeviations.
 
-@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64; NaN: not seen in that image. An
-empty view was not taken.
-@param cameras one per camera, start and result: window and, with GLASS_FREE_INTRINSICS, lens.
-@param windowOfCamera per camera: which window it looks through, as calibrateGlassRig; empty: each has its own.
+@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64. NaN: not seen in that image. An
+empty array: there is no image.
+@param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
+@param windowOfCamera per camera: the index of its window, as in calibrateGlassRig; empty: each camera has its own.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
-Start and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
+Initial value and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
 @param Ts 3x1, as Rs.
-@param rvecs scene -> camera 1 rotation vector of each view, start and result; with one view it may be empty.
+@param rvecs scene -> camera 1 rotation vector of each view, initial value and result; with one view it may be empty.
 @param tvecs scene -> camera 1 translation of each view; as rvecs.
-@param points3D M scene points, start and result, Nx1 3-channel; empty, or NaN for a point: it starts where its rays come
-closest. Result NaN for a point that is seen (or, with GLASS_ROBUST, right) in fewer than two images, or whose rays do not meet.
+@param points3D M scene points, initial value and result, Nx1 3-channel. Empty, or NaN for a point: its initial value is
+triangulated from its rays. The result is NaN for a point that has fewer than two observations (with GLASS_ROBUST: inliers), or
+whose rays do not meet.
 @param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
 deviation > 0; noArray(): none.
 @param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
 @param covariance PxP in the same order; poses and points unknown; the pixels' variance is that of the residuals.
-@param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, with what cameras and poses add; NaN
-where the point is.
+@param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, including the uncertainty of cameras and
+poses; NaN where the point is NaN.
 @param perViewErrors VxC CV_64F: RMS of each image; NaN where there is none.
-@param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or is left out; empty where there is no image.
-@param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. GLASS_FIX_NORMAL and nothing else: poses
-and points only, with cameras as they are, also without windows. With GLASS_ROBUST wrong matches are found and left out: a
-start under Cauchy's loss, then a hard decision with a chance of 1e-4 for a good one.
+@param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or was rejected; empty where there is no image.
+@param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. With GLASS_FIX_NORMAL alone only poses and
+points are estimated, with cameras as given, also without windows. With GLASS_ROBUST outliers are rejected: a fit with Cauchy's
+loss, then a decision for each observation; the probability to reject an inlier is 1e-4.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is exact;
 noArray(): all are exact.
-@param criteria iterations and relative change of the cost at which to stop, as calibrateGlass.
+@param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
 @return RMS reprojection error in pixels over all points that were used.
 
-Throws where the data cannot determine what is free, naming it; Error::StsNotImplemented in a build without Ceres.
+Throws if the data do not determine a free parameter, with its name; throws Error::StsNotImplemented in a build without Ceres.
 */
 CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         const std::vector<std::vector<Mat> >& imagePoints,
@@ -1331,15 +1340,15 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
-The short form, for a rig that stands still: a wand that is waved, particles that drift. Cameras, windows, Rs and Ts are start
-and result; which of them move say the flags.
-@param imagePoints one array of Mx2 pixels per camera; a NaN point was not seen.
+The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial
+values and results; flags say which are estimated.
+@param imagePoints one array of Mx2 pixels per camera. NaN: the point was not seen.
 @param cameras as above.
 @param windowOfCamera as above.
 @param Rs as above.
 @param Ts as above.
 @param points3D as above, in the frame of camera 1.
-@param lengths as above; without a pose at least one is needed.
+@param lengths as above; at least one is needed if no pose is given.
 @param flags as above.
 @param criteria as above.
 @return RMS reprojection error in pixels.
@@ -1357,16 +1366,16 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
 @param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess), or none.
-@param imagePoints N raw pixels; a NaN point was not seen.
+@param imagePoints N raw pixels. NaN: the point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param rvec object -> camera rotation vector.
 @param tvec object -> camera translation.
-@param useExtrinsicGuess rvec, tvec are the start.
-@param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as cv::solvePnPGeneric has it.
-@return false if there is no pose, as there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a
-line, or no pose gives all of them an image; rvec and tvec are then left as they were, reprojectionError is empty.
+@param useExtrinsicGuess rvec, tvec are the initial values.
+@param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as in cv::solvePnPGeneric.
+@return false if there is no pose: there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a line,
+or no pose gives all of them an image. Then rvec and tvec are unchanged, and reprojectionError is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1386,23 +1395,23 @@ CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePo
 @param tvec as above.
 @param useExtrinsicGuess as above.
 @param reprojectionError as above.
-@param covariance 6x6 CV_64F of rvec (radians) and tvec (the caller's unit), in this order; NaN where neither sigma is given nor
-residuals are left (three points).
+@param covariance 6x6 CV_64F of rvec (radians) and tvec (the caller's unit), in this order; NaN if sigma is not given and there
+are no redundant observations (three points).
 @param sigma standard deviation of a pixel's coordinate, in pixels; 0: estimated from the residuals.
-@param cameraCovariance what is not exact of the camera: an LxL covariance of its L lens parameters, or a PxP one of its P
-parameters in the order of RefractiveCamera::parameterNames(). It enlarges covariance; the pose stays as it is. noArray(): the
-camera is exact.
-@return as above; covariance is empty where there is no pose.
+@param cameraCovariance uncertainty of the camera: an LxL covariance of its L lens parameters, or a PxP one of its P parameters
+in the order of RefractiveCamera::parameterNames(). It increases covariance; the pose does not change. noArray(): the camera is
+exact.
+@return as above; covariance is empty if there is no pose.
 */
 CV_EXPORTS_AS(refractiveSolvePnPExtended) bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
         OutputArray reprojectionError, OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray());
 
-/** @brief All poses of a known target that explain what is seen: the minima of the reprojection error, the smallest first.
+/** @brief All poses of a known target that explain its image: the minima of the reprojection error, the smallest first.
 
-Four or five points may have several, of which only the first few have small errors. A flat target has two, of which noise may
-choose the wrong one when it is small or seen straight on. Where both starts lead to
-one minimum there is one.
+Four or five points may have several poses, of which only the first few have small errors. A flat target has two. If it is
+small or parallel to the image, the wrong one may have the smaller error because of noise. If both initial poses lead to the
+same minimum, one pose is returned.
 
 @param objectPoints as refractiveSolvePnP.
 @param imagePoints as refractiveSolvePnP.
@@ -1411,7 +1420,7 @@ one minimum there is one.
 @param window see GlassWindow.
 @param rvecs object -> camera rotation vector of each pose, 3x1 CV_64F.
 @param tvecs object -> camera translation of each pose, 3x1 CV_64F.
-@param useExtrinsicGuess rvec, tvec are the start; the one pose that it leads to is found.
+@param useExtrinsicGuess rvec, tvec are the initial values; only the pose to which they lead is returned.
 @param rvec with useExtrinsicGuess.
 @param tvec with useExtrinsicGuess.
 @param reprojectionError Mx1 CV_64F, of each pose, as refractiveSolvePnP.
@@ -1448,19 +1457,20 @@ CV_EXPORTS_AS(refractiveSolvePnPGenericExtended) int refractiveSolvePnPGeneric(I
         bool useExtrinsicGuess, InputArray rvec, InputArray tvec, OutputArray reprojectionError,
         OutputArrayOfArrays covariances, double sigma = 0, InputArray cameraCovariance = noArray());
 
-/** @brief All poses that put three points on their pixels' rays: cv::solveP3P through a window.
+/** @brief All poses with three points exactly on the rays of their pixels: cv::solveP3P through a window.
 
-There are up to four without a window and up to eight with one, as its rays do not pass through one point; all are found.
+There are up to four without a window. With a window there are up to eight, because its rays do not pass through one point. All
+are found.
 
 @param objectPoints 3 or 4 3-D points, or none.
-@param imagePoints as many raw pixels; a NaN point was not seen.
+@param imagePoints as many raw pixels. NaN: the point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param rvecs object -> camera rotation vector of each pose, 3x1 CV_64F. With a fourth point the poses are sorted by its error,
-the smallest first, and those that give it no image are left out.
+the smallest first, and poses in which it has no image are left out.
 @param tvecs object -> camera translation of each pose, 3x1 CV_64F.
-@return the number of poses; 0 if there is none, as the first three points lie on a line or one of them was not seen.
+@return the number of poses; 0 for example if the first three points lie on a line or one of them was not seen.
 */
 CV_EXPORTS_W int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1470,28 +1480,28 @@ CV_EXPORTS_W int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoi
 CV_EXPORTS_W int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints,
         const Ptr<RefractiveCamera>& camera, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
 
-/** @brief Pose of a known target among wrong matches: cv::solvePnPRansac through a window.
+/** @brief Pose of a known target from matches with outliers: cv::solvePnPRansac through a window.
 
-Samples of three points (the same ones every time) give poses exactly, each pixel's ray with its own origin; all points
-judge them, by their distance from where the pose has them in the raw image. The best is refined (maximum likelihood) on the
-points that agree with it, but for those that stand out among these, if there are a dozen: a right one by a chance of 1e-4.
+Each sample of three points (the same samples in every call) gives poses exactly; the ray of each pixel has its own origin. A
+pose is scored by the reprojection errors of all points in the raw image. The best pose is refined (maximum likelihood) on its
+inliers. If there are at least a dozen, those with outlying residuals are left out of this fit: a right match with the
+probability 1e-4.
 
-@param objectPoints N 3-D points, some perhaps of the wrong pixel.
-@param imagePoints N raw pixels; a NaN point was not seen.
+@param objectPoints N 3-D points; some may be matched to a wrong pixel.
+@param imagePoints N raw pixels. NaN: the point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param rvec object -> camera rotation vector.
 @param tvec object -> camera translation.
-@param useExtrinsicGuess rvec, tvec are one more candidate, and the first.
-@param iterationsCount samples at most. With a part w of right points and a confidence p it takes log(1 - p)/log(1 - w^3): 169
-for w = 0.3 and p = 0.99.
-@param reprojectionError pixels from its image within which a point agrees.
-@param confidence chance of a sample without wrong points, after which the search ends; less than 1.
-@param inliers Kx1 CV_32S, the points that agree with the pose, in their order.
-@return false if there is no pose with which at least 4 different points agree, not on a line, and more than poses of random
-samples would find among uniformly random pixels (or all that were seen); rvec and tvec are then left as they were,
-inliers is empty.
+@param useExtrinsicGuess rvec, tvec are an additional hypothesis, the first.
+@param iterationsCount maximum number of samples. With a share w of inliers and a confidence p the search needs log(1 -
+p)/log(1 - w^3) samples: 169 for w = 0.3 and p = 0.99.
+@param reprojectionError largest reprojection error of an inlier, pixels.
+@param confidence the search ends when a sample without outliers has this probability; less than 1.
+@param inliers Kx1 CV_32S, indices of the inliers, ascending.
+@return false if no pose has enough inliers: at least 4 different points, not on a line, and more inliers than a pose of random
+matches would have (or all points that were seen). Then rvec and tvec are unchanged, and inliers is empty.
 */
 CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1515,32 +1525,32 @@ CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray i
 @param reprojectionError as above.
 @param confidence as above.
 @param inliers as above.
-@param covariance 6x6 CV_64F, as refractiveSolvePnPExtended, of the inliers that do not stand out.
+@param covariance 6x6 CV_64F, as refractiveSolvePnPExtended, from the inliers without outlying residuals.
 @param sigma as refractiveSolvePnPExtended.
 @param cameraCovariance as refractiveSolvePnPExtended.
-@return as above; covariance is empty where there is no pose.
+@return as above; covariance is empty if there is no pose.
 */
 CV_EXPORTS_AS(refractiveSolvePnPRansacExtended) bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,
         const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
         int iterationsCount, float reprojectionError, double confidence, OutputArray inliers,
         OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray());
 
-/** @brief Relative pose of two calibrated cameras from matches of which some are wrong: cv::recoverPose through windows, which
-also gives the distance between the cameras, as well as refraction tells it.
+/** @brief Relative pose of two calibrated cameras from matches with outliers: cv::recoverPose through windows. It also
+estimates the distance between the cameras, as exactly as refraction determines it.
 
-A pinhole pair cannot tell its scale. A window's rays do not pass through one point, by lengths that are known: the scale shows
-in pixels, but weakly, and the less the farther the scene is. The estimate is the most likely one (Sampson's error by
-refractiveEpipolarDistance) of all matches that agree, over all scales; what it is worth is in scaleInterval. R and the
-direction of T are determined, if less well than a pinhole pair's, as the length is estimated with them. Where the cameras
-hardly move apart (T shorter than the windows are deep) R is good to some hundredths of a degree and T to a part of a unit, as
-is stated,
-if the windows turn with the cameras by some degrees.
+Two pinhole cameras do not determine the scale. Behind windows the rays of a camera do not pass through one point, and the
+offsets are known lengths. So the scale has an effect on pixels, but a weak one, and weaker for scenes farther away. The
+estimate has the maximum likelihood (Sampson error, by refractiveEpipolarDistance) of all inliers over all scales; its
+uncertainty is scaleInterval. R and the direction of T are determined, less exactly than for pinhole cameras, because the
+length is estimated with them. If the cameras hardly move (T is shorter than the windows are deep) and the windows rotate with
+the cameras by some degrees, the errors are some hundredths of a degree in R and a part of a unit in T, as stated by
+covariance.
 
-The matches of a flat scene agree with two poses, as cv::decomposeHomographyMat's; refraction, or a point that would be behind a
-camera, mostly tells which is right. A match that alone tells something of the pose, as the only one off the plane, is left out
-of the estimate: nothing would show that it is wrong.
+Matches of a flat scene have two poses, as in cv::decomposeHomographyMat. Usually refraction, or a point that would be behind a
+camera, excludes one of them. A match that alone determines a direction of the pose (one point off a plane) cannot be checked
+and is left out.
 
-@param points1 N >= 6 raw pixels of camera 1, or none (0 inliers); NaN points are left out.
+@param points1 N >= 6 raw pixels of camera 1, or none (0 inliers); NaN points are ignored.
 @param points2 N raw pixels of camera 2.
 @param cameraMatrix1 3x3.
 @param distCoeffs1 0, 4, 5, 8, 12 or 14 coefficients.
@@ -1549,15 +1559,14 @@ of the estimate: nothing would show that it is wrong.
 @param distCoeffs2 0, 4, 5, 8, 12 or 14 coefficients.
 @param window2 of camera 2.
 @param R 3x3 CV_64F, camera 1 -> camera 2.
-@param T 3x1 CV_64F, camera 1 -> camera 2; of length 1 where no scale shows at all (no window refracts), of the least length
-that is likely (scaleInterval's low end) where the most likely one is infinite.
-@param prob chance of a sample without wrong matches, after which the search ends; less than 1.
-@param threshold pixels by which the two pixels of a match together (the root of the sum of squares) may be off one point's
-images.
-@param mask Nx1 CV_8U, 1 for the matches that agree; it has no part in the search, as cv::recoverPose's would.
-@return the number of matches that agree; 0, with R and T left as they were, if there is no pose with more than 6 different
-ones, and with more than poses of random samples would find among uniformly random pixels (or all), or if two poses are as
-likely.
+@param T 3x1 CV_64F, camera 1 -> camera 2. Its length is 1 if nothing determines the scale (no window refracts). If the most
+likely length is infinite, it is the low end of scaleInterval.
+@param prob the search ends when a sample without outliers has this probability; less than 1.
+@param threshold largest error of an inlier, pixels: the root of the sum of squares of both pixels' distances from the images
+of one point.
+@param mask Nx1 CV_8U, 1 for inliers. It is output only, unlike that of cv::recoverPose.
+@return the number of inliers. It is 0, with R and T unchanged, if no pose has more than 6 different inliers and more inliers
+than a pose of random matches would have (or all matches), or if two poses are equally likely.
 */
 CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
         InputArray cameraMatrix1, InputArray distCoeffs1, const GlassWindow& window1,
@@ -1569,7 +1578,7 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         OutputArray R, OutputArray T, double prob = 0.999, double threshold = 1.0, OutputArray mask = noArray());
 
-/** @brief refractiveRecoverPose with what the estimate is worth.
+/** @brief refractiveRecoverPose with the uncertainty of the estimate.
 @param points1 N raw pixels of camera 1.
 @param points2 N raw pixels of camera 2.
 @param camera1 lens and window of camera 1.
@@ -1579,13 +1588,13 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
 @param prob as above.
 @param threshold as above.
 @param mask as above.
-@param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. Where scaleInterval has no upper
-end it is that of R and the direction alone, for the length that T has (its rank is 5).
-@param scaleInterval the length of T: low and high end of the interval that holds it with 95 %, by the likelihood's profile:
-where refraction tells little it is not symmetric, and its high end may be infinite. (0, infinity): nothing is known of it.
-@param cameraCovariances of both cameras what is not exact: an LxL covariance of its L lens parameters, or a PxP one of its P
-parameters in the order of RefractiveCamera::parameterNames(), or an empty one: exact. It enlarges covariance and scaleInterval;
-R and T stay as they are. noArray(): both are exact.
+@param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. If scaleInterval has no upper end,
+it is that of R and the direction of T only, for the returned length (its rank is 5).
+@param scaleInterval 95 % confidence interval of the length of T, low and high end, from the profile likelihood. If refraction
+gives little information, it is not symmetric, and its high end may be infinite. (0, infinity): no information.
+@param cameraCovariances uncertainty of both cameras: an LxL covariance of the L lens parameters, or a PxP one of the P
+parameters in the order of RefractiveCamera::parameterNames(), or an empty one: exact. It increases covariance and
+scaleInterval; R and T do not change. noArray(): both are exact.
 @return as above.
 */
 CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,

@@ -218,8 +218,8 @@ DepthReader::DepthReader(InputArray depth, const char* name, int points, bool is
     if (depth.empty() && (!isNeeded || points == 0))
         return;
     if (depth.empty())
-        CV_Error_(Error::StsBadArg, ("%s is empty; it must say how far the scene is, as the window's effect depends on it "
-                                     "(infinity, where that is meant)", name));
+        CV_Error_(Error::StsBadArg, ("%s is empty; give the depth of the scene, as the window's effect depends on it (infinity "
+                                     "is allowed)", name));
     depths_ = depth.getMat();
     if (depths_.depth() != CV_32F && depths_.depth() != CV_64F)     // millimetres as whole numbers, as depth cameras have them
         depths_.convertTo(depths_, CV_64F);
@@ -230,8 +230,8 @@ DepthReader::DepthReader(InputArray depth, const char* name, int points, bool is
     if (size_ == 4 && at(1) == 0 && at(2) == 0 && at(3) == 0)
     {
         if (points == 4)
-            CV_Error_(Error::StsBadArg, ("%s is (%g, 0, 0, 0) for four points: one number for all, as Python hands it over, or a "
-                                         "depth each, of which three are 0; give an array, of one number or of four", name,
+            CV_Error_(Error::StsBadArg, ("%s is (%g, 0, 0, 0) for four points, which is ambiguous: one number, as Python passes it, or "
+                                         "four depths; give an array of one number or of four", name,
                                          at(0)));
         size_ = 1;
     }
@@ -244,8 +244,8 @@ DepthReader::DepthReader(double depth, const char* name, bool isNeeded)
     : size_(1), one_(depth != 0 || isNeeded ? depth : std::numeric_limits<double>::infinity())
 {
     if (one_ == 0)
-        CV_Error_(Error::StsOutOfRange, ("%s is 0 (Python: None); it must say how far the scene is, as the window's effect depends on "
-                                         "it (infinity, where that is meant)", name));
+        CV_Error_(Error::StsOutOfRange, ("%s is 0 (Python: None); give the depth of the scene, as the window's effect depends on it "
+                                         "(infinity is allowed)", name));
     checkOne(name);
 }
 

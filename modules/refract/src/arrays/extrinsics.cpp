@@ -38,8 +38,8 @@ std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfAr
         camera.T = readVec3(T[c], numbered("Ts", c).c_str());
         const double turned = norm(rotationVector(camera.R)), moved = norm(camera.T);
         if (c == 0 && turned + moved/size > ROUNDING)
-            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] turn by %g and move by %g; they are those of camera 1 itself and must "
-                                         "be the identity and 0", turned, moved));
+            CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] rotate by %g and translate by %g; those of camera 1 must be the identity "
+                                         "and 0", turned, moved));
     }
     extrinsics[0] = RigidTransform();
     return extrinsics;

@@ -195,7 +195,7 @@ static String mrcalName(const String& model, size_t coefficients, const String& 
 {
     const String name = mrcalNameOf(model, coefficients);
     if (name.empty())
-        CV_Error_(Error::StsBadArg, ("%s: mrcal knows no lens %s with %d coefficients; save it as YAML", filename.c_str(),
+        CV_Error_(Error::StsBadArg, ("%s: mrcal has no lens %s with %d coefficients; save it as YAML", filename.c_str(),
                                      model.c_str(), (int)coefficients));
     return name;
 }

@@ -63,7 +63,7 @@ Mat readNeeded(const FileNode& root, const String& key, int number, const String
 {
     const Mat m = readStoredMatrix(root, key.c_str(), filename);
     if (m.empty())
-        CV_Error_(Error::StsParseError, ("%s has camera%d, but no %s, which places it", filename.c_str(), number, key.c_str()));
+        CV_Error_(Error::StsParseError, ("%s has camera%d, but no %s, which is part of its pose", filename.c_str(), number, key.c_str()));
     return m;
 }
 

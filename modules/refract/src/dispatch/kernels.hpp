@@ -12,20 +12,20 @@
 #include "points/point_kernels.hpp"
 #include "window/layer_kernels.hpp"
 
-/* The inner loops, over blocks of structure-of-arrays: written once (*.simd.hpp of each room), compiled for every instruction set
-(kernels_baseline.cpp, kernels_avx2.cpp, kernels_avx512.cpp), chosen at run time (kernels.cpp). Each room declares its own
-(*_kernels.hpp), defines them, and asks only for them; here they come together.
+/* The inner loops, over blocks of structure-of-arrays. They are written once (*.simd.hpp of each component), compiled for every
+instruction set (kernels_baseline.cpp, kernels_avx2.cpp, kernels_avx512.cpp) and chosen at run time (kernels.cpp). Each component
+declares its own (*_kernels.hpp), defines them, and asks only for them; here they come together.
 
-A kernel computes what is regular. It returns true if all lanes have an answer; a lane that has none, or none yet, is NaN
-in the kernel's first output, and the caller, who has all the time in the world, finds out why. NaN lanes pass through.
+A kernel computes the regular case. It returns true if all lanes have an answer. A lane that has none, or none yet, is NaN in the
+kernel's first output: the caller's scalar path then computes the answer or the status. NaN lanes pass through.
 
 No OpenCV in here: an inline function of another header, compiled for AVX-512 and kept by the linker, would run on
 machines that do not have it. Its universal intrinsics, whose namespace is the level's, are the exception (lanes_universal.hpp). */
 
 namespace cv { namespace refract {
 
-/* What each room declares: its type, and the name before -Kernels(), by which the room asks for it, and -Table, its constant in
-the room's *.simd.hpp. */
+/* What each component declares: the type of its kernels, and their name. The component asks for them by name-Kernels(); name-Table
+is its constant in the component's *.simd.hpp. */
 #define REFRACT_KERNELS(EACH) \
     EACH(ArrayKernels, array) \
     EACH(LayerKernels, layer) \

@@ -41,7 +41,7 @@ SplineGrid gridOf(const String& model, const std::vector<double>& values)
     const int MOST = 65535;
     for (double value : values)
         if (value != std::floor(value) || !(value >= 1 && value <= MOST))
-            CV_Error_(Error::StsBadArg, ("lensModel is %s; %g is no whole number from 1 to %d", model.c_str(), value, MOST));
+            CV_Error_(Error::StsBadArg, ("lensModel is %s; %g is not a whole number from 1 to %d", model.c_str(), value, MOST));
     const SplineGrid grid = { (int)values[0], (int)values[1], (int)values[2], values[3] };
     if ((grid.order != 2 && grid.order != 3) || grid.nx <= grid.order || grid.ny <= grid.order || grid.fovX >= 360)
         CV_Error_(Error::StsBadArg, ("lensModel is %s; its order must be 2 or 3, Nx and Ny above it, fov_x_deg below 360",

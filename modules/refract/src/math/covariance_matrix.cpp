@@ -10,7 +10,7 @@ namespace cv { namespace refract {
 static const double PRINTED = 1e-6;     // parts of a standard deviation that six printed digits leave
 
 /** Between quantities in units of their standard deviations; 0 beside those that are known exactly, whose variance is up to
-`rounding`. False if these are said to vary with others. */
+`rounding`. False if their covariances with others are not 0. */
 static bool correlationOf(const Mat& C, double most, double rounding, Mat& correlation)
 {
     correlation = Mat::zeros(C.size(), CV_64F);
@@ -36,12 +36,12 @@ void checkCovariance(const Mat& C, const String& name)
         CV_Error_(Error::StsBadArg, ("%s holds a number that is not finite, or one below 0 on its diagonal", name.c_str()));
     Mat correlation;
     if (!correlationOf(C, most, std::max(-least, 0.), correlation))
-        CV_Error_(Error::StsBadArg, ("%s has quantities without variance that vary with others", name.c_str()));
+        CV_Error_(Error::StsBadArg, ("%s has a covariance that is not 0 for a quantity with variance 0", name.c_str()));
     if (norm(correlation, correlation.t(), NORM_INF) > 2*PRINTED)
         CV_Error_(Error::StsBadArg, ("%s is not symmetric", name.c_str()));
     correlation += 2*PRINTED*C.rows*Mat::eye(C.size(), CV_64F);
     if (!C.empty() && !hal::Cholesky64f(correlation.ptr<double>(), correlation.step, C.rows, NULL, 0, 0))
-        CV_Error_(Error::StsBadArg, ("%s gives some quantities a variance below 0", name.c_str()));
+        CV_Error_(Error::StsBadArg, ("%s is not positive semidefinite", name.c_str()));
 }
 
 }} // namespace

@@ -9,8 +9,8 @@
 
 namespace cv { namespace refract {
 
-/** Throws unless a square matrix is a covariance: finite, symmetric, and no combination of its quantities has a variance below 0,
-but for the rounding of printed numbers. What is known exactly has a variance of 0.
+/** Throws unless a square matrix is a covariance: finite, symmetric and positive semidefinite, except for the rounding of printed
+numbers. A quantity that is known exactly has the variance 0.
 @param C CV_64F
 @param name begins the text */
 void checkCovariance(const Mat& C, const String& name);

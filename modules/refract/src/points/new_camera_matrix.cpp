@@ -24,8 +24,8 @@ public:
         addSide(camera, plane, Vec2d(0, bottom), Vec2d(right, bottom));
         for (const std::vector<Point2d>& side : sides_)
             if (side.empty())
-                CV_Error_(Error::StsBadArg, ("a border of the image sees nothing of the plane that a pinhole could show; the lens is "
-                                             "too wide, imageSize %dx%d not its own, or depth within the window", size.width,
+                CV_Error_(Error::StsBadArg, ("no point of the plane on a border of the image can be shown by a pinhole camera; the lens is "
+                                             "too wide, imageSize %dx%d is wrong, or depth is within the window", size.width,
                                              size.height));
     }
 
@@ -111,8 +111,8 @@ Matx33d optimal(const ShownBorders& borders, const Camera& camera, Size size, do
         K = Matx33d(scale*K(0, 0), 0, 0.5*(size.width - 1), 0, scale*K(1, 1), 0.5*(size.height - 1), 0, 0, 1);
     }
     if (!(K(0, 0) > 0 && K(1, 1) > 0 && std::isfinite(K(0, 0) + K(1, 1))))
-        CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length does that; what the image shows of the plane is not round the "
-                                     "principal point, or bent so much that no rectangle is inside of it", alpha));
+        CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits; the image of the plane does not contain the principal "
+                                     "point, or is curved so much that it contains no rectangle", alpha));
     return K;
 }
 

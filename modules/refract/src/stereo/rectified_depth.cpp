@@ -82,7 +82,7 @@ void fill(Mat& cells)
 {
     const Mat isKnown = cells > 0;
     if (countNonZero(isKnown) == 0)
-        CV_Error(Error::StsBadArg, "disparity: no part of it has values enough to tell a depth from");
+        CV_Error(Error::StsBadArg, "disparity has too few values in every region to compute a depth");
     Mat weight;
     isKnown.convertTo(weight, CV_32F, 1./255);
     cells.setTo(0, ~isKnown);

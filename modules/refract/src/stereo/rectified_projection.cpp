@@ -25,7 +25,7 @@ int axisOf(const RectifiedProjection& first, const RectifiedProjection& second)
     const Vec3d base = second.centre - first.centre;
     const int axis = std::abs(base[0]) >= std::abs(base[1]) ? 0 : 1;
     if (base[axis] == 0)
-        CV_Error(Error::StsBadArg, "P1 and P2 are those of one pinhole");
+        CV_Error(Error::StsBadArg, "P1 and P2 have the same centre of projection");
     return axis;
 }
 

@@ -24,8 +24,8 @@ static void checkPinhole(const Camera& camera, const Vec3d& centre, const Vec3d&
     const Vec3d normal = camera.layers().normal();
     const double off = norm(camera.refracts() ? centre - centre.dot(normal)*normal : centre);
     if (off > PRINTED*(norm(T) + (camera.refracts() ? norm(centre) : 0)) + ROUNDING)
-        CV_Error_(Error::StsBadArg, ("%s and T (%g, %g, %g) do not belong together: the pinhole is %g beside the axis on which this "
-                                     "camera's must be. T is that of camera 1 -> this camera, and empty for camera 1", name, T[0],
+        CV_Error_(Error::StsBadArg, ("%s and T (%g, %g, %g) do not belong together: the pinhole is %g off the axis of this camera's "
+                                     "window. T is that of camera 1 -> this camera, and empty for camera 1", name, T[0],
                                      T[1], T[2], off));
 }
 

@@ -80,14 +80,14 @@ struct NewBorders
                             : normalized(pair.camera2, pixels, v.R2, pair.T, v.centre2, depth); };
             const std::vector<Point2d> found = shown(centre);
             if (found.empty())
-                CV_Error_(Error::StsBadArg, ("R, T: camera%d looks along the line between both, or away from the scene", c + 1));
+                CV_Error_(Error::StsBadArg, ("R, T: camera%d looks along the baseline, or away from the scene", c + 1));
             middle[c] = found[0];
             for (int i = 0; i < 4; i++)
                 sides[c][i] = shown(border.sides[i]);
         }
     }
 
-    //! False: a side sees nothing that a pinhole could show.
+    //! False: no point on a side can be shown by a pinhole camera.
     bool isComplete(int c) const
     { return std::none_of(sides[c], sides[c] + 4, [](const std::vector<Point2d>& side) { return side.empty(); }); }
 
@@ -153,16 +153,16 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
         for (int c = 0; c < 2; c++)
         {
             if (!borders.isComplete(c))
-                CV_Error_(Error::StsBadArg, ("alpha is %g: a border of the image of camera%d sees nothing that a pinhole could "
-                                             "show; its lens is too wide, or imageSize %dx%d not its own. Leave alpha negative",
+                CV_Error_(Error::StsBadArg, ("alpha is %g: no point on a border of the image of camera%d can be shown by a pinhole "
+                                             "camera; its lens is too wide, or imageSize %dx%d is wrong. Use a negative alpha",
                                              wishes.alpha, c + 1, wishes.imageSize.width, wishes.imageSize.height));
             covers = std::max(covers, scaleTo(borders.inner(c), result.focal, p[c], size, true));
             fits = std::min(fits, scaleTo(borders.outer(c), result.focal, p[c], size, false));
         }
         const double alpha = std::min(wishes.alpha, 1.), scale = covers*(1 - alpha) + fits*alpha;
         if (!(scale > 0 && std::isfinite(scale)))
-            CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length does that, as a principal point, (%g, %g) or (%g, %g), is "
-                                         "outside of the images; flags 0 leave each image its own", wishes.alpha, p[0].x, p[0].y,
+            CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits, as a principal point, (%g, %g) or (%g, %g), is outside "
+                                         "the images; with flags 0 each image has its own", wishes.alpha, p[0].x, p[0].y,
                                          p[1].x, p[1].y));
         result.focal *= scale;
     }

@@ -24,7 +24,8 @@ VirtualPair::VirtualPair(const StereoPair& pair, const Vec2d& tau)
     const Vec3d translation = pair.T + pair.R*V1 - V2;
     const double length = norm(translation);
     if (!(length > 0))
-        CV_Error_(Error::StsBadArg, ("T is (%g, %g, %g): both cameras look from the same place", pair.T[0], pair.T[1], pair.T[2]));
+        CV_Error_(Error::StsBadArg, ("T is (%g, %g, %g): both cameras have the same centre of projection", pair.T[0],
+                                     pair.T[1], pair.T[2]));
     const Matx33d K(100, 0, 50, 0, 100, 50, 0, 0, 1);       // of no effect on the rotations
     Mat r1, r2, p1, p2, Q;
     stereoRectify(K, noArray(), K, noArray(), Size(101, 101), pair.R, translation/length, r1, r2, p1, p2, Q);
@@ -79,7 +80,7 @@ RowSamples::RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& dept
                 }
         }
     if (rays1_.empty())
-        CV_Error_(Error::StsBadArg, ("depthRange is (%g, %g): both cameras together see no point of it%s",
+        CV_Error_(Error::StsBadArg, ("depthRange is (%g, %g): the cameras have no common point in it%s",
                                      depthRange[0], depthRange[1],
                                      first.refracts() || second.refracts() ? " beyond their windows" : ""));
 }

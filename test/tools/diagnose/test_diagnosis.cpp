@@ -1,0 +1,227 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Mistakes in what is given, told from images that do not fit.
+#include "diagnose/fit_quality.hpp"
+#include "diagnose/diagnosis.hpp"
+#include "assess/rig_calibration.hpp"
+#include "calibrate/image_fit.hpp"
+#include "paper_rig.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+//! Pairs of the paper's rig as they are, with all that is given right.
+CalibrationInput rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
+{
+    const RigModel rig = paperRig(cameras);
+    CalibrationInput input;
+    input.square = 39.;
+    input.data.cameraCount = cameras;
+    const std::vector<Point3d> object = board(6, 5);
+    input.options.window = rig.cameras[0]->window();
+    input.options.window.distance = 0.;         // as the tool has it with air on both sides
+    for (int c = 0; c < cameras; c++)
+    {
+        input.data.imageSize[c] = Size(1280, 1024);
+        input.options.known[c] = copyWithWindow(rig.cameras[c], GlassWindow());
+    }
+    for (int i = 0; i < 6; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        const Vec3d rvec = random.vector(0.4);
+        input.data.views.push_back(observe(rig, object, rvec, tvec, true, 0.1, random));
+        input.data.views.back().stem = "pair" + std::to_string(i);
+        input.data.views.back().neighbours = {{0, 1}};       // a board
+        if (i % 2 && outermostRows)     // the glass image shows a part of the board that begins a row later
+        {
+            std::vector<Point3d> later = object;
+            for (Point3d& X : later)
+                X.y += outermostRows*input.square;
+            input.data.views.back().glass[0] = observe(rig, later, rvec, tvec, false, 0.1, random).glass[0];
+        }
+    }
+    return input;
+}
+
+std::string explained(const CalibrationInput& input)
+{
+    std::string text;
+    for (const std::string& sentence : diagnose(input))
+        text += sentence + '\n';
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("A wrong square, thickness, index or medium is found and named", "[diagnosis]")
+{
+    scenes::Random random(910);
+    CAPTURE(scenes::seed());
+    const CalibrationInput right = rightlyGiven(1, random);
+    CHECK(explained(right) == "");
+
+    CalibrationInput square = right;
+    square.square = 3.9;
+    for (View& view : square.data.views)
+        for (Point3d& X : view.objectPoints)
+            X *= 0.1;
+    CHECK_THAT(explained(square), (Catch::Contains("--square=39") || Catch::Contains("--square=38.9"))
+                                  && Catch::Contains("in place of 3.9") && Catch::Contains("unit"));
+
+    CalibrationInput thickness = right;
+    thickness.options.window.thickness[0] = 0.787;
+    CHECK_THAT(explained(thickness), (Catch::Contains("--thickness=19.9") || Catch::Contains("--thickness=20"))
+                                     && Catch::Contains("in place of 0.787") && Catch::Contains("unit"));
+
+    CalibrationInput index = right;
+    index.options.window.index[0] = 1.05;
+    CHECK_THAT(explained(index), Catch::Contains("--index=1.54"));
+
+    CalibrationInput water = right;
+    water.options.window.outerIndex = 1.333;
+    water.options.flags |= GLASS_FREE_DISTANCE;
+    CHECK_THAT(explained(water), Catch::Contains("--outer-index=1 in place of 1.333"));
+}
+
+TEST_CASE("Water taken for air is found from glass-only views, and refused", "[diagnosis]")
+{
+    scenes::Random random(915);
+    CAPTURE(scenes::seed());
+    RigModel wet = paperRig(1);
+    GlassWindow window = wet.cameras[0]->window();
+    window.outerIndex = 1.333;
+    wet.cameras[0]->setWindow(window);
+    CalibrationInput input = rightlyGiven(1, random);
+    for (View& view : input.data.views)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(640, 800));
+        view.glass[0] = observe(wet, view.objectPoints, random.vector(0.4), tvec, false, 0.1, random).glass[0];
+        view.direct[0].clear();
+    }
+    CHECK_THAT(explained(input), Catch::Contains("--outer-index=1.333 in place of 1"));
+
+    RigCalibration c;
+    c.data = input.data;
+    c.options = input.options;
+    c.start = startModel(c.data, c.options, c.lensSources);
+    c.fit = fitImages(c.data, c.start, allViews(c.data), 0);
+    c.residuals = residualsOf(c.data, c.fit);
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    const double separate = rmsOfSeparateFits(c.baselines, c.lensSources);
+    CHECK_THROWS_WITH(requirePlausible(c.data, c.residuals, separate, input), Catch::Contains("does not fit its images")
+                                                                              && Catch::Contains("--outer-index=1.333"));
+}
+
+TEST_CASE("Images exchanged, moved or of other moments are found and named", "[diagnosis][slow]")
+{
+    scenes::Random random(920);
+    CAPTURE(scenes::seed());
+    const CalibrationInput right = rightlyGiven(1, random), stereo = rightlyGiven(2, random);
+    CHECK(explained(stereo) == "");
+
+    CalibrationInput swapped = right;
+    for (View& view : swapped.data.views)
+        std::swap(view.direct[0], view.glass[0]);
+    CHECK_THAT(explained(swapped), Catch::Contains("--direct and --glass exchanged"));
+
+    CalibrationInput second = stereo;
+    for (View& view : second.data.views)
+        std::swap(view.direct[1], view.glass[1]);
+    CHECK_THAT(explained(second), Catch::Contains("--direct2 and --glass2 exchanged"));
+
+    CalibrationInput cameras = stereo;
+    for (View& view : cameras.data.views)
+        std::swap(view.glass[0], view.glass[1]);
+    CHECK_THAT(explained(cameras), Catch::Contains("--glass and --glass2 exchanged") && !Catch::Contains("--unpaired"));
+    for (View& view : cameras.data.views)
+    {
+        std::swap(view.glass[0], view.glass[1]);
+        std::swap(view.direct[0], view.direct[1]);
+    }
+    CHECK_THAT(explained(cameras), Catch::Contains("--direct and --direct2 exchanged"));
+
+    CalibrationInput moved = right;
+    for (size_t i = 0; i < moved.data.views.size(); i++)
+        moved.data.views[i].glass[0] = right.data.views[(i + 1) % 6].glass[0];
+    CHECK_THAT(explained(moved), Catch::Contains("--unpaired") && !Catch::Contains("--square"));
+
+    CalibrationInput views = stereo;
+    for (size_t i = 0; i < views.data.views.size(); i++)
+        for (bool glass : {false, true})
+            (glass ? views.data.views[i].glass : views.data.views[i].direct)[1] =
+                (glass ? stereo.data.views[(i + 1) % 6].glass : stereo.data.views[(i + 1) % 6].direct)[1];
+    CHECK_THAT(explained(views), Catch::Contains("not the same moment"));
+
+    CalibrationInput shared = stereo;
+    shared.options.windows = {0, 0};
+    CHECK_THAT(explained(shared), Catch::Contains("leave --shared-window") && !Catch::Contains("same moment"));
+
+    CHECK_THAT(explained(rightlyGiven(1, random, 1)), Catch::Contains("in 3 of 6 pairs") && Catch::Contains("--size"));
+}
+
+TEST_CASE("What the library says is told in the tool's words", "[diagnosis]")
+{
+    scenes::Random random(930);
+    CalibrationInput input = rightlyGiven(1, random);
+    for (const int flags : {0, (int)GLASS_FREE_THICKNESS})
+    {
+        input.options.flags = flags;
+        const std::string text = explainError("the calibration did not converge in 1000 iterations; raise "
+                                              "criteria.maxCount, or fix what the views hardly determine", input);
+        CHECK_THAT(text, !Catch::Contains("criteria") && Catch::Contains("give what you know", Catch::CaseSensitive::No));
+        CHECK((text.find("--free") != std::string::npos) == (flags != 0));
+    }
+
+    // What fits comes before what one may do if nothing does.
+    input.options.flags = 0;
+    input.options.window.outerIndex = 1.333;
+    input.options.outer = {1.333, "water:T=21", "water:T=21"};
+    input.notices = {"a notice"};
+    const std::string text = explainError("the calibration did not converge in 1000 iterations; raise criteria.maxCount, or fix what "
+                                          "the views hardly determine", input);
+    const size_t medium = text.find("--outer-index=1 in place of water:T=21 (1.33300)"), hint = text.find("ive what you know");
+    CAPTURE(text);
+    REQUIRE(medium != std::string::npos);
+    REQUIRE(hint != std::string::npos);
+    CHECK(medium < hint);
+    CHECK(medium < text.find("a notice"));
+}
+
+TEST_CASE("Points of files that are mirrored, or in another unit than the window, are told", "[diagnosis]")
+{
+    scenes::Random random(980);
+    const RigModel rig = paperRig(2);
+    std::vector<Point3d> object = board(6, 5);
+    for (size_t i = 0; i < object.size(); i++)
+        object[i].z = 25.*(int)(i*7 % 4);
+    CalibrationInput input = rightlyGiven(2, random);
+    input.square = 0.;
+    for (View& view : input.data.views)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        view = observe(rig, object, random.vector(0.4), tvec, false, 0.1, random);
+        view.stem = "v";
+        for (int c = 0; c < 2; c++)
+            view.direct[c].clear();
+    }
+    input.data.views.resize(2);
+    CHECK(medianErrorOfFit(input.data, input.options) < 0.3);
+
+    CalibrationInput leftHanded = input, oneMirrored = input, metres = input;
+    for (View& view : leftHanded.data.views)
+        for (Point3d& X : view.objectPoints)
+            std::swap(X.x, X.y);
+    CHECK_THAT(explained(leftHanded), Catch::Contains("left-handed") && !Catch::Contains("camera 2 counted"));
+    for (View& view : oneMirrored.data.views)
+        for (Point2d& p : view.glass[1])
+            p.y = 1023. - p.y;
+    CHECK_THAT(explained(oneMirrored), Catch::Contains("camera 2 counted from the other side"));
+    for (View& view : metres.data.views)
+        for (Point3d& X : view.objectPoints)
+            X *= 0.001;
+    CHECK_THAT(explained(metres), Catch::Contains("x, y, z 1000 times as large") && Catch::Contains("another unit"));
+}

@@ -1,0 +1,78 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/heldout_test.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/view_observations.hpp"
+#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+//! H with H H^T = covariance.
+MatrixXd rootOf(const MatrixXd& covariance)
+{
+    const VectorXd deviations = covariance.diagonal().cwiseMax(0.).cwiseSqrt();
+    const VectorXd inverse = (deviations.array() > 0.).select(deviations.cwiseInverse(), 0.);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal()*covariance*inverse.asDiagonal());
+    return deviations.asDiagonal()*correlation.eigenvectors()*correlation.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+}
+
+} // namespace
+
+void HeldOutTest::add(const HeldOutTest& other)
+{
+    squares += other.squares;
+    expectedSquares += other.expectedSquares;
+    chiSquare += other.chiSquare;
+    directions += other.directions;
+}
+
+double HeldOutTest::ratio() const
+{
+    return expectedSquares > 0. ? std::sqrt(squares/expectedSquares) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double HeldOutTest::calibrationRatio() const
+{
+    return directions ? std::sqrt(chiSquare/directions) : std::numeric_limits<double>::quiet_NaN();
+}
+
+HeldOutTest testHeldOut(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<View>& views)
+{
+    const MatrixXd H = rootOf(toEigen(covariance));
+    MatrixXd AH(0, H.cols());
+    VectorXd r(0);
+    for (const View& view : views)
+    {
+        ViewObservations observed = observationsOf(rig, view);
+        const ViewDerivatives derivatives = refinePose(rig, observed);
+        const PoseNullSpace project(derivatives.byPose);
+        const MatrixXd part = project(derivatives.byParameters*H);
+        const Eigen::Index rows = r.size();
+        AH.conservativeResize(rows + part.rows(), Eigen::NoChange);
+        AH.bottomRows(part.rows()) = part;
+        r.conservativeResize(rows + part.rows());
+        r.tail(part.rows()) = project(observed.pixels - derivatives.predicted);
+    }
+    const Eigen::BDCSVD<MatrixXd> svd(AH, Eigen::ComputeThinU);
+    HeldOutTest test;
+    test.squares = r.squaredNorm();
+    test.expectedSquares = sigma*sigma*(double)r.size() + svd.singularValues().squaredNorm();
+    for (int i = 0; i < svd.singularValues().size() && svd.singularValues()[i] > sigma; i++)
+    {
+        const double variance = sigma*sigma + std::pow(svd.singularValues()[i], 2);
+        test.chiSquare += std::pow(svd.matrixU().col(i).dot(r), 2)/variance;
+        test.directions++;
+    }
+    return test;
+}
+
+} // namespace tools

@@ -1,0 +1,170 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "calibrate/outliers.hpp"
+#include "calibrate/image_fit.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const char* reasonOf(uchar status)
+{
+    switch (status)
+    {
+    case GLASS_IMAGE_MOVED: return "its board is not where the other images of the moment have it";
+    case GLASS_IMAGE_UNUSABLE: return "hardly any of its points fit one pose of the board";
+    default: return "points that do not fit: hidden, smeared or wrongly detected";
+    }
+}
+
+//! Takes the marked points out; true if there were any.
+bool clean(std::vector<Point2d>& pixels, uchar status, const Mat& inliers, Rejected& rejected)
+{
+    rejected.image = status == GLASS_IMAGE_MOVED || status == GLASS_IMAGE_UNUSABLE;
+    rejected.why = reasonOf(status);
+    rejected.points = 0;
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        if (!seen(pixels[i]) || (!rejected.image && inliers.at<uchar>((int)i)))
+            continue;
+        pixels[i] = Point2d(NAN, NAN);
+        rejected.points++;
+    }
+    if (rejected.image)
+        pixels.clear();
+    return rejected.points > 0;
+}
+
+//! Images of pairs that a robust fit has no use for, and how many pairs there are.
+bool losesPairs(const RigData& data, const Fit& fit)
+{
+    const double MOST = 1./3;
+    int pairs = 0, lost = 0;
+    for (int i = 0; i < (int)data.views.size(); i++)
+        for (int c = 0; c < data.cameraCount; c++)
+        {
+            if (!data.views[i].isPair(c))
+                continue;
+            pairs++;
+            bool whole = true;
+            for (int column : {2*c, 2*c + 1})
+                whole = whole && fit.imageStatus.at<uchar>(i, column) == GLASS_IMAGE_USED;
+            lost += !whole;
+        }
+    return lost > MOST*pairs;
+}
+
+/** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
+are then evidence of it. The fit with that value free knows which points are wrong. */
+Fit robustFit(const RigData& data, const RigModel& start, int flags)
+{
+    const Fit fit = fitImages(data, start, allViews(data), flags | GLASS_ROBUST);
+    if (!losesPairs(data, fit))
+        return fit;
+    for (int value : {GLASS_FREE_THICKNESS, GLASS_FREE_INDEX, GLASS_FREE_OUTER_INDEX})
+        try
+        {
+            const Fit freed = fitImages(data, start, allViews(data), flags | value | GLASS_ROBUST);
+            if (!losesPairs(data, freed))
+                return freed;
+        }
+        catch (const cv::Exception&) {}     // there is no such value, or it is not determined
+    return fit;
+}
+
+bool fromImages(const std::vector<LensSource>& sources)
+{
+    return std::any_of(sources.begin(), sources.end(), [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
+}
+
+bool areSame(const std::vector<Rejected>& a, const std::vector<Rejected>& b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Rejected& x, const Rejected& y)
+           { return x.view == y.view && x.camera == y.camera && x.glass == y.glass && x.points == y.points; });
+}
+
+} // namespace
+
+std::string Rejected::sentence() const
+{
+    return format("'%s' (camera %d, %s): %s: %s", view.c_str(), camera + 1, glass ? "through the window" : "direct",
+                  image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
+}
+
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags)
+{
+    Fit fit;
+    try
+    {
+        fit = robustFit(data, start, flags);
+    }
+    catch (const cv::Exception& e)
+    {
+        return {{}, e.err};
+    }
+    Outliers outliers;
+    for (int i = 0; i < (int)data.views.size(); i++)
+        for (int c = 0; c < data.cameraCount; c++)
+            for (bool glass : {true, false})
+            {
+                View& view = data.views[i];
+                const int column = 2*c + glass;
+                Rejected rejected{view.stem, c, glass, 0, false, ""};
+                if (clean(glass ? view.glass[c] : view.direct[c], fit.imageStatus.at<uchar>(i, column),
+                          fit.inliers[fit.imageStatus.cols*i + column], rejected))
+                    outliers.rejected.push_back(rejected);
+            }
+    return outliers;
+}
+
+//! Points that are left out because their whole image is.
+static int pointsOfRejectedImages(const Outliers& outliers)
+{
+    int points = 0;
+    for (const Rejected& rejected : outliers.rejected)
+        points += rejected.image ? rejected.points : 0;
+    return points;
+}
+
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources)
+{
+    RigData freed = data;
+    const Outliers byHeld = rejectOutliers(data, start, flags);
+    const bool mayBeLens = fromImages(lensSources) && !(flags & GLASS_FREE_INTRINSICS);
+    if (!mayBeLens || (byHeld.fault.empty() && pointsOfRejectedImages(byHeld) == 0))
+        return byHeld;
+    const Outliers byFreed = rejectOutliers(freed, start, flags | GLASS_FREE_INTRINSICS);
+    if (byHeld.fault.empty() && (!byFreed.fault.empty() || pointsOfRejectedImages(byFreed) >= pointsOfRejectedImages(byHeld)))
+        return byHeld;
+    data = freed;
+    return byFreed;
+}
+
+Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,
+                              std::vector<LensSource>& lensSources)
+{
+    const int MOST_ROUNDS = 5;
+    const RigData all = data;
+    start = startModel(all, options, lensSources);
+    Outliers outliers;
+    bool settled = false;
+    for (int round = 0; round < MOST_ROUNDS && !settled; round++)
+    {
+        RigData rest = all;
+        const Outliers found = rejectOutliers(rest, start, options.flags, lensSources);
+        if (!found.fault.empty() && round > 0)
+            break;
+        settled = areSame(found.rejected, outliers.rejected);
+        outliers = found;
+        data = rest;
+        if (!settled)
+            start = startModel(data, options, lensSources);
+    }
+    return outliers;
+}
+
+} // namespace tools

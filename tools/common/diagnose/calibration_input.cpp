@@ -1,0 +1,44 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/calibration_input.hpp"
+#include <algorithm>
+
+using namespace cv::refract;
+
+namespace tools {
+
+bool hasPairs(const RigData& data)
+{
+    return data.countPairs() > 0;
+}
+
+bool hasKnownLens(const CalibrationInput& input)
+{
+    const auto& known = input.options.known;
+    return std::any_of(known.begin(), known.end(), [](const auto& camera) { return bool(camera); });
+}
+
+CalibrationInput oneCamera(const CalibrationInput& input, int camera)
+{
+    CalibrationInput one = input;
+    one.data.cameraCount = 1;
+    one.data.imageSize[0] = input.data.imageSize[camera];
+    one.options.known[0] = input.options.known[camera];
+    one.options.knownCovariance[0] = input.options.knownCovariance[camera];
+    one.options.windows.clear();
+    one.options.flags &= ~GLASS_USE_POSES;      // they are of camera 1
+    one.data.views.clear();
+    for (const View& view : input.data.views)
+        if (view.hasDirect(camera) || view.hasGlass(camera))
+        {
+            View alone = view;
+            alone.direct = alone.glass = {};
+            alone.direct[0] = view.direct[camera];
+            alone.glass[0] = view.glass[camera];
+            one.data.views.push_back(alone);
+        }
+    return one;
+}
+
+} // namespace tools

@@ -1,0 +1,31 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CALIBRATION_INPUT_HPP
+#define REFRACT_TOOLS_CALIBRATION_INPUT_HPP
+
+#include "calibrate/starting_model.hpp"
+
+namespace tools {
+
+//! The input of a calibration, as the user gave it.
+struct CalibrationInput
+{
+    RigData data;               //!< with its outliers
+    RigOptions options;
+    double square;
+    std::vector<std::string> notices = {};      //!< of the checks before any fit
+};
+
+//! Of any camera.
+bool hasPairs(const RigData& data);
+
+//! Of any camera, from a file.
+bool hasKnownLens(const CalibrationInput& input);
+
+//! The images of one camera, as a rig of its own.
+CalibrationInput oneCamera(const CalibrationInput& input, int camera);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CALIBRATION_INPUT_HPP

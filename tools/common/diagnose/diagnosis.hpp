@@ -1,0 +1,29 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_DIAGNOSIS_HPP
+#define REFRACT_TOOLS_DIAGNOSIS_HPP
+
+#include "diagnose/calibration_input.hpp"
+#include "calibrate/fit.hpp"
+
+/* A calibration that cannot be right: its residuals are larger than detection errors are, or all pairs contradict it. Then something
+in the input is wrong. Often a test finds it: the likely mistakes are undone one after the other, and the same images are fitted
+again. */
+namespace tools {
+
+//! The mistakes that explain images which do not fit, the likely ones first; empty if no known mistake does.
+std::vector<std::string> diagnose(const CalibrationInput& input);
+
+/** Throws Failure with the explanations if a calibration cannot be right.
+@param data what is left without outliers. @param residuals of the fit to them
+@param rmsOfSeparateFits px, of fits of each camera by itself */
+void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
+                      const CalibrationInput& input);
+
+//! A message of the library in terms of the tool's options, with the explanations.
+std::string explainError(const std::string& error, const CalibrationInput& input);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_DIAGNOSIS_HPP

@@ -1,0 +1,68 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/fit_quality.hpp"
+#include "calibrate/image_fit.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double CORNERS_PX = 2.;           // half of the corners are never farther off, in an image of usual size;
+const double CORNERS_SHARE = 1./640.; // in a larger one, of its longer side
+const int ITERATIONS = 100;             // what explains the images fits them soon; a wrong guess may creep for a thousand
+
+} // namespace
+
+double median(std::vector<double> values)
+{
+    if (values.empty())
+        return 0.;
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+double medianCornerError(const RigData& data, const std::vector<Residual>& residuals)
+{
+    double worst = 0.;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        std::vector<double> lengths;
+        for (const Residual& r : residuals)
+            if (r.camera == c && data.views[r.view].hasGlass())
+                lengths.push_back(std::isnan(r.error.x) ? NO_FIT : norm(r.error));
+        worst = std::max(worst, median(lengths));
+    }
+    return worst;
+}
+
+double largestSoundError(const RigData& data)
+{
+    double limit = CORNERS_PX;
+    for (int c = 0; c < data.cameraCount; c++)
+        limit = std::max(limit, CORNERS_SHARE*std::max(data.imageSize[c].width, data.imageSize[c].height));
+    return limit;
+}
+
+double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result)
+{
+    try
+    {
+        std::vector<LensSource> sources;
+        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, ITERATIONS);
+        if (result)
+            *result = fit.rig;
+        return medianCornerError(data, residualsOf(data, fit));
+    }
+    catch (const std::exception&)
+    {
+        return NO_FIT;
+    }
+}
+
+} // namespace tools

@@ -1,0 +1,31 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_FIT_QUALITY_HPP
+#define REFRACT_TOOLS_FIT_QUALITY_HPP
+
+#include "calibrate/fit.hpp"
+#include "calibrate/starting_model.hpp"
+#include <limits>
+
+/* How well a calibration fits its images. If it does not, something in the input is wrong. */
+namespace tools {
+
+const double NO_FIT = std::numeric_limits<double>::infinity();
+
+//! 0 of none.
+double median(std::vector<double> values);
+
+/** The median length of the residuals, px, which outliers hardly change: that of the worst camera, over the views with a glass image,
+as direct images alone always fit. */
+double medianCornerError(const RigData& data, const std::vector<Residual>& residuals);
+
+//! The largest median error of correct input, px.
+double largestSoundError(const RigData& data);
+
+//! medianCornerError of a fit to all the data, NO_FIT if there is none. @param result gets the rig that was fitted
+double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result = nullptr);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_FIT_QUALITY_HPP

@@ -1,0 +1,27 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_HYPOTHESIS_TESTS_HPP
+#define REFRACT_TOOLS_HYPOTHESIS_TESTS_HPP
+
+#include "calibrate/fit.hpp"
+#include "calibrate/starting_model.hpp"
+
+/* Tests of the hypothesis that a given value is right (thickness, index, distance, index of the scene's medium, exact poses). Each is set
+free in turn, all else as in the calibration. If the estimate is many standard deviations away, the images contradict the given value,
+and the stated +- of everything that depends on it is too small. */
+namespace tools {
+
+//! A given value that the images contradict.
+struct Contradiction
+{
+    std::string sentence;       //!< which value, and its estimate
+    double sigma;               //!< of a pixel coordinate, of the fit with the value free
+};
+
+//! The one with the best fit first; others only if they fit about as well.
+std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions& options, const Fit& fit);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_HYPOTHESIS_TESTS_HPP

@@ -1,0 +1,142 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/image_mistakes.hpp"
+#include "diagnose/fit_quality.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+
+namespace tools {
+
+namespace {
+
+//! @param only of this camera; -1: of all
+RigData exchanged(const RigData& given, int only)
+{
+    RigData data = given;
+    for (View& view : data.views)
+        for (int c = 0; c < data.cameraCount; c++)
+            if (only < 0 || only == c)
+                std::swap(view.direct[c], view.glass[c]);
+    return data;
+}
+
+enum Mirror { POINTS, ROWS, COLUMNS };
+
+//! @param only camera; negative: all, with what they have of direct images and of those through the window
+RigData mirroredData(const RigData& given, Mirror mirror, int only)
+{
+    RigData data = given;
+    for (View& view : data.views)
+    {
+        for (cv::Point3d& X : view.objectPoints)
+            X.x *= mirror == POINTS ? -1. : 1.;
+        for (int c = 0; c < data.cameraCount; c++)
+            for (std::vector<cv::Point2d>* pixels : {&view.direct[c], &view.glass[c]})
+                for (cv::Point2d& p : *pixels)
+                {
+                    if (only >= 0 && only != c)
+                        continue;
+                    if (mirror == ROWS)
+                        p.y = data.imageSize[c].height - 1. - p.y;
+                    if (mirror == COLUMNS)
+                        p.x = data.imageSize[c].width - 1. - p.x;
+                }
+    }
+    return data;
+}
+
+Explanation better(const Explanation& a, const Explanation& b) { return b.px < a.px ? b : a; }
+
+//! The best pair of cameras, with their images of one state exchanged.
+Explanation swappedCameras(const CalibrationInput& input, bool glass)
+{
+    Explanation best{"", NO_FIT};
+    for (int b = 1; b < input.data.cameraCount; b++)
+        for (int a = 0; a < b; a++)
+        {
+            RigData data = input.data;
+            for (View& view : data.views)
+                glass ? std::swap(view.glass[a], view.glass[b]) : std::swap(view.direct[a], view.direct[b]);
+            const std::string first = cameraSuffix(a), second = cameraSuffix(b), direct = "--direct" + first + " and --direct" + second;
+            const std::string sentence = glass ? "--glass" + first + " and --glass" + second + " exchanged" : direct + " exchanged";
+            best = better(best, {sentence + (hasKnownLens(input) ? "" : " (or " + direct + ")"),
+                                 medianErrorOfFit(data, input.options)});
+        }
+    return best;
+}
+
+} // namespace
+
+Explanation swappedStates(const CalibrationInput& input)
+{
+    return {"--direct and --glass exchanged", medianErrorOfFit(exchanged(input.data, -1), input.options)};
+}
+
+Explanation swappedStatesOfOneCamera(const CalibrationInput& input)
+{
+    Explanation best{"", NO_FIT};
+    for (int c = 0; c < input.data.cameraCount; c++)
+    {
+        const std::string suffix = cameraSuffix(c);
+        best = better(best, {"--direct" + suffix + " and --glass" + suffix + " exchanged",
+                             medianErrorOfFit(exchanged(input.data, c), input.options)});
+    }
+    return best;
+}
+
+Explanation swappedGlassImages(const CalibrationInput& input) { return swappedCameras(input, true); }
+
+Explanation swappedDirectImages(const CalibrationInput& input) { return swappedCameras(input, false); }
+
+Explanation unrelatedViews(const CalibrationInput& input)
+{
+    double worst = 0.;
+    for (int c = 0; c < input.data.cameraCount; c++)
+    {
+        const CalibrationInput one = oneCamera(input, c);
+        worst = std::max(worst, medianErrorOfFit(one.data, one.options));
+    }
+    return {"each camera calibrated alone, so equal names of " + std::string(input.data.cameraCount == 2 ? "camera 1 and camera 2"
+            : "different cameras") + " are not the same moment (or the cameras moved to each other)", worst};
+}
+
+Explanation mirroredPoints(const CalibrationInput& input)
+{
+    Explanation best{"", NO_FIT};
+    const auto attempt = [&](Mirror mirror, int camera, const std::string& sentence) {
+        best = better(best, {sentence, medianErrorOfFit(mirroredData(input.data, mirror, camera), input.options)});
+    };
+    for (Mirror mirror : {POINTS, ROWS})
+        attempt(mirror, -1, "the points mirrored: x, y, z are in a left-handed frame (one axis turned round, or two columns "
+                "exchanged), or u or v is counted from the other side");
+    const int cameras = input.data.cameraCount;
+    for (int c = 0; c < cameras && cameras > 1 && cameras <= MAX_SWAPPED_CAMERAS; c++)
+        for (Mirror mirror : {ROWS, COLUMNS})
+            attempt(mirror, c, format("u or v of camera %d counted from the other side: its images are mirrored to those of the "
+                                      "others", c + 1));
+    return best;
+}
+
+Explanation unpairedImages(const CalibrationInput& input)
+{
+    RigData data = input.data;
+    data.views.clear();
+    for (const View& view : input.data.views)
+    {
+        View direct = view, glass = view;
+        for (int c = 0; c < data.cameraCount; c++)
+        {
+            direct.glass[c].clear();
+            glass.direct[c].clear();
+        }
+        if (view.hasGlass())
+            data.views.push_back(glass);
+        if (view.countDirect())
+            data.views.push_back(direct);
+    }
+    return {"each image fitted alone, so equal names of --direct and --glass are not one place of the board (it moved, or it "
+            "was hand-held: --unpaired)", medianErrorOfFit(data, input.options)};
+}
+
+} // namespace tools

@@ -1,0 +1,37 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_IMAGE_MISTAKES_HPP
+#define REFRACT_TOOLS_IMAGE_MISTAKES_HPP
+
+#include "diagnose/mistake.hpp"
+
+/* Images that are not what they are given for. Each function undoes one mix-up, and fits the same images again. */
+namespace tools {
+
+const int MAX_SWAPPED_CAMERAS = 4;      // each two of them need a fit of all
+
+//! --direct and --glass exchanged, of all cameras.
+Explanation swappedStates(const CalibrationInput& input);
+
+//! The same of one camera of several: the one that explains most.
+Explanation swappedStatesOfOneCamera(const CalibrationInput& input);
+
+/** The images of two cameras exchanged, in one state only. Without a known lens the cameras cannot be told apart: then the glass
+images exchanged back explain exchanged direct images as well. */
+Explanation swappedGlassImages(const CalibrationInput& input);
+Explanation swappedDirectImages(const CalibrationInput& input);
+
+//! Equal names of different cameras are not of the same moment.
+Explanation unrelatedViews(const CalibrationInput& input);
+
+//! Equal names of a direct and a glass image are not of one pose of the board.
+Explanation unpairedImages(const CalibrationInput& input);
+
+/** Points from files: one axis reversed or two exchanged, v counted from below, or the same in one camera's file. Each of these
+makes a mirror image. A flat target cannot tell, unless only one camera has it. */
+Explanation mirroredPoints(const CalibrationInput& input);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_IMAGE_MISTAKES_HPP

@@ -1,0 +1,85 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/target_mistakes.hpp"
+#include "diagnose/fit_quality.hpp"
+#include "console/table.hpp"
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double WHOLE_SQUARES = 0.25;      // of a shift remains if it is one by whole squares
+
+//! By how many rows and columns the glass image of a pair shows another part of the board than the direct one.
+Point shiftOfPair(const CalibrationInput& input, const View& view, int camera)
+{
+    std::vector<Point2d> board, direct, glass;
+    if (view.neighbours.empty())        // no board
+        return Point();
+    for (size_t i = 0; i < view.objectPoints.size(); i++)
+        if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
+        {
+            board.emplace_back(view.objectPoints[i].x, view.objectPoints[i].y);
+            direct.push_back(view.direct[camera][i]);
+            glass.push_back(view.glass[camera][i]);
+        }
+    const Mat H = board.size() < 4 ? Mat() : findHomography(board, direct);
+    if (H.empty())
+        return Point();
+    const auto offBy = [&](Point shift) {
+        std::vector<Point2d> moved, there;
+        for (const Point2d& p : board)
+            moved.push_back(p + input.square*Point2d(shift));
+        perspectiveTransform(moved, there, H);
+        std::vector<double> lengths;
+        for (size_t i = 0; i < there.size(); i++)
+            lengths.push_back(norm(there[i] - glass[i]));
+        return median(lengths);
+    };
+    Point best;
+    for (int x = -2; x <= 2; x++)
+        for (int y = -2; y <= 2; y++)
+            if (offBy(Point(x, y)) < WHOLE_SQUARES*offBy(best))
+                best = Point(x, y);
+    return best;
+}
+
+} // namespace
+
+std::string partOfBoard(const CalibrationInput& input)
+{
+    int pairs = 0, shifted = 0;
+    for (const View& view : input.data.views)
+        for (int c = 0; c < input.data.cameraCount; c++)
+            if (view.isPair(c))
+            {
+                pairs++;
+                shifted += shiftOfPair(input, view, c) != Point();
+            }
+    return shifted == 0 ? "" : format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is "
+                                      "smaller than the board: count the inner corners (dots)", shifted, pairs);
+}
+
+std::string badCorners(const CalibrationInput& input)
+{
+    for (int c = 0; c < input.data.cameraCount; c++)
+        try
+        {
+            std::vector<LensSource> sources;
+            const CalibrationInput one = oneCamera(input, c);
+            startModel(one.data, one.options, sources);
+            if (sources[0].kind == LensSource::FROM_DIRECT && sources[0].rms > largestSoundError(one.data))
+                return format("already the direct images of camera %d, without any window, do not fit a lens (%.1f px): the "
+                              "target is not as --pattern and --size say, or its points were found wrongly", c + 1,
+                              sources[0].rms);
+        }
+        catch (const std::exception&) {}        // told elsewhere
+    return "";
+}
+
+} // namespace tools

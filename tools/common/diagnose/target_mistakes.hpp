@@ -1,0 +1,20 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_TARGET_MISTAKES_HPP
+#define REFRACT_TOOLS_TARGET_MISTAKES_HPP
+
+#include "diagnose/calibration_input.hpp"
+
+/* A target that is not as given, found without a fit through the window. Each returns a sentence; empty: no such mistake. */
+namespace tools {
+
+//! The detector finds a part of the board in place of the board, and not the same part in each image.
+std::string partOfBoard(const CalibrationInput& input);
+
+//! Corners in the direct images that no lens explains.
+std::string badCorners(const CalibrationInput& input);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TARGET_MISTAKES_HPP

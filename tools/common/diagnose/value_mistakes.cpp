@@ -1,0 +1,131 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/value_mistakes.hpp"
+#include "diagnose/fit_quality.hpp"
+#include "calibrate/units.hpp"
+#include "console/table.hpp"
+
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double USUAL_INDEX = 1.5;
+
+//! One pane that shifts rays as the layers together do, at small angles.
+GlassWindow onePane(const GlassWindow& window)
+{
+    GlassWindow pane = window;
+    double thickness = 0., shift = 0.;
+    for (size_t i = 0; i < window.thickness.size(); i++)
+    {
+        thickness += window.thickness[i];
+        shift += window.thickness[i]*(1. - window.outerIndex/window.index[i]);
+    }
+    pane.thickness = {thickness};
+    pane.index = {window.outerIndex/(1. - shift/thickness)};
+    pane.materials.clear();
+    return pane;
+}
+
+} // namespace
+
+std::string typedIndex(const GivenIndex& index, int digits)
+{
+    return index.isNamed() ? index.material + format(" (%.5f)", index.value) : format("%.*g", digits, index.value);
+}
+
+Explanation wrongScale(const CalibrationInput& input)
+{
+    RigOptions options = input.options;
+    options.flags = (options.flags | GLASS_FREE_THICKNESS) & ~GLASS_FREE_INDEX;
+    const GlassWindow pane = onePane(input.options.window);
+    if (!(pane.index[0] > 1.))
+        return {"", NO_FIT};
+    double best = NO_FIT, ratio = 1.;
+    for (double start : {1., 0.1, 10., 0.01, 100., 1000.})
+    {
+        options.window = pane;
+        options.window.thickness[0] *= start;
+        RigModel rig;
+        const double px = medianErrorOfFit(input.data, options, &rig);
+        if (px >= 0.5*best)
+            continue;
+        best = px;
+        ratio = rig.cameras[0]->window().thickness[0]/pane.thickness[0];
+    }
+    if (!(input.square > 0))
+        return {format("lengths %.3g times as long%s", 1./ratio, isRatioOfUnits(ratio) ? " (a wrong unit?)" : ""), best};
+    std::string sentence = format("--square=%.3g in place of %.4g%s", input.square/ratio, input.square,
+                                  isRatioOfUnits(ratio) ? " (a wrong unit?)" : "");
+    if (input.options.window.thickness.size() == 1)
+        sentence += format(", or --thickness=%.3g in place of %.4g", pane.thickness[0]*ratio, pane.thickness[0]);
+    else
+        sentence += format(", or each --thickness times %.3g", ratio);
+    return {sentence + ", as only their ratio shows", best};
+}
+
+Explanation wrongUnitOfPoints(const CalibrationInput& input)
+{
+    Explanation best{"", NO_FIT};
+    for (double factor : {1000., 0.001})
+    {
+        CalibrationInput other = input;
+        for (View& view : other.data.views)
+            for (cv::Point3d& X : view.objectPoints)
+                X *= factor;
+        if (other.options.flags & GLASS_FREE_DISTANCE)
+            other.options.window.distance *= factor;
+        const double px = medianErrorOfFit(other.data, other.options);
+        if (px < best.px)
+            best = {format("x, y, z %g times as large: are they in another unit than --thickness?", factor), px};
+    }
+    return best;
+}
+
+Explanation wrongIndex(const CalibrationInput& input)
+{
+    RigOptions options = input.options;
+    options.flags = (options.flags | GLASS_FREE_INDEX) & ~GLASS_FREE_THICKNESS;
+    options.window.index[0] = USUAL_INDEX;
+    RigModel rig;
+    const double px = medianErrorOfFit(input.data, options, &rig);
+    const double index = px < NO_FIT ? rig.cameras[0]->window().index[0] : 1.;
+    const std::vector<GivenIndex>& layers = input.options.layers;
+    return {format("--index=%.3g in place of ", index)
+            + typedIndex(layers.empty() ? GivenIndex{input.options.window.index[0]} : layers[0], 4),
+            index > 1.2 && index < 2.5 ? px : NO_FIT};
+}
+
+Explanation wrongMedium(const CalibrationInput& input)
+{
+    RigOptions options = input.options;
+    GlassWindow& window = options.window;
+    const bool air = window.outerIndex == 1.;
+    window.outerIndex = air ? 1.333 : 1.;
+    if (window.outerIndex == window.innerIndex)
+        options.flags &= ~GLASS_FREE_DISTANCE;
+    else
+    {
+        options.flags |= GLASS_FREE_DISTANCE;
+        if (window.distance == 0.)
+            window.distance = startDistance(input.data, input.square);
+    }
+    if (window.thickness.empty() && window.outerIndex == window.innerIndex)
+        return {"", NO_FIT};
+    const GivenIndex& outer = input.options.outer;
+    return {format("--outer-index=%g in place of %s (the medium in which the board was)", window.outerIndex,
+                   typedIndex(outer.isNamed() ? outer : GivenIndex{input.options.window.outerIndex}, 6).c_str()),
+            medianErrorOfFit(input.data, options)};
+}
+
+Explanation separateWindows(const CalibrationInput& input)
+{
+    RigOptions options = input.options;
+    options.windows.clear();
+    return {"a window of its own for each camera: leave --shared-window (--window-of-camera) out", medianErrorOfFit(input.data, options)};
+}
+
+} // namespace tools

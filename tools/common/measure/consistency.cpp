@@ -1,0 +1,208 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "measure/consistency.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/point_derivatives.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include <opencv2/calib3d.hpp>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
+
+// Of residuals, in standard deviations: what noise may do, what it cannot, and what cannot even be used.
+const double USUAL = 3., FEW = 5., GROSS = 20.;
+const double MEDIAN = 0.6745;           // of |N(0, 1)|
+const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
+const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
+
+/* Of the root mean square of `freedom` numbers with deviation 1: where it lies with the probability of a normal number's
+`deviations` (Wilson and Hilferty's cube root; of a single number exactly). */
+double rmsAt(double deviations, int dof)
+{
+    if (dof == 1)
+        return deviations > 0 ? deviations : MEDIAN;
+    const double variance = 2./(9.*dof);
+    return std::pow(1. - variance + deviations*std::sqrt(variance), 1.5);
+}
+
+//! What is left over of the pixels of a point.
+struct ConsistencyResidual
+{
+    double pixels, expected;        //!< RMS per degree of freedom; expected: one standard deviation; NaN where there is no point
+    int dof;                        //!< coordinates - 3
+    MatrixXd byPoint;               //!< 2 rows of each camera that sees it
+};
+
+class ConsistencyResiduals
+{
+public:
+    ConsistencyResiduals(const Calibration& calibration, const Measurement& m, double pixelSigma)
+        : m_(m), sigma_(pixelSigma), cameras_(calibration.cameras.size())
+    {
+        const RigModel rig = modelOf(calibration);
+        for (size_t c = 0; c < cameras_.size(); c++)
+        {
+            Camera& camera = cameras_[c];
+            Vec3d rvec;
+            Rodrigues(calibration.Rs[c], rvec);
+            camera.R = toEigen(Mat(calibration.Rs[c]));
+            refract::refractiveProjectPoints(m.points, rvec, calibration.Ts[c], calibration.cameras[c].camera, camera.predicted);
+            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.Ts[c]);
+            camera.column = columnsOf(rig, (int)c).lens;
+            camera.place = extrinsicsColumn(rig, (int)c);
+        }
+        if (!calibration.covariance.empty())
+            covariance_ = toEigen(calibration.covariance);
+    }
+
+    ConsistencyResidual operator()(size_t i) const
+    {
+        std::vector<size_t> views;
+        for (size_t c = 0; c < cameras_.size(); c++)
+            if (seen(m_.pixels[c][i]))
+                views.push_back(c);
+        const int rows = 2*(int)views.size(), dof = rows - 3;
+        MatrixXd J(rows, 3);
+        Eigen::VectorXd e(rows);
+        for (size_t k = 0; k < views.size(); k++)
+        {
+            const Camera& camera = cameras_[views[k]];
+            const Point2d error = m_.pixels[views[k]][i] - camera.predicted[i];
+            J.middleRows(2*k, 2) = camera.derivatives.byPose.block(2*i, 3, 2, 3)*camera.R;
+            e.segment(2*k, 2) << error.x, error.y;
+        }
+        if (dof < 1 || !J.allFinite() || !e.allFinite())
+            return {NOT_KNOWN, NOT_KNOWN, dof, J};
+        const MatrixXd over = MatrixXd(Eigen::HouseholderQR<MatrixXd>(J).householderQ()).rightCols(dof);
+        const Eigen::VectorXd w = over.transpose()*e;
+        const MatrixXd S = covarianceOf(i, views, over);
+        const double expected = std::sqrt(S.trace()/dof);
+        if (!(sigma_ > 0))
+            return {std::sqrt(w.squaredNorm()/dof), expected, dof, J};
+        return {std::sqrt(w.dot(S.ldlt().solve(w))/dof)*expected, expected, dof, J};
+    }
+
+private:
+    struct Camera
+    {
+        MatrixXd R;
+        std::vector<Point2d> predicted;
+        PointDerivatives derivatives;
+        int column, place;              //!< of its parameters; of R and T, if it is not the first
+    };
+
+    MatrixXd covarianceOf(size_t i, const std::vector<size_t>& views, const MatrixXd& over) const
+    {
+        MatrixXd S = sigma_*sigma_*MatrixXd::Identity(over.cols(), over.cols());
+        if (!covariance_.size())
+            return S;
+        MatrixXd A = MatrixXd::Zero(over.rows(), covariance_.rows());
+        for (size_t k = 0; k < views.size(); k++)
+        {
+            const Camera& camera = cameras_[views[k]];
+            const PointDerivatives& d = camera.derivatives;
+            A.block(2*k, camera.column, 2, d.byParameters.cols()) = d.byParameters.middleRows(2*i, 2);
+            if (views[k] > 0)
+                A.block(2*k, camera.place, 2, 6) = d.byPose.middleRows(2*i, 2);
+        }
+        const MatrixXd a = A.transpose()*over;
+        return S + a.transpose()*covariance_*a;
+    }
+
+    const Measurement& m_;
+    double sigma_;
+    std::vector<Camera> cameras_;
+    MatrixXd covariance_;
+};
+
+/* How many times as large as expected the residuals of a view are, by their median, which a few wrong points do not move. 1 if
+that may be chance: of the noise of so few points, or of the calibration's error, which is one for all points of the view. */
+double timesNoisier(const std::vector<ConsistencyResidual>& residuals, double pixelSigma)
+{
+    std::vector<double> ratios;
+    double pixelNoise = 0;          // share of the variance
+    int dof = 0;
+    for (const ConsistencyResidual& residual : residuals)
+        if (residual.expected > 0)
+        {
+            ratios.push_back(residual.pixels/residual.expected/rmsAt(0, residual.dof));    // 1 is in their middle
+            dof += residual.dof;
+            pixelNoise += std::pow(pixelSigma/residual.expected, 2);
+        }
+    if (ratios.empty())
+        return 1.;
+    pixelNoise /= ratios.size();
+    const double byNoise = 1 + 4.7/std::sqrt((double)dof);                // four standard deviations of the median's estimate
+    const double byCalibration = USUAL/MEDIAN;
+    const double byChance = std::sqrt(pixelNoise*byNoise*byNoise + (1 - pixelNoise)*byCalibration*byCalibration);
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+    const double times = ratios[ratios.size()/2];
+    return times > byChance ? times : 1.;
+}
+
+void forget(Measurement& m, size_t i)
+{
+    m.points[i] = Point3d(NOT_KNOWN, NOT_KNOWN, NOT_KNOWN);
+    m.sigma[i] = Vec3d::all(NOT_KNOWN);
+}
+
+} // namespace
+
+void checkConsistency(const Calibration& calibration, double pixelSigma, Measurement& m)
+{
+    const bool known = pixelSigma > 0;
+    const ConsistencyResiduals residualOf(calibration, m, known ? pixelSigma : 0.);
+    std::vector<ConsistencyResidual> residuals;
+    for (size_t i = 0; i < m.points.size(); i++)
+        residuals.push_back(residualOf(i));
+    const double times = known ? timesNoisier(residuals, pixelSigma) : 1.;
+    if (times > 1)
+        m.noise = times*pixelSigma;
+    for (size_t i = 0; i < m.points.size(); i++)
+    {
+        const double residual = residuals[i].pixels, expected = known ? residuals[i].expected : 0.;
+        const auto farOff = [&](double deviations) { return rmsAt(deviations, residuals[i].dof)*expected; };
+        if (!(residual == residual))
+            continue;
+        const double limit = known ? std::min(times, NOISIER)*farOff(FEW) : GROSS_PIXELS;
+        if (known)
+        {
+            const double beyond = std::max(0., residual*residual - std::pow(times*farOff(USUAL), 2));
+            const double more = (times*times - 1)*pixelSigma*pixelSigma + beyond;
+            const MatrixXd& J = residuals[i].byPoint;
+            const MatrixXd C = more*(J.transpose()*J).inverse();
+            for (int k = 0; k < 3; k++)
+                m.sigma[i][k] = std::sqrt(m.sigma[i][k]*m.sigma[i][k] + C(k, k));
+        }
+        if (residual > limit)
+        {
+            m.status[i] = INCONSISTENT;
+            m.worstResidual = std::max(m.worstResidual, residual);
+            if (residual > std::max(GROSS_PIXELS, farOff(GROSS)))
+                forget(m, i);
+        }
+    }
+}
+
+void checkPose(double pixelSigma, Measurement& m)
+{
+    if (!(m.noise > (pixelSigma > 0 ? FEW*pixelSigma : GROSS_PIXELS)))
+        return;
+    std::fill(m.status.begin(), m.status.end(), INCONSISTENT);
+    std::fill(m.sigma.begin(), m.sigma.end(), Vec3d::all(NOT_KNOWN));     // residuals do not tell what a wrong model does
+    m.worstResidual = m.noise;
+}
+
+} // namespace tools

@@ -1,0 +1,23 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CONSISTENCY_HPP
+#define REFRACT_TOOLS_CONSISTENCY_HPP
+
+#include "measure/measurement.hpp"
+
+/* Consistency of the observations: pixels that no point, or no pose of the target, explains. */
+namespace tools {
+
+/** Tests the observations of each point for consistency. Two pixels have four coordinates, and a point three: one residual is left,
+about the distance of the second pixel from its epipolar curve over sqrt(2). It is compared with the noise and the calibration's
+covariance. A larger residual is added to sigma; beyond a few standard deviations the status becomes INCONSISTENT, and far beyond
+(20 of them, and at least 2 px) the point becomes NaN. */
+void checkConsistency(const Calibration& calibration, double pixelSigma, Measurement& measurement);
+
+//! The same of a target's pose: one that leaves large residuals makes all its points INCONSISTENT and their sigma NaN.
+void checkPose(double pixelSigma, Measurement& measurement);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CONSISTENCY_HPP

@@ -1,0 +1,43 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "measure/f_distribution.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace tools {
+
+double upperTailF(int m, double v, double x)
+{
+    if (!(x > 0))
+        return 1.;
+    const double odds = 2.*m*x/v, logW = -std::log1p(odds), logRest = std::log(odds) + logW;
+    double sum = 0., logTerm = 0.5*v*logW;      // term by term in logarithms: the factors alone overflow
+    for (int j = 0; j < m; j++)
+    {
+        sum += std::exp(logTerm);
+        logTerm += std::log((0.5*v + j)/(j + 1.)) + logRest;
+    }
+    return std::min(1., sum);
+}
+
+double quantileF2(double v, double probability)
+{
+    return 0.5*v*std::expm1(-2./v*std::log(probability));
+}
+
+double upperTailNoncentralF2(double v, double lambda, double x)
+{
+    // A Poisson mixture of central ones; from where it is largest, terms fall off fast to both sides.
+    const int last = (int)(0.5*lambda + 10.*std::sqrt(0.5*lambda) + 30.);
+    double sum = 0., logFactorial = 0.;         // std::lgamma would write to a variable that all threads share
+    for (int j = 0; j <= last; j++)
+    {
+        logFactorial += std::log(std::max(j, 1));
+        const double logWeight = (lambda > 0 ? j*std::log(0.5*lambda) : j ? -HUGE_VAL : 0.) - 0.5*lambda - logFactorial;
+        sum += std::exp(logWeight)*upperTailF(1 + j, v, x/(1 + j));
+    }
+    return std::min(1., sum);
+}
+
+} // namespace tools

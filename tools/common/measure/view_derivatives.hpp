@@ -1,0 +1,58 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
+#define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
+
+#include "calibrate/rig_model.hpp"
+#include <Eigen/QR>
+
+/* The information in one view of the target, taken or only planned, about a calibrated rig, to first order:
+
+    pixels = predicted + byParameters dp + byPose dpose,      p = the parameters of Fit::covariance
+
+The pose of the board is unknown, so that only the part of byParameters that no change of the pose can produce gives information. */
+namespace tools {
+
+//! One image of a view: which camera, through its window or not, and the target's points in it.
+struct ImageOfView
+{
+    int camera;
+    bool glass;
+    std::vector<int> points;            //!< indices into the target's points
+};
+
+struct ViewDerivatives
+{
+    Eigen::VectorXd predicted;          //!< u, v of each point, image by image
+    Eigen::MatrixXd byParameters;
+    Eigen::MatrixXd byPose;             //!< rvec, tvec of board -> camera 1
+};
+
+//! Points without an image are an error of the caller's: see pointsInImage.
+ViewDerivatives differentiateView(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+                                  const cv::Vec3d& tvec, const std::vector<ImageOfView>& images);
+
+//! The points that a camera sees of a board at a pose.
+ImageOfView pointsInImage(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+                          const cv::Vec3d& tvec, int camera, bool glass);
+
+//! Projects the rows of a view to the left null space of byPose: Q^T rows, Q an orthonormal basis of it.
+class PoseNullSpace
+{
+public:
+    explicit PoseNullSpace(const Eigen::MatrixXd& byPose);
+    Eigen::MatrixXd operator()(const Eigen::MatrixXd& rows) const;
+
+private:
+    Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+};
+
+/** The covariance of the parameters when a view has been added.
+@param byParameters free of the pose.
+@param sigma of a pixel coordinate. */
+Eigen::MatrixXd covarianceWith(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& byParameters, double sigma);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_VIEW_DERIVATIVES_HPP

@@ -1,0 +1,51 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_DETECTED_IMAGES_HPP
+#define REFRACT_TOOLS_DETECTED_IMAGES_HPP
+
+#include "console/images.hpp"
+#include "target/target.hpp"
+
+namespace tools {
+
+//! One image in which the target was found.
+struct DetectedImage
+{
+    std::string stem;                   //!< file name without folder and extension: images of one view have the same
+    std::string path;
+    std::vector<cv::Point2d> points;    //!< a pixel of each point of the target, NaN where it was not seen
+    std::vector<cv::Point3d> objectPoints = {};     //!< of points.csv; empty: those of the Target
+    int seenCount() const;
+};
+
+//! The images of one camera in one state (direct or through the window), in the order of their names.
+struct DetectedImages
+{
+    std::vector<DetectedImage> images;
+    std::vector<std::string> withoutTarget;     //!< paths of images in which the target was not found
+    std::vector<std::string> files;             //!< that were read
+    cv::Size imageSize;
+
+    const DetectedImage* find(const std::string& stem) const;   //!< null if there is none
+};
+
+/** Finds the target in all images of a glob, or reads an mrcal corners.vnl or a points.csv (recognised by their extensions).
+@param source glob ('data/direct-*.png') or file name.
+@param target null: there is none, and only a points.csv can be read.
+@param imageSize needed for a .vnl and a .csv, which do not say it; otherwise checked if not empty.
+@param quiet no progress.
+@param channel of colour images, in which the target is looked for.
+Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
+DetectedImages readDetectedImages(const std::string& source, const Target* target, cv::Size imageSize, bool quiet,
+                                  Channel channel = BRIGHTNESS);
+
+//! A file of points in place of images: there is nothing to look at.
+bool isPointFile(const std::string& source);
+
+//! "the chessboard in WHERE looks like one of 9x6 inner corners, not --size=10x7: ..."
+std::string otherTargetText(const std::string& where, const Target& target, cv::Size other);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_DETECTED_IMAGES_HPP
