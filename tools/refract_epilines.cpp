@@ -44,7 +44,8 @@ struct Options
 std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& points, const cv::Vec2d& depth)
 {
     std::vector<cv::Mat> lines;
-    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.Rs[1], rig.Ts[1], depth,
+    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.extrinsics[1].R,
+                                           rig.extrinsics[1].T, depth,
                                            lines);
     std::vector<Curve> curves;
     for (const cv::Mat& line : lines)
@@ -105,7 +106,7 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
             }
     if (far > 0)
         return cv::Vec2d(0.92*near, 1.08*far);
-    return cv::Vec2d(cv::norm(rig.Ts[1]), std::numeric_limits<double>::infinity());
+    return cv::Vec2d(cv::norm(rig.extrinsics[1].T), std::numeric_limits<double>::infinity());
 }
 
 cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)

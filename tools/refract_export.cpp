@@ -108,8 +108,8 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
-        const cv::Matx33d R = calibration.Rs[c];
-        const cv::Vec3d T = calibration.Ts[c];
+        const cv::Matx33d R = calibration.extrinsics[c].R;
+        const cv::Vec3d T = calibration.extrinsics[c].T;
         const std::string name = format("camera%d", (int)c + 1);
         if (camera->imageSize().empty())
             throw Failure("'" + options.calibration + "' does not say image_width and image_height of " + name + ": add them");

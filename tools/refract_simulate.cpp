@@ -99,7 +99,7 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
 
 BoardPose poseOf(const Scene& scene, const Job& job)
 {
-    return inOtherCamera(job.pose, scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera]);
+    return inOtherCamera(job.pose, scene.cameras.extrinsics[job.camera].R, scene.cameras.extrinsics[job.camera].T);
 }
 
 //! The camera in the light of each channel; empty: all see the same.
@@ -111,7 +111,7 @@ std::vector<cv::Ptr<cv::refract::RefractiveCamera>> coloursOf(const Scene& scene
 
 Viewpoint viewOf(const Scene& scene, const Job& job)
 {
-    return {cameraOf(scene, job), scene.cameras.Rs[job.camera], scene.cameras.Ts[job.camera], coloursOf(scene, job)};
+    return {cameraOf(scene, job), scene.cameras.extrinsics[job.camera].R, scene.cameras.extrinsics[job.camera].T, coloursOf(scene, job)};
 }
 
 cv::Mat imageOf(const Scene& scene, const Target* target, const Job& job, uint64_t seed)

@@ -23,7 +23,7 @@ inline tools::RigModel paperRig(int cameras)
     {
         Matx33d R;
         Rodrigues(rvecs[c], R);
-        rig.add(RefractiveCamera::create(paper::K1, paper::D1, paper::pane(50, normals[c])), R, tvecs[c]);
+        rig.add(RefractiveCamera::create(paper::K1, paper::D1, paper::pane(50, normals[c])), {R, tvecs[c]});
         rig.cameras.back()->setImageSize(Size(1280, 1024));
     }
     return rig;

@@ -78,8 +78,8 @@ RigModel trueRig(const Setup& setup)
     if (setup.shared())
     {
         second = rig.cameras[0]->window();
-        second.normal = rig.Rs[1]*second.normal;
-        second.distance += second.normal.dot(rig.Ts[1]);
+        second.normal = rig.extrinsics[1].R*second.normal;
+        second.distance += second.normal.dot(rig.extrinsics[1].T);
         if (second.distance < 20.)
         {
             GlassWindow first = rig.cameras[0]->window();
@@ -225,8 +225,8 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
     std::vector<Mat> Rs, Ts;
     for (int c = 0; c < cameras; c++)
     {
-        Rs.push_back(Mat(start.Rs[c], true));
-        Ts.push_back(Mat(start.Ts[c], true));
+        Rs.push_back(Mat(start.extrinsics[c].R, true));
+        Ts.push_back(Mat(start.extrinsics[c].T, true));
     }
     fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.views[0].objectPoints), direct, glass,
                                 fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations,
@@ -235,8 +235,7 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
                                 std::vector<Mat>(poses.size(), poseCovariance));
     if (cameras == 2)
     {
-        fit.rig.Rs[1] = Rs[1];
-        fit.rig.Ts[1] = Ts[1];
+        fit.rig.extrinsics[1] = {Rs[1], Ts[1]};
     }
     return fit;
 }
@@ -327,11 +326,11 @@ void compare(const Fit& fit, const RigModel& truth, Honesty& honesty)
     if (truth.cameras.size() == 2)
     {
         Vec3d r, rt;
-        Rodrigues(fit.rig.Rs[1], r);
-        Rodrigues(truth.Rs[1], rt);
+        Rodrigues(fit.rig.extrinsics[1].R, r);
+        Rodrigues(truth.extrinsics[1].R, rt);
         const int at = columnsOf(fit.rig, 1).end;
         addParameters(honesty.ratios["R"], C, at, {r[0] - rt[0], r[1] - rt[1], r[2] - rt[2]});
-        const Vec3d d = fit.rig.Ts[1] - truth.Ts[1];
+        const Vec3d d = fit.rig.extrinsics[1].T - truth.extrinsics[1].T;
         addParameters(honesty.ratios["T"], C, at + 3, {d[0], d[1], d[2]});
     }
 }
@@ -351,7 +350,7 @@ void comparePoints(const Fit& fit, const RigModel& truth, Honesty& honesty)
     const double none = 1e-9;
     if (truth.cameras.size() == 2)
     {
-        refractiveProjectPoints(points, Mat(truth.Rs[1]), truth.Ts[1], truth.cameras[1], pixels2);
+        refractiveProjectPoints(points, Mat(truth.extrinsics[1].R), truth.extrinsics[1].T, truth.cameras[1], pixels2);
         const Measurement m = measureRig(calibration, {pixels1, pixels2}, none);
         for (size_t i = 0; i < points.size(); i++)
             for (int k = 0; k < 3; k++)
@@ -552,19 +551,19 @@ struct SealedRig
     {
         truth = paperRig(2);
         const double toe = random.uniform(0.05, 0.25);
-        Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.Rs[1]);
-        truth.Ts[1] = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
+        Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.extrinsics[1].R);
+        truth.extrinsics[1].T = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
         GlassWindow window(Vec3d(random.normal(0.1), random.normal(0.1), 1), 12, 1.49, random.uniform(120, 300), 1.333);
         truth.cameras[0]->setWindow(window);
-        window.normal = truth.Rs[1]*window.normal;
-        window.distance += window.normal.dot(truth.Ts[1]);
+        window.normal = truth.extrinsics[1].R*window.normal;
+        window.distance += window.normal.dot(truth.extrinsics[1].T);
         if (!shared)
             window.normal = normalize(Vec3d(random.normal(0.1), random.normal(0.1), 1));
         window.distance = std::max(window.distance, 10.);
         if (shared)
         {
             GlassWindow first = truth.cameras[0]->window();
-            first.distance = window.distance - window.normal.dot(truth.Ts[1]);
+            first.distance = window.distance - window.normal.dot(truth.extrinsics[1].T);
             truth.cameras[0]->setWindow(first);
         }
         truth.cameras[1]->setWindow(window);
@@ -622,8 +621,10 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             std::vector<Point2d> pixels1, pixels2;
             std::vector<Point3d> points;
             refractiveProjectPoints(std::vector<Point3d>{a, b}, Vec3d(), Vec3d(), scene.truth.cameras[0], pixels1);
-            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.Rs[1]), scene.truth.Ts[1], scene.truth.cameras[1], pixels2);
-            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.Rs[1], fit.rig.Ts[1], pixels1, pixels2, points);
+            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.extrinsics[1].R), scene.truth.extrinsics[1].T,
+                                    scene.truth.cameras[1], pixels2);
+            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.extrinsics[1].R, fit.rig.extrinsics[1].T, pixels1,
+                                  pixels2, points);
             answers++;
             lengths.add(norm(points[1] - points[0]) - norm(b - a), std::sqrt(lengthVariance(fit, points[0], points[1])));
         }

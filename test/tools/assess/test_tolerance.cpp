@@ -117,11 +117,11 @@ TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
     {
         std::vector<Point2d> seen[2];
         Vec3d rvec;
-        Rodrigues(rig.Rs[1], rvec);
+        Rodrigues(rig.extrinsics[1].R, rvec);
         refractiveProjectPoints(std::vector<Point3d>{X}, Vec3d(), Vec3d(), rig.cameras[0], seen[0]);
-        refractiveProjectPoints(std::vector<Point3d>{X}, rvec, rig.Ts[1], rig.cameras[1], seen[1]);
+        refractiveProjectPoints(std::vector<Point3d>{X}, rvec, rig.extrinsics[1].T, rig.cameras[1], seen[1]);
         std::vector<Point3d> point;
-        triangulateRefractive(found.cameras[0], found.cameras[1], found.Rs[1], found.Ts[1], seen[0], seen[1], point);
+        triangulateRefractive(found.cameras[0], found.cameras[1], found.extrinsics[1].R, found.extrinsics[1].T, seen[0], seen[1], point);
         worst = std::max(worst, norm(point[0] - X));
     }
     CAPTURE(worst, bow.rms, bow.worst, bow.lengths);

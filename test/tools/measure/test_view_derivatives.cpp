@@ -40,12 +40,12 @@ RigModel moved(const RigModel& rig, int column, double step)
         if (c > 0 && k >= 0 && k < 3)
         {
             Vec3d rvec;
-            Rodrigues(rig.Rs[c], rvec);
+            Rodrigues(rig.extrinsics[c].R, rvec);
             rvec[k] += step;
-            Rodrigues(rvec, result.Rs[c]);
+            Rodrigues(rvec, result.extrinsics[c].R);
         }
         else if (c > 0 && k >= 3 && k < 6)
-            result.Ts[c][k - 3] += step;
+            result.extrinsics[c].T[k - 3] += step;
     }
     return result;
 }

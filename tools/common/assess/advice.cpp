@@ -129,8 +129,7 @@ private:
         Point3d centre;
         for (const Point3d& X : board_)
             centre += X*(1./board_.size());
-        Matx33d R;
-        Rodrigues(axis*(TILT_DEG*CV_PI/180.), R);
+        const Matx33d R = rotationMatrix(axis*(TILT_DEG*CV_PI/180.));
         return Vec3d(middle[0]) - R*Vec3d(centre);
     }
 

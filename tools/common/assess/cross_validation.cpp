@@ -27,8 +27,7 @@ double rangeOf(const RigData& data, const Fit& fit, size_t k)
     Point3d middle;
     for (const Point3d& X : object)
         middle += X*(1./object.size());
-    Matx33d R;
-    Rodrigues(fit.rvecs[k], R);
+    const Matx33d R = rotationMatrix(fit.rvecs[k]);
     return norm(R*Vec3d(middle) + fit.tvecs[k]);
 }
 

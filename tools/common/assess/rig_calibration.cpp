@@ -102,8 +102,7 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
             continue;
         Vec3d rvec, tvec;
         poseInCamera(fit, k, camera, rvec, tvec);
-        Matx33d R;
-        Rodrigues(rvec, R);
+        const Matx33d R = rotationMatrix(rvec);
         for (const Point3d& X : view.objectPoints)
             depths.push_back((R*Vec3d(X) + tvec)[2]);
     }

@@ -45,8 +45,8 @@ struct Cause
 //! One pane before several cameras lies to each as R turns it, and is thicker there by the way along the tilt.
 Wedge wedgeBefore(const RigModel& rig, const Cause& cause, int camera, const Vec3d& tilt)
 {
-    const Matx33d R = rig.Rs[camera]*rig.Rs[cause.camera].t();             // from the camera whose frame the tilt is in
-    const Vec3d T = rig.Ts[camera] - R*rig.Ts[cause.camera];
+    const Matx33d R = rig.extrinsics[camera].R*rig.extrinsics[cause.camera].R.t();             // from the camera whose frame the tilt is in
+    const Vec3d T = rig.extrinsics[camera].T - R*rig.extrinsics[cause.camera].T;
     return {R*tilt, tilt.dot(R.t()*T)};
 }
 
@@ -112,7 +112,7 @@ public:
             return;
         std::vector<Point3d> inCamera;
         for (const Point3d& X : points)
-            inCamera.push_back(Point3d(truth.Rs[camera]*Vec3d(X) + truth.Ts[camera]));
+            inCamera.push_back(Point3d(truth.extrinsics[camera]*Vec3d(X)));
         const std::vector<Point2d> shift = wedgeShift(truth.cameras[camera], inCamera,
                                                       wedgeBefore(truth, cause, camera, tilt));
         for (size_t i = 0; i < pixels.size(); i++)
@@ -184,8 +184,7 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
     RigData data = c.data;
     for (size_t k = 0; k < c.fit.views.size(); k++)
     {
-        Matx33d R;
-        Rodrigues(c.fit.rvecs[k], R);
+        const Matx33d R = rotationMatrix(c.fit.rvecs[k]);
         std::vector<Point3d> points;
         for (const Point3d& X : data.views[c.fit.views[k]].objectPoints)
             points.push_back(R*Vec3d(X) + c.fit.tvecs[k]);

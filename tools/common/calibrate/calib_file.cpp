@@ -184,11 +184,10 @@ void writeLabel(FileStorage& fs, const Label& label)
 
 } // namespace
 
-void Calibration::add(const CameraCalibration& camera, const cv::Matx33d& R, const cv::Vec3d& T)
+void Calibration::add(const CameraCalibration& camera, const RigidTransform& cam_from_cam1)
 {
     cameras.push_back(camera);
-    Rs.push_back(R);
-    Ts.push_back(T);
+    extrinsics.push_back(cam_from_cam1);
 }
 
 std::string timeOfFiles(const std::vector<std::string>& inputs)
@@ -242,7 +241,7 @@ Calibration readCalibration(const std::string& filename)
     // Of a .cameramodel, nothing else is known.
     const FileStorage fs = isCameraModel(filename) ? FileStorage() : FileStorage(filename, FileStorage::READ);
     for (size_t c = 0; c < rig.cameras.size(); c++)
-        calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), rig.Rs[c], rig.Ts[c]);
+        calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), {rig.Rs[c], rig.Ts[c]});
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
     calibration.dof = readNotNegative(fs, "degrees_of_freedom", 0., filename);
@@ -301,7 +300,7 @@ void writeCameras(FileStorage& fs, const Calibration& calibration)
         fs << "}";
     }
     for (size_t c = 1; c < calibration.cameras.size(); c++)
-        fs << "R" + placeSuffix(c) << cv::Mat(calibration.Rs[c]) << "T" + placeSuffix(c) << cv::Mat(calibration.Ts[c]);
+        fs << "R" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].R) << "T" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].T);
     if (!calibration.windows.empty())
         fs << "window_of_camera" << calibration.windows;
     if (calibration.rms >= 0)

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CALIB_FILE_HPP
 #define REFRACT_TOOLS_CALIB_FILE_HPP
 
+#include "calibrate/rigid_transform.hpp"
 #include "console/images.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
@@ -50,8 +51,7 @@ struct Label
 struct Calibration
 {
     std::vector<CameraCalibration> cameras;
-    std::vector<cv::Matx33d> Rs;                //!< camera 1 -> each camera; the first is the identity
-    std::vector<cv::Vec3d> Ts;
+    std::vector<RigidTransform> extrinsics;     //!< camera 1 -> each camera; the first is the identity
     std::vector<int> windows;                   //!< which window each camera looks through; empty: each has its own
     double rms = -1.;                           //!< px, over all cameras; negative where unknown
     cv::Mat covariance;     //!< of calibrateGlassRig, in its order; empty where unknown
@@ -68,7 +68,7 @@ struct Calibration
     std::string time;       //!< of its data, see timeOfFiles()
 
     //! A camera at the end, where it is from camera 1.
-    void add(const CameraCalibration& camera, const cv::Matx33d& R = cv::Matx33d::eye(), const cv::Vec3d& T = cv::Vec3d());
+    void add(const CameraCalibration& camera, const RigidTransform& cam_from_cam1 = RigidTransform());
     bool single() const { return cameras.size() == 1; }
 };
 

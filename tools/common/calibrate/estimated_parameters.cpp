@@ -75,12 +75,11 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
     for (int c = 1; c < (int)fit.rig.cameras.size(); c++, end += 6)
     {
         const std::string number = c == 1 ? "" : std::to_string(c + 1);        // as in calib.yml
-        Vec3d rvec;
-        Rodrigues(fit.rig.Rs[c], rvec);
+        const Vec3d rvec = rotationVector(fit.rig.extrinsics[c].R);
         for (int i = 0; i < 3; i++)
             append(list, fit, "R" + number + " rotation vector " + "xyz"[i], end + i, rvec[i]);
         for (int i = 0; i < 3; i++)
-            append(list, fit, "T" + number + " " + "xyz"[i], end + 3 + i, fit.rig.Ts[c][i]);
+            append(list, fit, "T" + number + " " + "xyz"[i], end + 3 + i, fit.rig.extrinsics[c].T[i]);
     }
     return list;
 }

@@ -114,8 +114,8 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     std::vector<Mat> Rs, Ts;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        Rs.push_back(Mat(fit.rig.Rs[c], true));
-        Ts.push_back(Mat(fit.rig.Ts[c], true));
+        Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
+        Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
     }
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS,
                                 flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
@@ -133,8 +133,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     }
     for (int c = 1; c < data.cameraCount; c++)
     {
-        fit.rig.Rs[c] = Rs[c];
-        fit.rig.Ts[c] = Ts[c];
+        fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     }
     int points = 0;
     for (const Mat& used : fit.inliers)

@@ -120,8 +120,7 @@ Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& vie
         Matx33d R;
         Vec3d T;
         squares += std::pow(placeBeside(data, views, rig, link.first, link.second, R, T), 2);
-        rig.Rs[link.second] = R*rig.Rs[link.first];
-        rig.Ts[link.second] = R*rig.Ts[link.first] + T;
+        rig.extrinsics[link.second] = RigidTransform{R, T}*rig.extrinsics[link.first];
     }
     rig.rms = std::sqrt(squares/(data.cameraCount - 1));
     return rig;

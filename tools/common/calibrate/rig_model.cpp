@@ -19,11 +19,10 @@ RigModel RigModel::clone() const
     return copy;
 }
 
-void RigModel::add(const Ptr<RefractiveCamera>& camera, const Matx33d& R, const Vec3d& T)
+void RigModel::add(const Ptr<RefractiveCamera>& camera, const RigidTransform& cam_from_cam1)
 {
     cameras.push_back(camera);
-    Rs.push_back(R);
-    Ts.push_back(T);
+    extrinsics.push_back(cam_from_cam1);
 }
 
 bool RigModel::ownsWindow(int camera) const
@@ -58,25 +57,23 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
     if (camera == 0)
         return;
-    Matx33d R;
-    Rodrigues(rvec, R);
-    Rodrigues(rig.Rs[camera]*R, rvec);
-    tvec = rig.Rs[camera]*tvec + rig.Ts[camera];
+    const RigidTransform& cam_from_cam1 = rig.extrinsics[camera];
+    rvec = rotationVector(cam_from_cam1.R*rotationMatrix(rvec));
+    tvec = cam_from_cam1*tvec;
 }
 
 void poseInCamera1(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
-    Matx33d R;
-    Rodrigues(rvec, R);
-    Rodrigues(rig.Rs[camera].t()*R, rvec);
-    tvec = rig.Rs[camera].t()*(tvec - rig.Ts[camera]);
+    const RigidTransform& cam_from_cam1 = rig.extrinsics[camera];
+    rvec = rotationVector(cam_from_cam1.R.t()*rotationMatrix(rvec));
+    tvec = cam_from_cam1.inverse(tvec);
 }
 
 RigModel modelOf(const Calibration& calibration)
 {
     RigModel rig;
     for (size_t c = 0; c < calibration.cameras.size(); c++)
-        rig.add(calibration.cameras[c].camera, calibration.Rs[c], calibration.Ts[c]);
+        rig.add(calibration.cameras[c].camera, calibration.extrinsics[c]);
     return rig;
 }
 
@@ -84,8 +81,7 @@ Calibration firstPair(const Calibration& rig)
 {
     Calibration pair = rig;
     pair.cameras.resize(2);
-    pair.Rs.resize(2);
-    pair.Ts.resize(2);
+    pair.extrinsics.resize(2);
     pair.windows.resize(std::min(rig.windows.size(), (size_t)2));
     if (rig.covariance.empty())
         return pair;
@@ -105,8 +101,7 @@ Calibration calibrationOf(const RigModel& rig)
     for (const Ptr<RefractiveCamera>& camera : rig.cameras)
         calibration.cameras.push_back({camera, WindowStd(), -1.});
     calibration.windows = rig.windows;
-    calibration.Rs = rig.Rs;
-    calibration.Ts = rig.Ts;
+    calibration.extrinsics = rig.extrinsics;
     return calibration;
 }
 

@@ -21,15 +21,13 @@ struct KnownCamera
 struct RigModel
 {
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> cameras;
-    std::vector<cv::Matx33d> Rs = {};           //!< camera 1 -> each camera; the first is the identity
-    std::vector<cv::Vec3d> Ts = {};
+    std::vector<RigidTransform> extrinsics = {};    //!< camera 1 -> each camera; the first is the identity
     std::vector<int> windows = {};              //!< which window each camera looks through; empty: each has its own
     std::vector<KnownCamera> known = {};        //!< one per camera, or empty
 
     RigModel clone() const;
     //! A camera at the end, where it is from camera 1.
-    void add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Matx33d& R = cv::Matx33d::eye(),
-             const cv::Vec3d& T = cv::Vec3d());
+    void add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const RigidTransform& cam_from_cam1 = RigidTransform());
     //! The first of those that look through a window: its parameters are the window's.
     bool ownsWindow(int camera) const;
     bool sharesWindow(int camera, int other) const;

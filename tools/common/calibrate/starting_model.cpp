@@ -192,8 +192,7 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
         Matx33d R;
         Vec3d T;
         placeByBest(boards, R, T);
-        rig.Rs[link.second] = R*rig.Rs[link.first];
-        rig.Ts[link.second] = R*rig.Ts[link.first] + T;
+        rig.extrinsics[link.second] = RigidTransform{R, T}*rig.extrinsics[link.first];
     }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/export_files.hpp"
+#include "calibrate/rigid_transform.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <cmath>
@@ -29,8 +30,7 @@ std::string cameraLine(const ExportedCamera& camera, int id)
 //! qw qx qy qz
 cv::Vec4d quaternionOf(const cv::Matx33d& R)
 {
-    cv::Vec3d rvec;
-    cv::Rodrigues(R, rvec);
+    const cv::Vec3d rvec = rotationVector(R);
     const double angle = cv::norm(rvec), scale = angle > 0 ? std::sin(angle/2)/angle : 0.5;
     return {std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]};
 }

@@ -55,11 +55,10 @@ public:
         for (size_t c = 0; c < cameras_.size(); c++)
         {
             Camera& camera = cameras_[c];
-            Vec3d rvec;
-            Rodrigues(calibration.Rs[c], rvec);
-            camera.R = toEigen(Mat(calibration.Rs[c]));
-            refract::refractiveProjectPoints(m.points, rvec, calibration.Ts[c], calibration.cameras[c].camera, camera.predicted);
-            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.Ts[c]);
+            const Vec3d rvec = rotationVector(calibration.extrinsics[c].R);
+            camera.R = toEigen(Mat(calibration.extrinsics[c].R));
+            refract::refractiveProjectPoints(m.points, rvec, calibration.extrinsics[c].T, calibration.cameras[c].camera, camera.predicted);
+            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.extrinsics[c].T);
             camera.column = columnsOf(rig, (int)c).lens;
             camera.place = extrinsicsColumn(rig, (int)c);
         }

@@ -83,8 +83,8 @@ Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, 
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         cameras.push_back(calibration.cameras[c].camera);
-        Rs.push_back(Mat(calibration.Rs[c]));
-        Ts.push_back(Mat(calibration.Ts[c]));
+        Rs.push_back(Mat(calibration.extrinsics[c].R));
+        Ts.push_back(Mat(calibration.extrinsics[c].T));
     }
     Mat covariance;
     refract::triangulateRefractive(cameras, Rs, Ts, pixels, result.points, result.status, refract::TRIANGULATE_OPTIMAL,

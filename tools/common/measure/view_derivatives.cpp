@@ -22,10 +22,9 @@ struct PoseInCamera
     {
         if (camera == 0)
             return;
-        Vec3d rigRvec;
-        Rodrigues(rig.Rs[camera], rigRvec);
+        const Vec3d rigRvec = rotationVector(rig.extrinsics[camera].R);
         Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
-        composeRT(rvec1, tvec1, rigRvec, rig.Ts[camera], r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
+        composeRT(rvec1, tvec1, rigRvec, rig.extrinsics[camera].T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
         rvec = Vec3d(r.ptr<double>());
         tvec = Vec3d(t.ptr<double>());
         byPose << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);

@@ -32,15 +32,16 @@ public:
     Projection(const RigModel& rig, double azimuthDeg)
     {
         Vec3d up, ahead;
-        for (const Matx33d& R : rig.Rs)
+        for (const RigidTransform& cam_from_cam1 : rig.extrinsics)
         {
+            const Matx33d& R = cam_from_cam1.R;
             up -= Vec3d(R(1, 0), R(1, 1), R(1, 2));
             ahead += Vec3d(R(2, 0), R(2, 1), R(2, 2));
         }
         const double ENOUGH = 0.1;      // of a camera's unit vector; less where they look from all sides
-        up_ = norm(up) > ENOUGH*(double)rig.Rs.size() ? normalize(up) : Vec3d(0, -1, 0);
+        up_ = norm(up) > ENOUGH*(double)rig.extrinsics.size() ? normalize(up) : Vec3d(0, -1, 0);
         ahead -= up_*up_.dot(ahead);
-        if (norm(ahead) < ENOUGH*(double)rig.Rs.size())
+        if (norm(ahead) < ENOUGH*(double)rig.extrinsics.size())
             ahead = Vec3d(0, 0, 1) - up_*up_[2];
         const Vec3d forward = normalize(ahead), right = forward.cross(up_);
         const double a = azimuthDeg*CV_PI/180., e = ELEVATION_DEG*CV_PI/180.;
@@ -62,8 +63,7 @@ public:
         for (size_t k = 0; k < c.fit.views.size(); k++)
         {
             const View& view = c.data.views[c.fit.views[k]];
-            Matx33d R;
-            Rodrigues(c.fit.rvecs[k], R);
+            const Matx33d R = rotationMatrix(c.fit.rvecs[k]);
             for (const Point3d& X : view.objectPoints)
                 if (view.hasGlass())
                     points_.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
@@ -114,7 +114,7 @@ public:
                     through.push_back(ray[2]);
         if (through.size() < 3)
             return {};
-        const Vec3d n = rig_.Rs[owner].t()*rig_.cameras[owner]->window().normal;
+        const Vec3d n = rig_.extrinsics[owner].R.t()*rig_.cameras[owner]->window().normal;
         const Vec3d u = normalize(n.cross(std::abs(n[1]) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0))), v = n.cross(u);
         std::vector<Point2f> flat, hull;
         for (const Vec3d& X : through)
@@ -128,7 +128,7 @@ public:
     }
 
 private:
-    Vec3d inFirst(int camera, const Vec3d& X) const { return rig_.Rs[camera].t()*(X - rig_.Ts[camera]); }
+    Vec3d inFirst(int camera, const Vec3d& X) const { return rig_.extrinsics[camera].inverse(X); }
 
     static std::vector<Point2d> borderOf(Size image)
     {
@@ -154,7 +154,7 @@ private:
         std::vector<Vec3d> origins, directions, innerOrigins, inner;
         refractiveUnprojectPoints(pixels, origins, directions, through);
         refractiveUnprojectPoints(pixels, innerOrigins, inner, bare);
-        const Vec3d end = rig_.Rs[camera]*middle_ + rig_.Ts[camera];
+        const Vec3d end = rig_.extrinsics[camera]*middle_;
         std::vector<Line> lines;
         for (size_t i = 0; i < pixels.size(); i++)
         {

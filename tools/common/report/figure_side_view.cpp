@@ -77,8 +77,7 @@ public:
                 continue;
             Vec3d rvec, tvec;
             poseInCamera(c_.fit, k, camera_, rvec, tvec);
-            Matx33d R;
-            Rodrigues(rvec, R);
+            const Matx33d R = rotationMatrix(rvec);
             std::vector<Vec3d> points;
             for (const Point3d& X : c_.data.views[c_.fit.views[k]].objectPoints)
                 points.push_back(R*Vec3d(X) + tvec);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/render.hpp"
+#include "calibrate/rigid_transform.hpp"
 
-#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <cmath>
 
@@ -73,8 +73,7 @@ Mat traceTarget(const Target& target, const BoardPose& pose, const cv::Ptr<cv::r
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < size.width; x++)
             pixels.at<Vec2d>(y, x) = Vec2d(x - PAD, y - PAD);
-    Matx33d R;
-    cv::Rodrigues(pose.rvec, R);
+    const Matx33d R = rotationMatrix(pose.rvec);
     const Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
     Mat points;
     cv::refract::refractivePointsOnPlane(pixels.reshape(2, (int)pixels.total()), points, camera,
@@ -146,8 +145,7 @@ Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Pt
 
 BoardPose inOtherCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)
 {
-    Matx33d board;
-    cv::Rodrigues(pose.rvec, board);
+    const Matx33d board = rotationMatrix(pose.rvec);
     BoardPose second;
     cv::Rodrigues(R*board, second.rvec);
     second.tvec = R*pose.tvec + T;

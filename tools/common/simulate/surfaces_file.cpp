@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/surfaces_file.hpp"
+#include "calibrate/rigid_transform.hpp"
 #include "console/failure.hpp"
 #include "simulate/keys.hpp"
 #include "simulate/mesh_file.hpp"
@@ -69,8 +70,7 @@ SurfacePtr readMesh(const Keys& keys, const std::string& filename, std::vector<s
 {
     keys.allowOnly({"shape", "color", "file", "rvec", "tvec", "scale"});
     const Vec3d color = readColor(keys), tvec = keys.vector("tvec", Vec3d());
-    cv::Matx33d toScene;
-    cv::Rodrigues(keys.vector("rvec", Vec3d()), toScene);
+    cv::Matx33d toScene = rotationMatrix(keys.vector("rvec", Vec3d()));
     toScene *= keys.number("scale", SMALLEST, LARGEST, 1.);
     const std::string file = keys.text("file", "");
     if (file.empty())

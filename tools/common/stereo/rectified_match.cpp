@@ -28,7 +28,7 @@ RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& i
     for (int c = 0; c < 2; c++)
     {
         const int64 start = cv::getTickCount();
-        const Mat T = c ? Mat(rig.calibration().Ts[c]) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
+        const Mat T = c ? Mat(rig.calibration().extrinsics[c].T) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
         const auto mapOf = [&](const cv::Ptr<cv::refract::RefractiveCamera>& camera) {
             Mat map;
             cv::refract::initRefractiveStereoRectifyMap(camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1, P, T, size, CV_32FC2, map,

@@ -25,7 +25,8 @@ RectifiedRig::RectifiedRig(const Calibration& calibration, const Vec2d& depthRan
     const auto& cameras = calibration.cameras;
     // Each image keeps its own principal point: of cameras that look at one place, a common one shows nothing of it.
     const int flags = 0;
-    rowError = cv::refract::refractiveStereoRectify(cameras[0].camera, cameras[1].camera, calibration.Rs[1], calibration.Ts[1], size_,
+    rowError = cv::refract::refractiveStereoRectify(cameras[0].camera, cameras[1].camera, calibration.extrinsics[1].R,
+                                                    calibration.extrinsics[1].T, size_,
                                                     depthRange, R1, R2, P1, P2, Q, flags);
     const Vec3d base = centreOf(P2) - centreOf(P1);
     vertical_ = std::abs(base[1]) > std::abs(base[0]);
