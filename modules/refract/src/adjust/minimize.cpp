@@ -120,7 +120,13 @@ void Minimization::solve(TrustRegion& region)
         parameters.push_back(values[k].data());
     }
     problem.AddResidualBlock(cost, nullptr, parameters);
-    region.solve(problem);
+    if (cost->linearizeAt(parameters.data()))
+        region.solve(problem);
+    else
+    {
+        region.outcome = ceres::FAILURE;
+        region.iterations = 0;
+    }
     std::vector<double> residuals(cost->num_residuals());
     if (cost->Evaluate(parameters.data(), residuals.data(), nullptr))   // the problem comes to where Ceres has ended
         return;
@@ -187,6 +193,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
         TrustRegion& region = regions[turn];
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
         solve(region);
+        if (region.iterations == 0)
+            break;
         if (region.outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && region.outcome == ceres::CONVERGENCE
             && isAtMinimum())
             return FitOutcome();

@@ -9,7 +9,7 @@ namespace cv { namespace refract {
 
 using Eigen::VectorXd;
 
-ReducedCost::ReducedCost(Problem& problem) : problem_(problem), isCurrent_(false), squaredError_(0)
+ReducedCost::ReducedCost(Problem& problem) : problem_(problem), isCurrent_(false), isAnchor_(false), squaredError_(0)
 {
     const FreeSpace space(problem, false);
     count_ = space.count;
@@ -48,7 +48,7 @@ void ReducedCost::predictInner() const
     }
     VectorXd inner = anchor_->inner;
     int at = 0;
-    for (const InnerBlock& block : anchor_->blocks)
+    for (const InnerBlock& block : anchor_->information.inner)
     {
         const int size = (int)block.byOuter.rows();
         VectorXd own(block.columns.size());
@@ -60,50 +60,62 @@ void ReducedCost::predictInner() const
     setInnerValues(problem_, inner);
 }
 
+bool ReducedCost::optimizeAt(double const* const* parameters) const
+{
+    if (!moveTo(parameters) && isCurrent_)
+        return true;
+    isAnchor_ = false;
+    if (anchor_)
+        predictInner();
+    isCurrent_ = optimizeInner(problem_, squaredError_);
+    if (!isCurrent_ && anchor_)
+    {
+        setInnerValues(problem_, anchor_->inner);       // the prediction may have gone too far
+        isCurrent_ = optimizeInner(problem_, squaredError_);
+    }
+    return isCurrent_;
+}
+
+bool ReducedCost::linearizeAt(double const* const* parameters) const
+{
+    if (!optimizeAt(parameters))
+        return false;
+    if (isAnchor_)
+        return true;
+    std::unique_ptr<Anchor> anchor(new Anchor{ {}, FreeSpace(problem_, false), innerValues(problem_),
+                                               informationOf(problem_, false) });
+    if (!anchor->information.root.allFinite() || !anchor->information.residual.allFinite())
+        return false;
+    for (int block : variable_)
+        anchor->values.push_back(problem_.blocks()[block].values);
+    anchor_ = std::move(anchor);
+    isAnchor_ = true;
+    return true;
+}
+
 bool ReducedCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
 {
-    if (moveTo(parameters) || !isCurrent_)
-    {
-        if (anchor_)
-            predictInner();
-        isCurrent_ = optimizeInner(problem_, squaredError_);
-        if (!isCurrent_ && anchor_)
-        {
-            setInnerValues(problem_, anchor_->inner);       // the prediction may have gone too far
-            isCurrent_ = optimizeInner(problem_, squaredError_);
-        }
-        if (!isCurrent_)
-            return false;
-    }
+    if (jacobians ? !linearizeAt(parameters) : !optimizeAt(parameters))
+        return false;
     Eigen::Map<VectorXd> r(residuals, count_ + 1);
     r.setZero();
     r[count_] = std::sqrt(squaredError_);
     if (!jacobians)
         return true;
-    const FreeSpace space(problem_, false);
-    const std::vector<ImageRows> images = linearize(problem_, space);
-    Information information = problem_.hasScene() ? eliminatePoints(problem_, space, images)
-                                                  : eliminatePoses(problem_, space, images);
+    const Information& information = anchor_->information;
     r.head(count_) = information.residual;
     r[count_] = std::sqrt(std::max(squaredError_ - information.residual.squaredNorm(), 0.));
-    fillJacobians(information, space, jacobians);
-    anchor_.reset(new Anchor{ {}, space, innerValues(problem_), std::move(information.inner) });
-    for (int block : variable_)
-        anchor_->values.push_back(problem_.blocks()[block].values);
-    return true;
-}
-
-void ReducedCost::fillJacobians(const Information& information, const FreeSpace& space, double** jacobians) const
-{
     for (size_t i = 0; i < variable_.size(); i++)
     {
         if (!jacobians[i])
             continue;
         const int block = variable_[i];
+        const Eigen::MatrixXd& basis = anchor_->space.bases[block];
         Eigen::Map<RowMajorMatrix> J(jacobians[i], count_ + 1, problem_.blocks()[block].values.size());
-        J.topRows(count_) = information.root.middleCols(space.first[block], space.columnsOf(block))*space.bases[block].transpose();
+        J.topRows(count_) = information.root.middleCols(anchor_->space.first[block], basis.cols())*basis.transpose();
         J.bottomRows<1>().setZero();
     }
+    return true;
 }
 
 }} // namespace

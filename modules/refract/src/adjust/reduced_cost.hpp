@@ -21,6 +21,8 @@ public:
     const std::vector<int>& variableBlocks() const { return variable_; }
 
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+    //! False where there is no cost, or a derivative overflows.
+    bool linearizeAt(double const* const* parameters) const;
 
 private:
     //! Where the last linearisation was made.
@@ -29,17 +31,18 @@ private:
         std::vector<Eigen::VectorXd> values;        //!< of the variable blocks
         FreeSpace space;
         Eigen::VectorXd inner;
-        std::vector<InnerBlock> blocks;
+        Information information;
     };
     bool moveTo(double const* const* parameters) const;
     void predictInner() const;
-    void fillJacobians(const Information& information, const FreeSpace& space, double** jacobians) const;
+    bool optimizeAt(double const* const* parameters) const;
 
     Problem& problem_;
     int count_;
     std::vector<int> variable_;
     mutable std::unique_ptr<Anchor> anchor_;
     mutable bool isCurrent_;            //!< the inner blocks are the best at the problem's outer ones
+    mutable bool isAnchor_;             //!< and the anchor is there
     mutable double squaredError_;
 };
 
