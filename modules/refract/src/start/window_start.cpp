@@ -182,10 +182,13 @@ GlassWindow searchWindow(const Camera& camera, const PixelViews& refracted,
     return minima[0].window;
 }
 
-//! What a camera would see without the window, where it has no direct image but the pose is known without.
-PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses)
+/** What a camera would see without the window, where it has no direct image but the pose is known without. Not if R and T are free
+and no direct image tells them: the normal would make up for their error. */
+PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses, int flags)
 {
     PixelViews direct = views.cameras[c].direct;
+    if (c > 0 && (flags & GLASS_FREE_EXTRINSICS) && !seesAnything(direct))
+        return direct;
     const Extrinsics toCamera(rig.extrinsics[c]);
     for (int view = 0; view < views.count(); view++)
     {
@@ -220,7 +223,7 @@ bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::
     {
         if (rig.owner[c] != owner || !seesAnything(views.cameras[c].refracted))
             continue;
-        const PixelViews direct = withPredicted(rig, c, views, poses);
+        const PixelViews direct = withPredicted(rig, c, views, poses, flags);
         const NormalEstimate estimate = (flags & GLASS_ROBUST ? normalFromInlierPairs : normalFromPairs)(
             rig.cameras[c], direct, views.cameras[c].refracted);
         if (!estimate.undetermined.empty() || !(estimate.normal[2] > 0))

@@ -25,13 +25,14 @@ double excessOf(double cost, double best, int freedom);
 const double SAME_ANGLE = 0.01;
 double angleBetween(const Vec3d& a, const Vec3d& b);
 
-/** Start of every window (others: one per camera; only the given owner's may hold a second minimum): its normal and, if free, its distance; the rest as given.
+/** Start of every window: its normal and, if free, its distance; the rest as given.
 
 From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
 with the lens known, some views are fitted from the best few of a ring of tilts, as the cost through the window alone has
 more than one minimum, and all views from each distinct one of these; the least cost wins. Else the given window.
 A window of unknown distance that is shared is described from now on in the frame of the camera nearest to it (rig.owner): its
 distance has a bound at 0, so that no camera comes to lie beyond. Where the start puts one there, the window moves out.
+@param others one per camera; only the given owner's may hold a second minimum
 @return LOOKS_AWAY if some camera looks away from its window then */
 FitOutcome startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags,
                         std::vector<OtherMinimum>& others);
