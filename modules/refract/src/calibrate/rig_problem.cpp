@@ -68,7 +68,7 @@ RigProblem::RigProblem(const Rig& rig, const RigViews& views, const std::vector<
         const Camera& camera = rig_.cameras[c];
         const WindowLayout& at = camera.layers().at();
         const int lens = camera.lensCount();
-        const std::vector<bool> isFree = freeWindowParameters(at.layers, flags);
+        const std::vector<bool> isFree = freeWindowParameters(at, flags);
         const CameraKnowledge ofCamera = knownCameras.empty() ? CameraKnowledge() : knownCameras[c];
         addBlock(RigBlock::LENS, c, 0, freeLens(camera, flags));
         setKnown(ofCamera, 0, blocks_.back());
