@@ -70,90 +70,176 @@ bool traceOutWedge(const TiltedFaces& window, int n, const double* wx, const dou
 }
 
 /* A point's direction: Newton's method in the tangent t (2 components) of the direction in the rarest medium, from that of
-parallel faces. The error is where the ray of t misses the point, in the last face's direction of planes. */
+parallel faces. The error is where the ray of t misses the point, in the plane through it that is parallel to the last face.
+
+Optical vectors are in units of rarest cos(theta) of the rarest medium: (t, 1) there, and
+
+    c'^2 = c^2 + excess (1 + t^2),    excess = (n'^2 - n^2)/rarest^2 */
 struct WedgeSearch
 {
     Path<Lanes> path;           //!< by parallel faces
+    Lanes ratio, step, slope;   //!< t/V of these, the last step of it, and dV/dt
     Vector X;                   //!< the point, in the window's frame
     Lanes height;               //!< of the scene's medium, along the last face's normal
     Lanes tx, ty;
     Lanes J[2][2];              //!< inverse of d miss/d t
     Lanes step2, bound2;        //!< square of the last step; of the step that the derivatives are from
     Mask good;
+
+    // The ray of t behind a face, and its derivatives by t.
+    Vector p, P, dp[2], dP[2];
+    Lanes inverseIn, inverseQ;              //!< 1/c before and behind the first face
+    Lanes c, behind2, both;                 //!< at the face to pass: m.p before it, its square behind it, 1/(c c')
+    Lanes inverseLast, dLast[2];            //!< 1/c' of the last face passed, and its derivatives over -c'^2
 };
 
-//! What the first medium and the first face, which is across the axis, make of t.
-struct FirstFace
+//! What the stages below have in common. A root waits for the one before it, so each ends a stage (see Group).
+struct WedgeStages
 {
-    FirstFace(const Stack& s, const TiltedFaces& window, Lanes tx, Lanes ty)
+    WedgeStages(const Stack& s, const TiltedFaces& window)
+        : unit(1/(s.rarest*s.rarest)), inner2(s.inner*s.inner*unit), gap(window.faces[0].distance),
+          after2(window.faces[0].after*window.faces[0].after*unit), isInnerRarest(s.inner == s.rarest) {}
+
+    //! The first face is across the axis. q^2 = n^2 - p^2 by t: no cancellation near grazing.
+    void firstRoots(WedgeSearch& search) const
     {
-        const double rarest2 = s.rarest*s.rarest, inner2 = s.inner*s.inner, after = window.faces[0].after, after2 = after*after;
-        t2 = tx*tx + ty*ty;
-        const Lanes root = inverseSqrt(1 + t2);
-        secant = (1 + t2)*root;
-        // q^2 = n^2 - p^2 by t: no cancellation near grazing
-        const Lanes v = inner2 + (inner2 - rarest2)*t2, w = after2 + (after2 - rarest2)*t2;
-        inverseIn = inverseSqrt(v)*secant;
-        inverseAfter = inverseSqrt(w)*secant;
-        p = { s.rarest*root*tx, s.rarest*root*ty, w*inverseAfter*root*root };
+        const Lanes t2 = search.tx*search.tx + search.ty*search.ty;
+        search.inverseIn = isInnerRarest ? all(1) : inverseSqrt(inner2 + (inner2 - 1)*t2);
+        search.inverseQ = inverseSqrt(after2 + (after2 - 1)*t2);
     }
-    Lanes t2, secant;           //!< of the angle in the rarest medium
-    Lanes inverseIn, inverseAfter;      //!< 1/q in the two media
-    Vector p;                   //!< behind the face
-};
 
-template<bool DERIVATIVES>
-inline void wedgeStep(const Stack& s, const TiltedFaces& window, WedgeSearch& search)
-{
-    const FirstFace first(s, window, search.tx, search.ty);
-    const double gap = window.faces[0].distance;
-    const Lanes zero = all(0), s0 = gap*first.inverseIn, bend = s0*first.inverseIn*first.inverseIn;
-    Vector p = first.p, P = { s0*p.x, s0*p.y, all(gap) };
-    // By the two tangential components of p in the first medium.
-    Vector dp[2] = { { all(1), zero, -p.x*first.inverseAfter }, { zero, all(1), -p.y*first.inverseAfter } };
-    Vector dP[2] = { { s0 + bend*p.x*p.x, bend*p.x*p.y, zero }, { bend*p.x*p.y, s0 + bend*p.y*p.y, zero } };
-    Mask good = search.height > 0;
-    Lanes last = zero, dLast[2] = { zero, zero };
-    for (int k = 1; k < window.count; k++)
+    template<bool DERIVATIVES>
+    void passFirst(WedgeSearch& search) const
     {
-        const Face& face = window.faces[k];
-        const Lanes c = dot(face.normal, p), inverse = 1/c, length = (face.distance - dot(face.normal, P))*inverse;
-        const Lanes after2 = c*c + face.excess, inverseAfter = inverseSqrt(after2), ratio = c*inverseAfter;
-        good &= (c > 0) & (length > 0) & (after2 > 0);
+        const Lanes zero = all(0), x = search.tx, y = search.ty, s0 = gap*search.inverseIn;
+        const Lanes q = (after2 + (after2 - 1)*(x*x + y*y))*search.inverseQ;
+        search.p = { x, y, q };
+        search.P = { s0*x, s0*y, all(gap) };
+        search.good = search.height > 0;
+        if (!DERIVATIVES)
+            return;
+        const Lanes bend = (1 - inner2)*s0*search.inverseIn*search.inverseIn, slope = (after2 - 1)*search.inverseQ, xy = bend*x*y;
+        search.dp[0] = { all(1), zero, slope*x };
+        search.dp[1] = { zero, all(1), slope*y };
+        search.dP[0] = { s0 + bend*x*x, xy, zero };
+        search.dP[1] = { xy, s0 + bend*y*y, zero };
+    }
+
+    void root(const Face& face, WedgeSearch& search) const
+    {
+        const Lanes secant2 = 1 + (search.tx*search.tx + search.ty*search.ty);
+        search.c = dot(face.normal, search.p);
+        search.behind2 = search.c*search.c + face.excess*unit*secant2;
+        search.both = inverseSqrt(search.c*search.c*search.behind2);
+    }
+
+    template<bool DERIVATIVES>
+    void pass(const Face& face, WedgeSearch& search) const
+    {
+        const double* const m = face.normal;
+        const Lanes c = search.c, inverseBehind = c*search.both, behind = search.behind2*inverseBehind, inverse = search.both*behind;
+        const Lanes length = (face.distance - dot(m, search.P))*inverse;
+        search.good &= (c > 0) & (length > 0) & (search.behind2 > 0);
+        const Vector p = search.p;
+        const Lanes t[2] = { search.tx, search.ty };
         for (int j = 0; j < 2 && DERIVATIVES; j++)
         {
-            const Lanes dc = dot(face.normal, dp[j]);
-            const Lanes dLength = -(dot(face.normal, dP[j]) + length*dc)*inverse;
-            dP[j] = plus(plus(dP[j], length, dp[j]), dLength, p);
-            dp[j] = plus(dp[j], dc*(ratio - 1), face.normal);
-            dLast[j] = -dc*ratio*inverseAfter;
+            const Vector dp = search.dp[j], dP = search.dP[j];
+            const Lanes dc = dot(m, dp), dBehind = (c*dc + face.excess*unit*t[j])*inverseBehind;
+            const Lanes dLength = -(dot(m, dP) + length*dc)*inverse;
+            search.dP[j] = plus(plus(dP, length, dp), dLength, p);
+            search.dp[j] = plus(dp, dBehind - dc, m);
+            search.dLast[j] = -dBehind*inverseBehind;
         }
-        P = plus(P, length, p);
-        p = plus(p, after2*inverseAfter - c, face.normal);
-        last = inverseAfter;
+        search.P = plus(search.P, length, p);
+        search.p = plus(p, behind - c, m);
+        search.inverseLast = inverseBehind;
     }
-    const Lanes length = search.height*last, w = search.path.weight;
-    const Lanes missX = w*P.x + length*p.x - search.X.x, missY = w*P.y + length*p.y - search.X.y;
-    if (DERIVATIVES)
+
+    //! The step, with the derivatives of this ray or of the one that had them last.
+    template<bool DERIVATIVES>
+    void move(WedgeSearch& search) const
     {
-        const auto by = [&](int j, Lanes P_, Lanes dp_, Lanes p_) { return w*P_ + length*(dp_ + dLast[j]*p_); };
-        const Lanes xx = by(0, dP[0].x, dp[0].x, p.x), xy = by(1, dP[1].x, dp[1].x, p.x);
-        const Lanes yx = by(0, dP[0].y, dp[0].y, p.y), yy = by(1, dP[1].y, dp[1].y, p.y);
-        // t moves by (I + t t^T) dp / (rarest cos)
-        const Lanes factor = first.secant/(s.rarest*(xx*yy - xy*yx)), tx = search.tx, ty = search.ty;
-        const Lanes ax = factor*(1 + tx*tx), ay = factor*tx*ty, b = factor*(1 + ty*ty);
-        search.J[0][0] = ax*yy - ay*yx;
-        search.J[0][1] = ay*xx - ax*xy;
-        search.J[1][0] = ay*yy - b*yx;
-        search.J[1][1] = b*xx - ay*xy;
+        const Vector &p = search.p, &P = search.P;
+        const Lanes length = search.height*search.inverseLast, w = search.path.weight;
+        const Lanes missX = w*P.x + length*p.x - search.X.x, missY = w*P.y + length*p.y - search.X.y;
+        if (DERIVATIVES)
+        {
+            const auto byX = [&](int j) { return w*search.dP[j].x + length*(search.dp[j].x + search.dLast[j]*p.x); };
+            const auto byY = [&](int j) { return w*search.dP[j].y + length*(search.dp[j].y + search.dLast[j]*p.y); };
+            const Lanes xx = byX(0), xy = byX(1), yx = byY(0), yy = byY(1), inverse = roughInverse(xx*yy - xy*yx);
+            search.J[0][0] = yy*inverse;
+            search.J[0][1] = -xy*inverse;
+            search.J[1][0] = -yx*inverse;
+            search.J[1][1] = xx*inverse;
+        }
+        const Lanes x = search.J[0][0]*missX + search.J[0][1]*missY, y = search.J[1][0]*missX + search.J[1][1]*missY;
+        search.tx -= x;
+        search.ty -= y;
+        search.step2 = x*x + y*y;
+        if (DERIVATIVES)
+            search.bound2 = search.step2;
     }
-    const Lanes stepX = search.J[0][0]*missX + search.J[0][1]*missY, stepY = search.J[1][0]*missX + search.J[1][1]*missY;
-    search.tx -= stepX;
-    search.ty -= stepY;
-    search.step2 = stepX*stepX + stepY*stepY;
-    if (DERIVATIVES)
-        search.bound2 = search.step2;
-    search.good = good;
+
+    double unit, inner2, gap, after2;
+    bool isInnerRarest;
+};
+
+//! A step of Newton's method; without DERIVATIVES it takes those of a step before.
+template<bool DERIVATIVES>
+inline void wedgeStep(const Stack& s, const TiltedFaces& window, Group<WedgeSearch>& group)
+{
+    const WedgeStages stages(s, window);
+    group.each([&](WedgeSearch& search, Part) { stages.firstRoots(search); });
+    group.each([&](WedgeSearch& search, Part)
+    {
+        stages.passFirst<DERIVATIVES>(search);
+        stages.root(window.faces[1], search);
+    });
+    const int last = window.count - 1;
+    for (int k = 1; k < last; k++)
+        group.each([&](WedgeSearch& search, Part)
+        {
+            stages.pass<DERIVATIVES>(window.faces[k], search);
+            stages.root(window.faces[k + 1], search);
+        });
+    group.each([&](WedgeSearch& search, Part)
+    {
+        stages.pass<DERIVATIVES>(window.faces[last], search);
+        stages.move<DERIVATIVES>(search);
+    });
+}
+
+/* The path through parallel faces, and the derivatives that it has: of the distance V by t is 1/ratio across the radius and slope along
+it. What a step with them leaves is of second order in the wedge. */
+inline void startWedge(const Stack& s, Group<WedgeSearch>& group)
+{
+    const double NEAR = 0.05;       // relative: the next step is a few times its cube
+    const int STEPS = 3;
+    group.each([&](WedgeSearch& search, Part) { search.ratio = firstRatio(s, search.path); });
+    bool more = true;
+    for (int k = 0; k < STEPS && more; k++)
+    {
+        group.each([&](WedgeSearch& search, Part)
+        {
+            const PathFunction<Lanes> F(s, search.path, search.ratio);
+            search.step = halleyStep(F);
+            search.slope = F.slope - 2*search.step*F.bend;
+            search.ratio += search.step;
+        });
+        more = group.some([&](const WedgeSearch& search) { return absolute(search.step) > NEAR*search.ratio; });
+    }
+    group.each([&](WedgeSearch& search, Part)
+    {
+        const Lanes ratio = search.ratio, slope = search.slope, x = search.X.x, y = search.X.y;
+        const Lanes along = (1 - ratio*slope)*roughInverse(larger(slope*search.path.radius2, all(1e-300)));
+        search.tx = ratio*x;
+        search.ty = ratio*y;
+        search.J[0][0] = ratio + along*x*x;
+        search.J[0][1] = search.J[1][0] = along*x*y;
+        search.J[1][1] = ratio + along*y*y;
+        search.bound2 = all(1e300);         // these derivatives are not the wedge's: no such step is the last
+    });
 }
 
 //! What a step leaves is a few times itself times the step that its derivatives are from.
@@ -186,26 +272,23 @@ bool solveInWedge(const Stack& stack, const TiltedFaces& window, int n, const do
             path.weight = weight;
             path.scene = X.z - weight*s.total;
             path.radius2 = X.x*X.x + X.y*X.y;
-            Lanes ratio = firstRatio(s, path);
-            for (int k = 0; k < 2; k++)
-                ratio += halleyStep(PathFunction<Lanes>(s, path, ratio));
-            search.tx = ratio*X.x;
-            search.ty = ratio*X.y;
         });
+        startWedge(s, group);
         bool more = true;
         for (int k = 0; k < STEPS && more; k++)
         {
-            if (k % 2 == 0)
-                group.each([&](WedgeSearch& search, Part) { wedgeStep<true>(s, window, search); });
+            if (k % 2 == 1)
+                wedgeStep<true>(s, window, group);
             else
-                group.each([&](WedgeSearch& search, Part) { wedgeStep<false>(s, window, search); });
+                wedgeStep<false>(s, window, group);
             more = group.some([&](const WedgeSearch& search) { return leftBy(search) > enoughFor(search); });
         }
         group.each([&](WedgeSearch& search, Part at)
         {
             const Mask good = search.good & (leftBy(search) <= enoughFor(search));
             const double inner2 = s.inner*s.inner, excess = inner2 - s.rarest*s.rarest;
-            const Lanes t2 = search.tx*search.tx + search.ty*search.ty, kappa = s.rarest*inverseSqrt(inner2 + excess*t2);
+            const Lanes t2 = search.tx*search.tx + search.ty*search.ty;
+            const Lanes kappa = excess > 0 ? s.rarest*inverseSqrt(inner2 + excess*t2) : all(1);
             const Vector d = outOfFrame(axes.value, { kappa*search.tx, kappa*search.ty, all(1) });
             store(answers.where(good, d.x), dx, at);
             store(d.y, dy, at);
