@@ -66,6 +66,7 @@ public:
     const Plane& lastSurface() const { return last_; }
     //! The faces are not parallel: origins of rays are off the axis.
     bool isTilted() const { return isTilted_; }
+    const TiltedFaces& tilted() const { return tilted_; }
 
     //! The layers as the kernels see them; it lives as long as this object.
     const Stack& stack() const { return stack_; }

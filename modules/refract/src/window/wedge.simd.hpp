@@ -256,6 +256,7 @@ bool solveInWedge(const Stack& stack, const TiltedFaces& window, int n, const do
                   const double* pw, double* dx, double* dy, double* dz)
 {
     const int STEPS = 10;
+    const double MOST = 1e16;       // of t^2: what goes astray ends beyond, where every step is small
     const Stack s = stack;
     const Constants<9> axes(window.axes);
     const Face& last = window.faces[window.count - 1];
@@ -285,9 +286,9 @@ bool solveInWedge(const Stack& stack, const TiltedFaces& window, int n, const do
         }
         group.each([&](WedgeSearch& search, Part at)
         {
-            const Mask good = search.good & (leftBy(search) <= enoughFor(search));
             const double inner2 = s.inner*s.inner, excess = inner2 - s.rarest*s.rarest;
             const Lanes t2 = search.tx*search.tx + search.ty*search.ty;
+            const Mask good = search.good & (leftBy(search) <= enoughFor(search)) & (t2 < MOST);
             const Lanes kappa = excess > 0 ? s.rarest*inverseSqrt(inner2 + excess*t2) : all(1);
             const Vector d = outOfFrame(axes.value, { kappa*search.tx, kappa*search.ty, all(1) });
             store(answers.where(good, d.x), dx, at);

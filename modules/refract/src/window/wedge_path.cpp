@@ -9,7 +9,8 @@
     V = sum n_i |P_(i+1) - P_i|
 
 from the camera to X. As a sum of norms of affine maps of the P_i, V is convex: it has one minimum, which damped Newton steps reach
-from anywhere. The minimum is a path of light if it passes the faces in their order; if not, there is none. */
+from anywhere. The minimum is a path of light if it passes the faces in their order; if not, or if it is on the edge where two
+faces meet and V has no derivative, there is none. */
 
 namespace cv { namespace refract {
 
@@ -49,28 +50,21 @@ public:
         }
     }
 
+    /** Where faces meet, V has an edge, and short steps next to it may end anywhere. So it begins with a V that is round there,
+    by as much as a layer is thick, and becomes exact by tens. */
     bool minimise()
     {
-        const int STEPS = 200, MORE = 3;
-        const double NEAR = 1e-6;               // of the whole: from here on a step squares the error
-        const double size = norm(X_);
-        int near = 0;
-        for (int k = 0; k < STEPS && near < MORE; k++)
+        double thinnest = DBL_MAX;
+        for (int k = 1; k < window_.count; k++)
+            thinnest = std::min(thinnest, window_.faces[k].distance/window_.faces[k].byHeight
+                                          - window_.faces[k - 1].distance/window_.faces[k - 1].byHeight);
+        for (double part : { 1., 0.1, 0.01, 0.001 })
         {
-            const Mat gradient = gradientAt(points_, &hessian_);
-            Mat step;
-            if (!checkRange(gradient) || !solve(hessian_, -gradient, step, DECOMP_CHOLESKY))
-                return false;
-            const double slope = gradient.dot(step);
-            double part = 1;
-            std::vector<Vec3d> next = moved(step, part);
-            // V need not be asked, whose changes drown in rounding: it is convex, and too long a step climbs at its end.
-            for (int cut = 0; cut < 60 && norm(step)*part > NEAR*size && !(gradientAt(next, NULL).dot(step) <= -0.5*slope); cut++)
-                next = moved(step, part *= 0.5);
-            near += norm(step)*part <= NEAR*size;
-            points_ = next;
+            round_ = part*thinnest;
+            descend();
         }
-        return near == MORE;
+        round_ = 0;
+        return descend();
     }
 
     //! The optical vector in the medium that the path begins in, which the camera is in or, at a face through it, sees first.
@@ -78,31 +72,70 @@ public:
     bool beginsBehindFirstFace() const { return first_ == 1; }
 
 private:
+    bool descend()
+    {
+        const int STEPS = 200;
+        const double ROUNDING = 1e-9, DONE = 1e-16;     // of where the points are
+        const double TOLD = 1e-9, ENOUGH = 1e-4, LEAST = 1e-9;
+        double last = DBL_MAX;
+        for (int k = 0; k < STEPS; k++)
+        {
+            const Mat gradient = differentiate();
+            Mat step;
+            if (!checkRange(gradient) || !solve(hessian_, -gradient, step, DECOMP_CHOLESKY))
+                return false;
+            const double slope = gradient.dot(step), size = norm(points_.back()), here = lengthOf(points_);
+            double length = norm(step), part = 1;
+            std::vector<Vec3d> next = moved(step);
+            // At the end full steps converge, and changes of V drown in rounding.
+            for (; -slope > TOLD*size && part > LEAST && !(lengthOf(next) <= here + ENOUGH*part*slope); length *= 0.5)
+                next = moved(step*(part *= 0.5));
+            if (part <= LEAST)
+                return false;
+            points_ = next;
+            if (length <= DONE*size || (length <= ROUNDING*size && length >= 0.5*last))
+                return true;
+            last = length;
+        }
+        return false;
+    }
+
     double indexBefore(int face) const { return face > 0 ? window_.faces[face - 1].after : window_.inner; }
 
-    std::vector<Vec3d> moved(const Mat& step, double part) const
+    std::vector<Vec3d> moved(const Mat& step) const
     {
         std::vector<Vec3d> next = points_;
         for (size_t i = 0; i < next.size(); i++)
         {
             Vec3d u, v;
             axesOf(window_.faces[first_ + i], u, v);
-            next[i] += part*(step.at<double>(2*(int)i)*u + step.at<double>(2*(int)i + 1)*v);
+            next[i] += step.at<double>(2*(int)i)*u + step.at<double>(2*(int)i + 1)*v;
         }
         return next;
     }
 
-    //! By the points' two coordinates on their faces.
-    Mat gradientAt(const std::vector<Vec3d>& points, Mat* hessian) const
+    double lengthOf(const Vec3d& way) const { return std::sqrt(way.dot(way) + round_*round_); }
+
+    //! V less that of the straight way to a distant X.
+    double lengthOf(const std::vector<Vec3d>& points) const
     {
-        const int count = (int)points.size();
+        double sum = 0;
+        for (size_t i = 0; i < points.size(); i++)
+            sum += indexBefore(first_ + (int)i)*lengthOf(points[i] - (i > 0 ? points[i - 1] : Vec3d()));
+        const Vec3d& P = points.back();
+        return sum + window_.outer*P.dot(P - 2*X_)/(lengthOf(X_ - P) + lengthOf(X_));
+    }
+
+    //! V by the points' two coordinates on their faces: its gradient, and hessian_.
+    Mat differentiate()
+    {
+        const int count = (int)points_.size();
         Mat gradient = Mat::zeros(2*count, 1, CV_64F);
-        if (hessian)
-            *hessian = Mat::zeros(2*count, 2*count, CV_64F);
+        hessian_ = Mat::zeros(2*count, 2*count, CV_64F);
         for (int i = 0; i <= count; i++)        // from the point before to point i, the last being X
         {
-            const Vec3d way = (i < count ? points[i] : X_) - (i > 0 ? points[i - 1] : Vec3d());
-            const double n = i < count ? indexBefore(first_ + i) : window_.outer, length = norm(way);
+            const Vec3d way = (i < count ? points_[i] : X_) - (i > 0 ? points_[i - 1] : Vec3d());
+            const double n = i < count ? indexBefore(first_ + i) : window_.outer, length = lengthOf(way);
             const Vec3d along = way/length;
             Vec3d axes[4];
             for (int end = 0; end < 2; end++)
@@ -114,11 +147,11 @@ private:
                 if (row < 0 || row >= 2*count)
                     continue;
                 gradient.at<double>(row) += sign*n*along.dot(axes[a]);
-                for (int b = 0; b < 4 && hessian; b++)
+                for (int b = 0; b < 4; b++)
                 {
                     const int column = 2*(i - 1) + b;
                     if (column >= 0 && column < 2*count)
-                        hessian->at<double>(row, column) += sign*(b < 2 ? -1 : 1)*n/length
+                        hessian_.at<double>(row, column) += sign*(b < 2 ? -1 : 1)*n/length
                                                             *(axes[a].dot(axes[b]) - along.dot(axes[a])*along.dot(axes[b]));
                 }
             }
@@ -130,6 +163,7 @@ private:
     Vec3d X_;
     int first_;
     std::vector<Vec3d> points_;
+    double round_;              //!< lengths are sqrt(l^2 + round^2)
     Mat hessian_;
 };
 
@@ -170,7 +204,7 @@ uchar findWedgePath(const TiltedFaces& window, const Vec3d& X, double w, Vec3d& 
         return followInfinity(window, X, direction);
     ShortestPath path(window, X/w);
     if (!path.minimise())
-        return REFRACT_NOT_CONVERGED;
+        return REFRACT_BEHIND_WINDOW;       // it ends at an edge where faces meet
     direction = path.start();
     if (path.beginsBehindFirstFace() && !passFace(window.faces[0], false, direction))
         return REFRACT_TOTAL_REFLECTION;
