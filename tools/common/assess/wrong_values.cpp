@@ -28,6 +28,8 @@ GlassWindow onePane(const GlassWindow& window)
     pane.thickness = {thickness};
     pane.index = {window.outerIndex/(1. - shift/thickness)};
     pane.materials.clear();
+    if (!window.wedge.empty())
+        pane.wedge = {std::accumulate(window.wedge.begin(), window.wedge.end(), cv::Vec2d())};
     return pane;
 }
 

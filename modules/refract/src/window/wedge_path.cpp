@@ -27,6 +27,25 @@ bool passFace(const Face& face, bool outwards, Vec3d& p)
     return c > 0 && other2 > 0;
 }
 
+/** From a direction p at the camera to the point P on the last face and the optical vector p behind it.
+@return whether light gets there; if not, why */
+uchar traceFaces(const TiltedFaces& window, Vec3d& P, Vec3d& p)
+{
+    P = Vec3d();
+    p = window.inner*normalize(p);
+    for (int k = 0; k < window.count; k++)
+    {
+        const Face& face = window.faces[k];
+        const double c = normalOf(face).dot(p), s = (face.distance - normalOf(face).dot(P))/c;
+        if (!(c > 0 && s >= 0))
+            return REFRACT_BEHIND_WINDOW;
+        P += s*p;
+        if (!passFace(face, true, p))
+            return REFRACT_TOTAL_REFLECTION;
+    }
+    return REFRACT_OK;
+}
+
 //! Two unit vectors in the plane of a face.
 void axesOf(const Face& face, Vec3d& u, Vec3d& v)
 {
@@ -52,7 +71,7 @@ public:
 
     /** Where faces meet, V has an edge, and short steps next to it may end anywhere. So it begins with a V that is round there,
     by as much as a layer is thick, and becomes exact by tens. */
-    bool minimise()
+    void minimise()
     {
         double thinnest = DBL_MAX;
         for (int k = 1; k < window_.count; k++)
@@ -64,7 +83,7 @@ public:
             descend();
         }
         round_ = 0;
-        return descend();
+        descend();
     }
 
     //! The optical vector in the medium that the path begins in, which the camera is in or, at a face through it, sees first.
@@ -72,7 +91,7 @@ public:
     bool beginsBehindFirstFace() const { return first_ == 1; }
 
 private:
-    bool descend()
+    void descend()
     {
         const int STEPS = 200;
         const double ROUNDING = 1e-9, DONE = 1e-16;     // of where the points are
@@ -83,7 +102,7 @@ private:
             const Mat gradient = differentiate();
             Mat step;
             if (!checkRange(gradient) || !solve(hessian_, -gradient, step, DECOMP_CHOLESKY))
-                return false;
+                return;
             const double slope = gradient.dot(step), size = norm(points_.back()), here = lengthOf(points_);
             double length = norm(step), part = 1;
             std::vector<Vec3d> next = moved(step);
@@ -91,13 +110,12 @@ private:
             for (; -slope > TOLD*size && part > LEAST && !(lengthOf(next) <= here + ENOUGH*part*slope); length *= 0.5)
                 next = moved(step*(part *= 0.5));
             if (part <= LEAST)
-                return false;
+                return;
             points_ = next;
             if (length <= DONE*size || (length <= ROUNDING*size && length >= 0.5*last))
-                return true;
+                return;
             last = length;
         }
-        return false;
     }
 
     double indexBefore(int face) const { return face > 0 ? window_.faces[face - 1].after : window_.inner; }
@@ -181,18 +199,8 @@ uchar followInfinity(const TiltedFaces& window, const Vec3d& X, Vec3d& direction
 
 uchar statusOfDirection(const TiltedFaces& window, const Vec3d& direction)
 {
-    Vec3d p = window.inner*normalize(direction), P;
-    for (int k = 0; k < window.count; k++)
-    {
-        const Face& face = window.faces[k];
-        const double c = normalOf(face).dot(p), s = (face.distance - normalOf(face).dot(P))/c;
-        if (!(c > 0 && s >= 0))
-            return REFRACT_BEHIND_WINDOW;
-        P += s*p;
-        if (!passFace(face, true, p))
-            return REFRACT_TOTAL_REFLECTION;
-    }
-    return REFRACT_OK;
+    Vec3d p = direction, P;
+    return traceFaces(window, P, p);
 }
 
 uchar findWedgePath(const TiltedFaces& window, const Vec3d& X, double w, Vec3d& direction)
@@ -203,12 +211,16 @@ uchar findWedgePath(const TiltedFaces& window, const Vec3d& X, double w, Vec3d& 
     if (w == 0)
         return followInfinity(window, X, direction);
     ShortestPath path(window, X/w);
-    if (!path.minimise())
-        return REFRACT_BEHIND_WINDOW;       // it ends at an edge where faces meet
+    path.minimise();
     direction = path.start();
     if (path.beginsBehindFirstFace() && !passFace(window.faces[0], false, direction))
         return REFRACT_TOTAL_REFLECTION;
-    return statusOfDirection(window, direction);
+    // The shortest way may go round an edge where faces meet: then no ray of light does.
+    const double NEAR = 1e-9;
+    Vec3d P, p = direction;
+    const uchar status = traceFaces(window, P, p);
+    const Vec3d way = X/w - P;
+    return status != REFRACT_OK || norm(way.cross(p)) <= NEAR*window.outer*norm(X/w) ? status : (uchar)REFRACT_BEHIND_WINDOW;
 }
 
 }} // namespace
