@@ -184,7 +184,8 @@ TEST_CASE("A wedge of 0 is no wedge, to the last bit", "[wedge]")
         const GlassWindow parallel = makeWindow(kind, random);
         GlassWindow wedged = parallel;
         wedged.wedge.assign(parallel.thickness.size(), Vec2d());
-        const Ptr<RefractiveCamera> a = makeCamera(lensNamed("5 coefficients"), parallel), b = makeCamera(lensNamed("5 coefficients"), wedged);
+        const Ptr<RefractiveCamera> a = makeCamera(lensNamed("5 coefficients"), parallel);
+        const Ptr<RefractiveCamera> b = makeCamera(lensNamed("5 coefficients"), wedged);
         std::vector<Vec3d> points;
         std::vector<Vec2d> pixels;
         for (int i = 0; i < 200; i++)

@@ -6,6 +6,7 @@
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include <set>
+#include <numeric>
 
 using namespace cv::refract;
 
@@ -29,7 +30,7 @@ GlassWindow onePane(const GlassWindow& window)
     pane.index = {window.outerIndex/(1. - shift/thickness)};
     pane.materials.clear();
     if (!window.wedge.empty())
-        pane.wedge = {std::accumulate(window.wedge.begin(), window.wedge.end(), cv::Vec2d())};
+        pane.wedge.assign(1, std::accumulate(window.wedge.begin(), window.wedge.end(), cv::Vec2d()));
     return pane;
 }
 

@@ -462,7 +462,8 @@ CV_EXPORTS_W void refractiveProjectPoints(InputArray objectPoints, InputArray rv
 @param status Nx1 CV_8U.
 @param jacobian 2N x (6 + lens + window) CV_64F, rows u, v of each point; columns rvec (3), tvec (3), lens parameters
 (fx, fy, cx, cy, coefficients as given), normal (3, of the unnormalised vector: orthogonal to n), distance,
-thickness of each layer, index of each layer, innerIndex, outerIndex. NaN where status is not 0.
+thickness of each layer, index of each layer, innerIndex, outerIndex and, where the window has one, wedge of each layer (2).
+NaN where status is not 0.
 */
 CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
         InputArray objectPoints, InputArray rvec, InputArray tvec, const Ptr<RefractiveCamera>& camera,
@@ -1162,7 +1163,7 @@ CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOf
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
-refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex); 0 where fixed.
+refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex, wedge); 0 where fixed.
 @param covariance PxP CV_64F in the same order, scaled by the residuals.
 @param perViewErrors Vx2 CV_64F: RMS of each view direct and through the window; NaN where there is none.
 @param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, direct before refracted;

@@ -628,8 +628,8 @@ void distanceDerivatives(const CurveMotion& given, int n, const double* px, cons
 }
 
 constexpr PointKernels pointTable = {
-    transform, multiples, pinhole, meetPlane, meetPlaneOffAxis, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, meetRays,
-    gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
+    transform, multiples, pinhole, meetPlane, meetPlaneOffAxis, chordRoots, areClose, chainLinear, interpolate, interpolateSurface,
+    meetRays, gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
 };
 
 }}} // namespace
