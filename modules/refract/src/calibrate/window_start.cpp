@@ -300,7 +300,7 @@ GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
 {
     const Extrinsics a(from), b(to);
     const WindowTransfer transfer(window.normal, window.distance, a, b);
-    if (!window.wedge.empty())
+    if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
     {
         const Matx33d R = b.rotation.R*a.rotation.R.t();
         const std::vector<double> given = window.thickness;
