@@ -14,6 +14,8 @@ namespace bench {
 
 //! Arrays of points through one camera.
 void addPointRows(std::vector<Row>& rows, int count);
+//! The same through faces that are not parallel.
+void addWedgeRows(std::vector<Row>& rows, int count);
 //! A splined lens; none without mrcal.
 void addSplinedRows(std::vector<Row>& rows, int count);
 //! Two cameras: triangulation, epipolar curves.

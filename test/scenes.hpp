@@ -53,12 +53,12 @@ private:
 // ---- windows
 
 enum WindowKind { NO_WINDOW, PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS, WATER_GLASS_AIR,
-                  DOUBLE_GLAZING_IN_WATER, WINDOW_KINDS };
+                  DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER, WINDOW_KINDS };
 
 inline const char* name(WindowKind kind)
 {
     static const char* names[] = { "no window", "pane in air", "laminate", "air-glass-water", "bare water",
-                                   "glass on the lens", "water-glass-air", "double glazing in water" };
+                                   "glass on the lens", "water-glass-air", "double glazing in water", "wedge in air", "wedges in water" };
     return names[kind];
 }
 
@@ -90,8 +90,12 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
     case WATER_GLASS_AIR: layer(12, 1.5); w.innerIndex = 1.333; break;
     case DOUBLE_GLAZING_IN_WATER:
         layer(5, 1.52); layer(10, 1.02); layer(5, 1.52); w.innerIndex = w.outerIndex = 1.333; break;
+    case WEDGE_IN_WATER: layer(12, 1.49); layer(5, 1.4); w.outerIndex = 1.333; break;
     default: layer(20, 1.5437); break;
     }
+    if (kind == WEDGE_IN_AIR || kind == WEDGE_IN_WATER)
+        for (size_t i = 0; i < w.thickness.size(); i++)
+            w.wedge.push_back(cv::Vec2d(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01)));
     return w;
 }
 
@@ -100,6 +104,14 @@ inline std::vector<WindowKind> allWindows()
     std::vector<WindowKind> kinds;
     for (int k = 0; k < WINDOW_KINDS; k++)
         kinds.push_back((WindowKind)k);
+    return kinds;
+}
+
+//! Those whose faces are parallel.
+inline std::vector<WindowKind> parallelWindows()
+{
+    std::vector<WindowKind> kinds = allWindows();
+    kinds.resize(WEDGE_IN_AIR);
     return kinds;
 }
 

@@ -39,7 +39,7 @@ static std::string whyNot(const CalibrationScene& scene, bool paired, const Ptr<
 TEST_CASE("Perfect data give the window back, with pairs and without, for every kind", "[calibrate_glass]")
 {
     for (WindowKind kind : { PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS, WATER_GLASS_AIR,
-                             DOUBLE_GLAZING_IN_WATER })
+                             DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER })
         for (bool paired : { true, false })
         {
             Random random(300 + kind);
@@ -52,6 +52,7 @@ TEST_CASE("Perfect data give the window back, with pairs and without, for every 
             CHECK(found->window().distance == camera->window().distance);
             CHECK(found->window().thickness == camera->window().thickness);
             CHECK(found->window().index == camera->window().index);
+            CHECK(found->window().wedge == camera->window().wedge);
         }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "rig_scenes.hpp"
+#include "window/wedge.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -151,6 +152,23 @@ TEST_CASE("One pane for both cameras", "[stereo_glass]")
         StereoRig found = withWindows(truth, window, GlassWindow());
         CHECK(calibrate(scene, found, GLASS_SHARED_WINDOW) < 1e-6);
         check(found);
+    }
+    SECTION("whose faces are not parallel, by so much as is given")
+    {
+        window.wedge.push_back(Vec2d(2e-3, -1e-3));
+        truth.camera1->setWindow(window);
+        truth.camera2->setWindow(windowInFrame(window, truth.R, truth.T));
+        const StereoScene scene = makeStereoScene(truth, 6, random, 0);
+        const GlassWindow given = window;
+        window.normal = Vec3d(0, 0, 1);
+        StereoRig found = withWindows(truth, window, GlassWindow());
+        CHECK(calibrate(scene, found, GLASS_SHARED_WINDOW) < 1e-6);
+        CHECK(normalError(found, truth) < 1e-4);
+        CHECK(found.camera1->window().wedge == given.wedge);
+        const GlassWindow second = found.camera2->window(), expected = truth.camera2->window();
+        CHECK(std::abs(expected.thickness[0] - 12) > 0.05);         // along an axis of its own
+        CHECK(std::abs(second.thickness[0] - expected.thickness[0]) < 1e-5);
+        CHECK(norm(second.wedge[0] - expected.wedge[0]) < 1e-8);
     }
     SECTION("before water, distance free, with R and T")
     {

@@ -18,10 +18,9 @@ struct Ray { double tau; Vec3d direction; uchar status; };
 
 Ray traceOut(const Layers& layers, const Vec3d& w, uchar status = REFRACT_OK)
 {
-    Ray ray = { 0, Vec3d(), status };
-    layers.traceOut(1, &w[0], &w[1], &w[2], &ray.tau, &ray.direction[0], &ray.direction[1], &ray.direction[2],
-                    &ray.status);
-    return ray;
+    Rays rays;
+    layers.traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+    return { rays.tau[0], rays.direction(0), status };
 }
 
 uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction, uchar status = REFRACT_OK)
@@ -37,7 +36,7 @@ uchar solveInJacobian(const Layers& layers, const Vec3d& X, Vec3d& direction, do
     double ratio = 0;
     layers.solveIn(1, &X[0], &X[1], &X[2], nullptr, &direction[0], &direction[1], &direction[2], &status, &ratio);
     Matx33d identity = Matx33d::eye();
-    layers.chain(3, 1, &X[0], &X[1], &X[2], &ratio, { identity.val, 3, 1 }, { dX, 3, 1 },
+    layers.chain(3, 1, &X[0], &X[1], &X[2], &direction[0], &direction[1], &direction[2], &ratio, { identity.val, 3, 1 }, { dX, 3, 1 },
                  { dWindow, layers.at().count, 1 });
     return status;
 }
@@ -110,7 +109,7 @@ TEST_CASE("A pane in air shifts rays the same at any distance", "[layers]")
 
 TEST_CASE("traceOut agrees with Snell's law surface by surface", "[layers]")
 {
-    const WindowKind kind = GENERATE(from_range(allWindows()));
+    const WindowKind kind = GENERATE(from_range(parallelWindows()));
     CAPTURE(name(kind), seed());
     Random random(kind);
     int seen = 0, reflected = 0;
@@ -145,7 +144,7 @@ TEST_CASE("traceOut agrees with Snell's law surface by surface", "[layers]")
 
 TEST_CASE("solveIn returns the direction that traceOut came from", "[layers]")
 {
-    const WindowKind kind = GENERATE(from_range(allWindows()));
+    const WindowKind kind = GENERATE(from_range(parallelWindows()));
     CAPTURE(name(kind), seed());
     Random random(kind);
     for (int i = 0; i < 5000; i++)
@@ -172,7 +171,7 @@ TEST_CASE("solveIn returns the direction that traceOut came from", "[layers]")
 
 TEST_CASE("Infinitely far points keep or refract their direction by Snell's law alone", "[layers]")
 {
-    const WindowKind kind = GENERATE(from_range(allWindows()));
+    const WindowKind kind = GENERATE(from_range(parallelWindows()));
     CAPTURE(name(kind), seed());
     Random random(kind);
     for (int i = 0; i < 300; i++)

@@ -34,7 +34,7 @@ int indexOf(const std::vector<String>& names, const String& name)
 TEST_CASE("Each parameter of a window stands where its name does", "[parameters]")
 {
     const GlassWindow window = laminate();
-    const std::vector<String> names = windowParameterNames(3);
+    const std::vector<String> names = windowParameterNames(windowLayout(3));
     const std::vector<double> p = windowParameters(window);
     REQUIRE(names.size() == p.size());
     CHECK(p[indexOf(names, "normal[1]")] == window.normal[1]);
@@ -64,13 +64,13 @@ TEST_CASE("Each parameter of a window stands where its name does", "[parameters]
 
 TEST_CASE("Flags free what they name, and nothing else", "[parameters]")
 {
-    const std::vector<String> names = windowParameterNames(3);
+    const std::vector<String> names = windowParameterNames(windowLayout(3));
     const struct { int flag; const char* name; } cases[] = {
         { 0, "normal" }, { GLASS_FREE_DISTANCE, "distance" }, { GLASS_FREE_THICKNESS, "thickness" },
         { GLASS_FREE_INDEX, "index" }, { GLASS_FREE_OUTER_INDEX, "outerIndex" } };
     for (const auto& c : cases)
     {
-        const std::vector<bool> isFree = freeWindowParameters(3, c.flag);
+        const std::vector<bool> isFree = freeWindowParameters(windowLayout(3), c.flag);
         for (size_t i = 0; i < names.size(); i++)
         {
             CAPTURE(c.name, names[i]);

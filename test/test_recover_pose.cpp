@@ -21,14 +21,19 @@ struct Matched
     std::vector<uchar> isRight;
 };
 
-enum SceneMedium { NOTHING, AIR, WATER };
+enum SceneMedium { NOTHING, AIR, WATER, WEDGE };      // WEDGE: water, and faces that are not parallel
 
 GlassWindow windowIn(SceneMedium medium, bool second)
 {
     if (medium == NOTHING)
         return GlassWindow();
     const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : paper::NORMAL1;
-    return medium == AIR ? paper::pane(50, normal) : GlassWindow(normal, 15, 1.49, 60, 1.333);
+    if (medium == AIR)
+        return paper::pane(50, normal);
+    GlassWindow window(normal, 15, 1.49, 60, 1.333);
+    if (medium == WEDGE)
+        window.wedge.push_back(second ? Vec2d(0.03, 0.01) : Vec2d(-0.02, 0.02));
+    return window;
 }
 
 enum Scene { DEEP, FLAT };
@@ -150,7 +155,7 @@ struct Tally
 
 TEST_CASE("Perfect matches give the perfect pose, its length too", "[pose][recover]")
 {
-    for (SceneMedium medium : { NOTHING, AIR, WATER })
+    for (SceneMedium medium : { NOTHING, AIR, WATER, WEDGE })
     {
         Random random(6000);
         Matched m = matchedScene(medium, random, 60);
@@ -253,17 +258,30 @@ TEST_CASE("Intervals of short baselines hold what they say", "[.monte-carlo]")
 
 TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
 {
+    const SceneMedium medium = GENERATE(WATER, WEDGE);
     Random random(6950);
-    const Matched m = matchedScene(WATER, random, 40);
+    const Matched m = matchedScene(medium, random, 40);
     const Camera &c1 = cameraOf(m.camera1), &c2 = cameraOf(m.camera2);
+    const MatchedCameras pair = { c1, c2, Vec3d(), Vec3d() };
     std::vector<Point2d> moved = m.perfect2;
+    {
+        const std::vector<PixelRay> rays1 = pixelRays(c1, m.perfect1), rays2 = pixelRays(c2, m.perfect2);
+        PixelMatches perfect;
+        RigidMotion truth;
+        std::vector<double> errors;
+        for (size_t i = 0; i < moved.size(); i++)
+            perfect.push_back({ m.perfect1[i], moved[i], rays1[i], rays2[i] });
+        Rodrigues(m.rvec, truth.R);
+        truth.t = m.T;
+        sampsonErrors(pair, perfect, truth, errors, nullptr);
+        CHECK(norm(errors, NORM_INF) < 1e-9);
+    }
     for (Point2d& p : moved)
         p += Point2d(random.normal(3), random.normal(3));
     const std::vector<PixelRay> rays1 = pixelRays(c1, m.perfect1), rays2 = pixelRays(c2, moved);
     PixelMatches matches;
     for (size_t i = 0; i < moved.size(); i++)
         matches.push_back({ m.perfect1[i], moved[i], rays1[i], rays2[i] });
-    const MatchedCameras pair = { c1, c2, Vec3d(), Vec3d() };
     const auto at = [&](const Vec3d& rvec, const Vec3d& T, std::vector<Matx16d>* byPose)
     {
         RigidMotion motion;

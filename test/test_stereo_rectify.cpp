@@ -78,7 +78,23 @@ StereoRig mixed()
              turned(Vec3d(-0.1, 0.03, 0.02)), Vec3d(4, -160, 10), Size(1280, 960), Vec2d(500, 2000) };
 }
 
-std::vector<StereoRig> allRigs() { return { paperRig(), aquarium(), housings(), mixed() }; }
+//! The same two housings, their ports prisms of more than a degree.
+StereoRig wedgedHousings()
+{
+    StereoRig rig = housings();
+    rig.name = "housings with wedges";
+    int sign = 1;
+    for (const Ptr<RefractiveCamera>& camera : { rig.camera1, rig.camera2 })
+    {
+        GlassWindow window = camera->window();
+        window.wedge.push_back(Vec2d(0.02*sign, 0.01));
+        camera->setWindow(window);
+        sign = -sign;
+    }
+    return rig;
+}
+
+std::vector<StereoRig> allRigs() { return { paperRig(), aquarium(), housings(), mixed(), wedgedHousings() }; }
 
 struct Rectified
 {

@@ -18,7 +18,8 @@ if _cv2 is not None and not hasattr(_cv2, "refract"):   # an OpenCV that was bui
     _cv2.refract = _sys.modules["cv2.refract"] = _sys.modules[__name__]
 
 # For pickle, copy and multiprocessing.
-_WINDOW_FIELDS = ("normal", "distance", "thickness", "index", "innerIndex", "outerIndex", "wavelength", "materials")
+_WINDOW_FIELDS = ("normal", "distance", "thickness", "index", "innerIndex", "outerIndex", "wedge", "wavelength",
+                  "materials")
 
 
 def _window_of(*values):

@@ -53,6 +53,27 @@ def test_a_wrong_field_is_named(field, value):
         refract.RefractiveCamera.create(K, None, window)
 
 
+def test_faces_that_are_not_parallel():
+    window = refract.GlassWindow((0., 0., 1.), 20., 1.5, distance=50.)
+    assert len(window.wedge) == 0
+    for wedge in ([(1e-3, -2e-3)], ((1e-3, -2e-3),), np.array([[1e-3, -2e-3]])):
+        window.wedge = wedge
+        assert [tuple(pair) for pair in window.wedge] == [(1e-3, -2e-3)]
+    camera = refract.RefractiveCamera.create(K, None, window)
+    assert camera.parameterNames()[-2:] == ("wedge[0][0]", "wedge[0][1]")
+    assert [tuple(pair) for pair in copy.deepcopy(camera).window().wedge] == [(1e-3, -2e-3)]
+    assert [tuple(pair) for pair in pickle.loads(pickle.dumps(window)).wedge] == [(1e-3, -2e-3)]
+    X = np.array([[80., -60., 700.], [0., 0., 600.]])
+    pixels, status = refract.refractiveProjectPoints(X, np.zeros(3), np.zeros(3), camera)
+    origins, directions, status = refract.refractiveUnprojectPoints(pixels, camera)
+    offset = X - np.asarray(origins).reshape(-1, 3)
+    np.testing.assert_allclose(np.cross(offset, np.asarray(directions).reshape(-1, 3)), 0., atol=1e-10)
+    assert np.abs(np.asarray(origins).reshape(-1, 3)[:, :2]).max() > 1e-3      # off the axis
+    window.wedge = [(2., 0.)]
+    with pytest.raises(refract.error, match="wedge"):
+        window.check()
+
+
 def test_wrong_types_are_refused():
     with pytest.raises((TypeError, refract.error)):
         refract.GlassWindow("normal", 20., 1.5)

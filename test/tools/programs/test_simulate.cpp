@@ -68,6 +68,29 @@ const char* const SCENE_SETS = "   direct: { window: 0, scene: 1 }\n   glass: { 
 
 } // namespace
 
+TEST_CASE("a window whose faces are not parallel is rendered, measured through, and kept in files", "[tools][simulate][wedge]")
+{
+    const TemporaryFolder folder;
+    const std::string parallel = scene(CHESSBOARD, "   glass: { window: 1, poses: [ fixed ] }\n"), end = "outer_index: 1.";
+    std::string rig = parallel;
+    rig.replace(rig.find(end), end.size(), end + ", wedge: [ [ 0.02, -0.01 ] ]");
+    writeFile(folder / "rig.yml", rig);
+    writeFile(folder / "parallel.yml", parallel);
+    REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out")).code == 0);
+    REQUIRE(runTool("refract_simulate " + (folder / "parallel.yml") + " --out-dir=" + (folder / "without")).code == 0);
+    CHECK(readFile(folder / "out/truth.yml").find("wedge:") != std::string::npos);
+    CHECK(readFile(folder / "without/truth.yml").find("wedge") == std::string::npos);
+    const auto truth = readTruth(folder / "out"), other = readTruth(folder / "without");
+    const std::string name = "glass/fixed1.png";
+    REQUIRE(runTool("refract_measure " + (folder / "out/truth.yml") + " " + (folder / "out/") + name + " --size=6x5 --square=39 --out="
+                    + (folder / "points.csv")).code == 0);
+    for (const CsvRow& row : readPointsCsv(readFile(folder / "points.csv")))
+    {
+        CHECK(cv::norm(row.pixel1 - truth.at(name).pixels[row.id]) < 0.2);
+        CHECK(cv::norm(other.at(name).pixels[row.id] - truth.at(name).pixels[row.id]) > 5.);
+    }
+}
+
 TEST_CASE("rendered targets are found where the truth says, numbered alike however they are turned", "[tools][simulate]")
 {
     struct Kind { std::string target, options; int count; bool turned; double limit; };

@@ -6,26 +6,20 @@
 
 #include <opencv2/refract.hpp>
 
-/* A window whose faces are not quite parallel, as a perturbation of one whose faces are: the model that is calibrated and
-measured with knows no wedge, so this says what a wedge that is there would do to it. */
+/* A wedge that a window has and its calibration does not know: what it would do to the images. */
 namespace tools {
 
-//! How the outermost surface of a window lies to the others.
+//! How the outermost surface of a window lies, against where it is thought to be.
 struct Wedge
 {
-    cv::Vec3d tilt;         //!< tangent to the normal n: the surface's normal is n + tilt
+    cv::Vec3d tilt;         //!< tangent to the normal n: the surface's normal is, to first order, n + tilt
     double lift = 0.;       //!< of the surface's point on the axis through the centre of projection, along n
 };
 
-/** Where the outgoing rays of pixels meet planes z = const, traced surface by surface.
-@param z of each point.
-@return NaN where there is no such point. */
-std::vector<cv::Point3d> traceWedge(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
-                                    const std::vector<cv::Point2d>& pixels, const Wedge& wedge,
-                                    const std::vector<double>& z);
+//! The window as it is; it has layers.
+cv::refract::GlassWindow withWedge(cv::refract::GlassWindow window, const Wedge& wedge);
 
-/** How far the wedge moves the images of points: to first order in the tilt, as the ray through the unmoved pixel is traced
-and its miss is carried back to the image.
+/** How far the wedge moves the images of points.
 @param points camera frame. */
 std::vector<cv::Point2d> wedgeShift(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
                                     const std::vector<cv::Point3d>& points, const Wedge& wedge);

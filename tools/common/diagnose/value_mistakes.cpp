@@ -5,6 +5,7 @@
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
+#include <numeric>
 
 using namespace cv::refract;
 
@@ -27,6 +28,8 @@ GlassWindow onePane(const GlassWindow& window)
     pane.thickness = {thickness};
     pane.index = {window.outerIndex/(1. - shift/thickness)};
     pane.materials.clear();
+    if (!window.wedge.empty())
+        pane.wedge.assign(1, std::accumulate(window.wedge.begin(), window.wedge.end(), cv::Vec2d()));
     return pane;
 }
 

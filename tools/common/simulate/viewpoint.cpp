@@ -15,13 +15,25 @@ using cv::refract::GlassWindow;
 
 namespace {
 
-//! From the centre of projection to the last surface, along the normal; no window has none.
-double lastSurface(const GlassWindow& w)
+//! The last surface of a window, as normal.X = distance; no window has none.
+struct LastSurface
 {
-    if (w.thickness.empty() && w.innerIndex == w.outerIndex)
-        return -std::numeric_limits<double>::infinity();
-    return std::accumulate(w.thickness.begin(), w.thickness.end(), w.distance);
-}
+    explicit LastSurface(const GlassWindow& w)
+        : normal(w.normal), distance(std::accumulate(w.thickness.begin(), w.thickness.end(), w.distance))
+    {
+        if (w.thickness.empty() && w.innerIndex == w.outerIndex)
+            distance = -std::numeric_limits<double>::infinity();
+        const cv::Vec2d lean = std::accumulate(w.wedge.begin(), w.wedge.end(), cv::Vec2d());
+        const double angle = cv::norm(lean);
+        if (angle == 0)
+            return;
+        const Vec3d n = w.normal, e1 = cv::normalize(Vec3d(1, 0, 0) - n[0]*n), e2 = n.cross(e1);
+        normal = std::cos(angle)*n + std::sin(angle)/angle*(lean[0]*e1 + lean[1]*e2);
+        distance *= std::cos(angle);
+    }
+    Vec3d normal;
+    double distance;
+};
 
 } // namespace
 
@@ -29,16 +41,15 @@ std::vector<SceneRay> raysOf(const std::vector<Point2d>& pixels, const Viewpoint
 {
     std::vector<cv::Point3d> origins, directions;
     cv::refract::refractiveUnprojectPoints(pixels, origins, directions, view.camera);
-    const GlassWindow window = view.camera->window();
-    const double last = lastSurface(window);
+    const LastSurface last(view.camera->window());
     const cv::Matx33d back = view.R.t();
     std::vector<SceneRay> rays;
     rays.reserve(pixels.size());
     for (size_t i = 0; i < pixels.size(); i++)
     {
-        // The origin is not where light is, but where the line of the ray meets the window's axis.
+        // The origin is not where light is, but where the line of the ray meets the window's axis, or nearly does.
         const Vec3d origin(origins[i]), direction(directions[i]);
-        const double leaving = (last - window.normal.dot(origin))/window.normal.dot(direction);
+        const double leaving = (last.distance - last.normal.dot(origin))/last.normal.dot(direction);
         rays.push_back({back*(origin - view.T), back*direction, std::max(leaving, 0.)});
     }
     return rays;

@@ -29,6 +29,7 @@ without a window.
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
+  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
@@ -48,6 +49,10 @@ Let n be the unit normal, w the inner direction and c = n.w. By Snell's law \f$p
 in all layers. With \f$q_i = \sqrt{n_i^2 - p^2}\f$ the outgoing ray meets the axis at
 \f[ \tau(p) = \sum_i h_i \left(1 - q_{out}/q_i\right) \f]
 (inner gap and all layers). For one pane in air this is equations (12) and (16) of @cite Plate2024.
+
+Faces that are not parallel (GlassWindow::wedge) have unit normals m_i of their own. With the optical vector
+\f$p_i = n_i w_i\f$ of each medium, light goes out by \f$p_{i+1} = p_i + \gamma_i m_i\f$ (Snell's law in vector form);
+the path from a point to the camera is the one of least optical length.
 
 @{
     @defgroup refract_camera Windows and cameras
@@ -161,6 +166,17 @@ enum GlassImageStatus {
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
+Faces that are not quite parallel have a `wedge`. A commercial pane is sold with up to 3 arc minutes, tempered plate with no
+figure at all; at range z a wedge d looks like a tilt of the pane by index z d/thickness.
+
+The first face has `normal`. With e1, the camera's x axis made orthogonal to the normal, and e2 = normal x e1, the outer face of
+layer i leans by the sum W = wedge[0] + ... + wedge[i] against the first one: its normal is the first one's, turned by the angle
+|W| in the direction W1 e1 + W2 e2,
+\f[ m = \cos|W|\,n + \frac{\sin|W|}{|W|}\,(W_1 e_1 + W_2 e_2) \f]
+so that neither the order of the two components nor that of the layers matters. A positive component turns the normal of the
+outer face towards its axis: the layer gets thinner there. Thickness is measured along the normal through the centre
+of projection. Where two faces meet before the light has passed both, there is no answer.
+
 The indices are those of one colour of light. Where `materials` says what the media are, atWavelength() is the same window in
 another colour: of water 3 to 6 px between blue and red at the edge of a wide port.
 */
@@ -186,6 +202,9 @@ public:
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
+    /** Of each layer: how much its outer face leans against its inner one, radians about 0 along e1 and e2, see above.
+    Empty: all faces are parallel. */
+    CV_PROP_RW std::vector<Vec2d> wedge;
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
     /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex
     takes it; an empty one has an index that does not change. Empty: not known. */
@@ -346,7 +365,8 @@ file.
     /** @brief Throws as GlassWindow::check() does. */
     CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
-    //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex".
+    //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex"
+    //! and, of a window whose `wedge` is not empty, "wedge[0][0]", "wedge[0][1]", "wedge[1][0]", ...
     CV_WRAP virtual std::vector<String> parameterNames() const = 0;
     //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the
     //! jacobian's columns, Nx1 CV_64F.
@@ -445,7 +465,8 @@ CV_EXPORTS_W void refractiveProjectPoints(InputArray objectPoints, InputArray rv
 @param status Nx1 CV_8U.
 @param jacobian 2N x (6 + lens + window) CV_64F, rows u, v of each point; columns rvec (3), tvec (3), lens parameters
 (fx, fy, cx, cy, coefficients as given), normal (3, of the unnormalised vector: orthogonal to n), distance,
-thickness of each layer, index of each layer, innerIndex, outerIndex. NaN where status is not 0.
+thickness of each layer, index of each layer, innerIndex, outerIndex and, where the window has one, wedge of each layer (2).
+NaN where status is not 0.
 */
 CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
         InputArray objectPoints, InputArray rvec, InputArray tvec, const Ptr<RefractiveCamera>& camera,
@@ -471,7 +492,8 @@ CV_EXPORTS_W void refractiveSplineWeights(InputArray objectPoints, InputArray rv
 
 /** @brief Rays of pixels in the scene. Closed form, except for the lens.
 @param imagePoints N raw pixels.
-@param origins N points on the window's axis, camera coordinates: tau * normal.
+@param origins N points of the rays, camera coordinates: on the window's axis, tau * normal; near it behind a window with a
+wedge.
 @param directions N unit vectors in the outer medium, camera coordinates.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
@@ -1146,7 +1168,7 @@ CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOf
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
-refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex); 0 where fixed.
+refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex, wedge); 0 where fixed.
 @param covariance PxP CV_64F in the same order, scaled by the residuals.
 @param perViewErrors Vx2 CV_64F: RMS of each view direct and through the window; NaN where there is none.
 @param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, direct before refracted;

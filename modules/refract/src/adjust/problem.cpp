@@ -86,7 +86,7 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     const WindowLayout& at = camera.layers().at();
     const std::vector<double> all = camera.parameters();
     const std::vector<String> names = camera.parameterNames();
-    const std::vector<bool> isFree = freeWindowParameters(at.layers, flags);
+    const std::vector<bool> isFree = freeWindowParameters(at, flags);
     const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free, bool mayHavePrior)
     {
         const int size = (int)free.size();

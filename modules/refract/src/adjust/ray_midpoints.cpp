@@ -61,7 +61,8 @@ void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& p
     for (int begin = 0; begin < (int)points.pixel.size(); begin += BLOCK)
     {
         const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
-        double u[BLOCK], v[BLOCK], tau[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK];
+        double u[BLOCK], v[BLOCK];
+        Rays rays;
         uchar status[BLOCK];
         for (int k = 0; k < n; k++)
         {
@@ -69,11 +70,11 @@ void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& p
             v[k] = points.pixel[begin + k].y;
             status[k] = REFRACT_OK;
         }
-        camera.unproject(n, u, v, tau, x, y, z, status);
+        camera.unproject(n, u, v, rays, status);
         for (int k = 0; k < n; k++)
             if (status[k] == REFRACT_OK && (isUsed.empty() || isUsed[begin + k]))
-                sums[points.index[begin + k]].add(place.R.t()*(tau[k]*normal - place.t),
-                                                      place.R.t()*Vec3d(x[k], y[k], z[k]));
+                sums[points.index[begin + k]].add(place.R.t()*(rays.origin(k, normal) - place.t),
+                                                  place.R.t()*rays.direction(k));
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "adjust/rig_camera.hpp"
 #include "window/parameters.hpp"
+#include "window/wedge.hpp"
 
 namespace cv { namespace refract {
 
@@ -72,6 +73,8 @@ bool RigCamera::setWindow(const Parameters& parameters)
     const Vec3d normal = window ? window->normal : Vec3d(parameters.normal);
     std::copy(normal.val, normal.val + 3, p + at().normal);
     std::copy(parameters.media, parameters.media + mediaCount(), p + at().media);
+    if (window && at().count > at().wedge && !turnWedge(parameters, p))
+        return false;
     double& distance = p[at().distance];
     if (window)
         distance = window->distance;
@@ -85,6 +88,24 @@ bool RigCamera::setWindow(const Parameters& parameters)
             return false;
     behindWindow_.setParameters(all);
     return true;
+}
+
+/* Of a window that is described in another camera's frame: its wedge along the axes here, and its thickness along the normal through
+the centre of projection here. False where the faces meet before it. */
+bool RigCamera::turnWedge(const Parameters& parameters, double* p) const
+{
+    const Extrinsics owner(parameters.ownerExtrinsics);
+    const Matx33d R = extrinsics.rotation.R*owner.rotation.R.t();
+    std::vector<double> given(p, p + at().count);
+    std::copy(parameters.normal, parameters.normal + 3, given.begin() + at().normal);
+    const GlassWindow moved = windowInFrame(withParameters(behindWindow_.window(), given.data()), R, extrinsics.T - R*owner.T);
+    for (int i = 0; i < at().layers; i++)
+    {
+        p[at().thickness + i] = moved.thickness[i];
+        p[at().wedge + 2*i] = moved.wedge[i][0];
+        p[at().wedge + 2*i + 1] = moved.wedge[i][1];
+    }
+    return *std::min_element(moved.thickness.begin(), moved.thickness.end()) > 0;
 }
 
 const Camera* RigCamera::camera(bool refracted) const

@@ -77,6 +77,7 @@ public:
 
 private:
     bool setWindow(const Parameters& parameters);
+    bool turnWedge(const Parameters& parameters, double* ofWindow) const;
     Camera behindWindow_, bare_;
     bool isLensPossible_, isWindowPossible_;
 };

@@ -177,6 +177,8 @@ double otherWindowRms(Rig start, RigTask task)
             window.thickness.assign(1, total);
             window.index.assign(1, optical/total);
             window.materials.clear();
+            if (!window.wedge.empty())
+                window.wedge.assign(1, std::accumulate(window.wedge.begin(), window.wedge.end(), Vec2d()));
             camera.setWindow(window);
         }
         task.flags |= window.innerIndex == window.outerIndex ? GLASS_FREE_THICKNESS

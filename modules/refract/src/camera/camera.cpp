@@ -19,13 +19,22 @@ void Camera::project(int n, const double* x, const double* y, const double* z, c
     lens_->project(n, dx, dy, dz, u, v, status);
 }
 
-void Camera::unproject(int n, const double* u, const double* v,
-                       double* tau, double* dx, double* dy, double* dz, uchar* status) const
+void Camera::unproject(int n, const double* u, const double* v, Rays& rays, uchar* status) const
 {
     double wx[BLOCK], wy[BLOCK], wz[BLOCK];
     CV_DbgAssert(n <= BLOCK);
     lens_->unproject(n, u, v, wx, wy, wz, status);
-    layers_.traceOut(n, wx, wy, wz, tau, dx, dy, dz, status);
+    layers_.traceOut(n, wx, wy, wz, rays, status);
+}
+
+uchar Camera::unproject(const Point2d& pixel, Vec3d& origin, Vec3d& direction) const
+{
+    Rays rays;
+    uchar status = REFRACT_OK;
+    unproject(1, &pixel.x, &pixel.y, rays, &status);
+    origin = rays.origin(0, layers_.normal());
+    direction = rays.direction(0);
+    return status;
 }
 
 void Camera::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
@@ -36,7 +45,7 @@ void Camera::projectJacobian(int n, const double* x, const double* y, const doub
     const Columns byDirection = { D, 3, BLOCK };
     layers_.solveIn(n, x, y, z, NULL, dx, dy, dz, status, ratio);
     lens_->projectJacobian(n, dx, dy, dz, u, v, byDirection, byParameters, status);
-    layers_.chain(2, n, x, y, z, ratio, byDirection, byPoint, byParameters.from(lensCount()));
+    layers_.chain(2, n, x, y, z, dx, dy, dz, ratio, byDirection, byPoint, byParameters.from(lensCount()));
 }
 
 uchar Camera::projectJacobian(const Vec3d& X, Vec2d& pixel, double* dPoint, double* dParameters) const
@@ -58,7 +67,7 @@ std::vector<double> Camera::parameters() const
 std::vector<String> Camera::parameterNames() const
 {
     std::vector<String> names = lens_->parameterNames();
-    const std::vector<String> ofWindow = windowParameterNames(layers_.at().layers);
+    const std::vector<String> ofWindow = windowParameterNames(layers_.at());
     names.insert(names.end(), ofWindow.begin(), ofWindow.end());
     return names;
 }

@@ -25,9 +25,10 @@ public:
     void project(int n, const double* x, const double* y, const double* z, const double* w,
                  double* u, double* v, uchar* status) const;
 
-    //! Pixels -> rays: origin = tau * normal, unit direction.
-    void unproject(int n, const double* u, const double* v,
-                   double* tau, double* dx, double* dy, double* dz, uchar* status) const;
+    //! Pixels -> rays, at most a block.
+    void unproject(int n, const double* u, const double* v, Rays& rays, uchar* status) const;
+    //! One pixel; what it gives means nothing where the status is not REFRACT_OK.
+    uchar unproject(const Point2d& pixel, Vec3d& origin, Vec3d& direction) const;
 
     //! Number of lens parameters, of window parameters, and both: the columns of dPixel_dParameters.
     int lensCount() const { return lens_->parameterCount(); }

@@ -11,6 +11,7 @@
 #include "lens/spline_model.hpp"
 #include "points/point_kernels.hpp"
 #include "window/layer_kernels.hpp"
+#include "window/wedge_kernels.hpp"
 
 /* The inner loops, over blocks of structure-of-arrays. They are written once (*.simd.hpp of each component), compiled for every
 instruction set (kernels_baseline.cpp, kernels_avx2.cpp, kernels_avx512.cpp) and chosen at run time (kernels.cpp). Each component
@@ -29,6 +30,7 @@ is its constant in the component's *.simd.hpp. */
 #define REFRACT_KERNELS(EACH) \
     EACH(ArrayKernels, array) \
     EACH(LayerKernels, layer) \
+    EACH(WedgeKernels, wedge) \
     EACH(LensKernels<OpenCVModel>, openCV) \
     EACH(LensKernels<FisheyeModel>, fisheye) \
     EACH(SplineKernels, spline) \

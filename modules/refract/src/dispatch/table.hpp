@@ -12,6 +12,7 @@
 #include "lens/spline.simd.hpp"
 #include "points/points.simd.hpp"
 #include "window/layers.simd.hpp"
+#include "window/wedge.simd.hpp"
 
 namespace cv { namespace refract { namespace {
 

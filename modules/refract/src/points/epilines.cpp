@@ -113,15 +113,15 @@ uchar placeVisibleNodes(const EpipolarCurve& curve, const Projection& p, int sam
 }
 
 /* The range of mu in which the ray lies beyond its own window and within the depth range. */
-uchar depthToMu(const Camera& camera, double tau, const Vec3d& d, const Vec2d& depthRange, double& muNear, double& muFar)
+uchar depthToMu(const Camera& camera, const Rays& rays, int i, const Vec2d& depthRange, double& muNear, double& muFar)
 {
-    const Vec3d normal = camera.layers().normal();
-    if (!(d[2] > 0))
+    const double originZ = rays.origin(i, camera.layers().normal())[2], dz = rays.dz[i];
+    if (!(dz > 0))
         return REFRACT_NO_INTERSECTION;
-    const double ahead = depthRange[0] - tau*normal[2];
-    muNear = ahead > 0 ? d[2]/ahead : DBL_MAX;
-    muFar = d[2]/(depthRange[1] - tau*normal[2]);
-    muNear = std::min(muNear, camera.layers().leavingMu(tau, normal.dot(d)));
+    const double ahead = depthRange[0] - originZ;
+    muNear = ahead > 0 ? dz/ahead : DBL_MAX;
+    muFar = dz/(depthRange[1] - originZ);
+    muNear = std::min(muNear, camera.layers().leavingMu(rays, i));
     return muFar >= 0 && muFar < muNear ? REFRACT_OK : REFRACT_BEHIND_WINDOW;
 }
 
@@ -261,22 +261,22 @@ void computeRefractiveEpilines(InputArray points, int whichImage,
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), 150*POINT_COST, [&](int begin, int n)
     {
-        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+        Rays rays;
+        double u[BLOCK], v[BLOCK];
         uchar st[BLOCK];
         in.load(begin, n, u, v, NULL, st);
-        from.unproject(n, u, v, tau, dx, dy, dz, st);
+        from.unproject(n, u, v, rays, st);
         std::vector<Track> tracks;
         std::vector<double> nodes;
         tracks.reserve(n);
         for (int i = 0; i < n; i++)
         {
-            const Vec3d d(dx[i], dy[i], dz[i]);
             double muNear, muFar;
             if (st[i] == REFRACT_OK)
-                st[i] = depthToMu(from, tau[i], d, range, muNear, muFar);
+                st[i] = depthToMu(from, rays, i, range, muNear, muFar);
             if (st[i] != REFRACT_OK)
                 continue;
-            const EpipolarCurve curve(R, T, from.layers().normal(), tau[i], d);
+            const EpipolarCurve curve(R, T, rays.origin(i, from.layers().normal()), rays.direction(i));
             tracks.push_back({ curve, i, curve.parameter(muNear), curve.parameter(muFar), 0, 0 });
         }
         placeAllNodes(to, tracks, atMiddle, nodes, st);

@@ -8,7 +8,7 @@
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
 
-/* The refracted ray tau n + s d of one camera, seen by the other, and the way of its points to pixels. The parameter t runs
+/* The refracted ray o + s d of one camera, seen by the other, and the way of its points to pixels. The parameter t runs
 from infinity (0) to the ray's origin (1): the other camera sees the point (1 - t) d + t e, where e is the unit vector to the
 origin. Even steps of t are nearly even steps of the angle there, whatever the depth range; 1/s = t / ((1 - t) b) with b the
 distance of the origin. */
@@ -19,8 +19,8 @@ namespace cv { namespace refract {
 class EpipolarCurve
 {
 public:
-    EpipolarCurve(const Matx33d& R, const Vec3d& T, const Vec3d& normal, double tau, const Vec3d& d)
-        : direction_(R*d), origin_(R*(tau*normal) + T), unit_(1)
+    EpipolarCurve(const Matx33d& R, const Vec3d& T, const Vec3d& origin, const Vec3d& d)
+        : direction_(R*d), origin_(R*origin + T), unit_(1)
     {
         const double distance = cv::norm(origin_);
         if (distance > 0)       // else the curve is one point in any unit

@@ -44,7 +44,7 @@ CurveMotion motionOf(const Matx33d& R12, const Vec3d& T12, int whichImage)
 //! A block's curves, where on them the search is, and what it found.
 struct EpipolarDistance::Search
 {
-    double ray[4*BLOCK];                        //!< of the curves' pixels: tau, direction
+    Rays ray;                                   //!< of the curves' pixels
     double curve[CURVE_COLUMNS*BLOCK], t[BLOCK], nearest[NEAREST_COLUMNS*BLOCK];
     double pixel[2*BLOCK];                      //!< of the other camera
     double byPoint[6*BLOCK];                    //!< of the other camera's image of the point at t
@@ -81,7 +81,9 @@ EpipolarDistance::EpipolarDistance(const Camera& camera1, const Camera& camera2,
     std::copy_n(motion_.R, 9, frame_.R);
     std::copy_n(shift.val, 3, frame_.T);
     std::copy_n(curves_.layers().normal().val, 3, frame_.normal);
-    frame_.lastSurface = curves_.layers().refracts() ? curves_.layers().stack().total : 0;
+    frame_.lastSurface = curves_.layers().lastSurface();
+    if (!curves_.layers().refracts())
+        frame_.lastSurface.distance = 0;
     frame_.isLimited = range.isLimited();
     frame_.near = range.near;
     frame_.far = range.far < DBL_MAX ? range.far : std::numeric_limits<double>::infinity();
@@ -90,24 +92,24 @@ EpipolarDistance::EpipolarDistance(const Camera& camera1, const Camera& camera2,
 //! The curves, and where on them the search begins. Status becomes the reason where there is no curve.
 void EpipolarDistance::start(const Matches& block, Search& search, int n, uchar* status) const
 {
-    double tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+    Rays others, &ray = search.ray;
     uchar otherStatus[BLOCK];
-    double* const ray = search.ray;
-    curves_.unproject(n, block.ofCurve, block.ofCurve + BLOCK, ray, ray + BLOCK, ray + 2*BLOCK, ray + 3*BLOCK, status);
+    curves_.unproject(n, block.ofCurve, block.ofCurve + BLOCK, ray, status);
     std::fill_n(otherStatus, n, (uchar)REFRACT_OK);
-    other_.unproject(n, block.other, block.other + BLOCK, tau, dx, dy, dz, otherStatus);
+    other_.unproject(n, block.other, block.other + BLOCK, others, otherStatus);
     for (int i = 0; i < n; i++)
     {
         if (status[i] != REFRACT_OK)
-            ray[BLOCK + i] = NaN;
+            ray.dx[i] = NaN;
         if (otherStatus[i] != REFRACT_OK)
-            dx[i] = NaN;        // no ray to begin with; its distance from the curve it has
+            others.dx[i] = NaN;     // no ray to begin with; its distance from the curve it has
     }
-    const bool all = pointKernels().curvesOf(frame_, n, ray, ray + BLOCK, ray + 2*BLOCK, ray + 3*BLOCK, search.curves());
+    const bool all = pointKernels().curvesOf(frame_, n, ray.tau, ray.offsets(), ray.dx, ray.dy, ray.dz, search.curves());
     for (int i = 0; i < n && !all; i++)
         if (status[i] == REFRACT_OK && std::isnan(search.curves().at(0, CURVE_FAR)[i]))
-            status[i] = ray[3*BLOCK + i] > 0 ? REFRACT_BEHIND_WINDOW : REFRACT_NO_INTERSECTION;
-    pointKernels().nearestToRay(search.curves(), other_.layers().normal().val, n, tau, dx, dy, dz, search.t);
+            status[i] = ray.dz[i] > 0 ? REFRACT_BEHIND_WINDOW : REFRACT_NO_INTERSECTION;
+    pointKernels().nearestToRay(search.curves(), other_.layers().normal().val, n, others.tau, others.offsets(), others.dx, others.dy,
+                                others.dz, search.t);
     std::copy_n(block.other, BLOCK + n, search.pixel);
     std::fill_n(search.isCut, n, (uchar)false);
 }
@@ -150,7 +152,7 @@ uchar EpipolarDistance::lookCloser(Search& search, int lane) const
     double& tNear = search.curve[CURVE_NEAR*BLOCK + lane];
     const Vec3d direction(at(CURVE_DIRECTION), at(CURVE_DIRECTION + 1), at(CURVE_DIRECTION + 2));
     const Vec3d origin(at(CURVE_ORIGIN), at(CURVE_ORIGIN + 1), at(CURVE_ORIGIN + 2));
-    const EpipolarCurve curve(Matx33d::eye(), origin, Vec3d(), 0, direction);
+    const EpipolarCurve curve(Matx33d::eye(), Vec3d(), origin, direction);
     Projection p(other_);
     addSamples(curve, tNear, tFar, Projection::CAPACITY, p);
     p.run();
@@ -221,7 +223,7 @@ void EpipolarDistance::evaluate(Matches& block, int n, bool derivatives) const
     for (int i = 0; i < n; i++)
     {
         const double t = search.t[i], s = (1 - t)/(t*search.curve[CURVE_UNIT*BLOCK + i]);
-        block.depth[i] = search.ray[i]*frame_.normal[2] + s*search.ray[3*BLOCK + i];
+        block.depth[i] = search.ray.origin(i, curves_.layers().normal())[2] + s*search.ray.dz[i];
         if (t == search.curve[CURVE_FAR*BLOCK + i] && !search.isCut[i])
             block.depth[i] = frame_.far;
     }
@@ -233,26 +235,27 @@ void EpipolarDistance::differentiate(Matches& block, const Search& search, int n
 {
     double x[BLOCK], y[BLOCK], z[BLOCK], m[3*BLOCK], byPoint[6*BLOCK], u[BLOCK], v[BLOCK];
     uchar status[BLOCK];
-    const double* const d = search.ray + BLOCK;
-    std::copy_n(d, 3*BLOCK, m);
+    const Rays& ray = search.ray;
+    std::copy_n(ray.dx, BLOCK, m); std::copy_n(ray.dy, BLOCK, m + BLOCK); std::copy_n(ray.dz, BLOCK, m + 2*BLOCK);
     for (int i = 0; i < n; i++)
     {
-        const double t = search.t[i], s = (1 - t)/(t*search.curve[CURVE_UNIT*BLOCK + i]), tau = search.ray[i];
-        x[i] = tau*frame_.normal[0] + s*d[i];
-        y[i] = tau*frame_.normal[1] + s*d[BLOCK + i];
-        z[i] = tau*frame_.normal[2] + s*d[2*BLOCK + i];
+        const double t = search.t[i], s = (1 - t)/(t*search.curve[CURVE_UNIT*BLOCK + i]);
+        const Vec3d origin = ray.origin(i, curves_.layers().normal());
+        x[i] = origin[0] + s*ray.dx[i];
+        y[i] = origin[1] + s*ray.dy[i];
+        z[i] = origin[2] + s*ray.dz[i];
         status[i] = block.status[i];
         if (search.nearest[NEAREST_AT_END*BLOCK + i] == 0)
             continue;
         const bool isWindow = t == search.curve[CURVE_NEAR*BLOCK + i] && !(frame_.isLimited && z[i] < frame_.near*(1 + 1e-6));
         for (int c = 0; c < 3; c++)
-            m[c*BLOCK + i] = isWindow ? frame_.normal[c] : c == 2;
+            m[c*BLOCK + i] = isWindow ? frame_.lastSurface.normal[c] : c == 2;
     }
     const Columns byPoint1 = { byPoint, 3, BLOCK }, none = { nullptr, 0, 0 }, out = { block.jacobian, 10, BLOCK };
     const Columns byPoint2 = { const_cast<double*>(search.byPoint), 3, BLOCK };
     const Columns nearest = { const_cast<double*>(search.nearest), NEAREST_COLUMNS, BLOCK };
     curves_.projectJacobian(n, x, y, z, u, v, byPoint1, none, status);
-    pointKernels().distanceDerivatives(motion_, n, x, y, z, d, d + BLOCK, d + 2*BLOCK, m, m + BLOCK, m + 2*BLOCK, byPoint1,
+    pointKernels().distanceDerivatives(motion_, n, x, y, z, ray.dx, ray.dy, ray.dz, m, m + BLOCK, m + 2*BLOCK, byPoint1,
                                        byPoint2, nearest, out);
     for (int i = 0; i < n; i++)
         if (status[i] != REFRACT_OK || search.isCut[i])         // an end of visibility moves in its own way

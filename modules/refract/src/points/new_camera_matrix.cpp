@@ -63,7 +63,8 @@ private:
 
     void addSide(const Camera& camera, const Vec4d& plane, const Vec2d& from, const Vec2d& to)
     {
-        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK], planeD[BLOCK];
+        Rays rays;
+        double u[BLOCK], v[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK], planeD[BLOCK];
         uchar status[BLOCK];
         for (int i = 0; i < BLOCK; i++)
         {
@@ -73,8 +74,8 @@ private:
         }
         std::fill(status, status + BLOCK, (uchar)REFRACT_OK);
         std::fill(planeD, planeD + BLOCK, plane[3]);
-        camera.unproject(BLOCK, u, v, tau, dx, dy, dz, status);
-        meetPlane(camera.layers(), BLOCK, Vec3d(plane.val), planeD, tau, dx, dy, dz, x, y, z, NULL, status);
+        camera.unproject(BLOCK, u, v, rays, status);
+        meetPlane(camera.layers(), BLOCK, Vec3d(plane.val), planeD, rays, x, y, z, NULL, status);
         std::vector<Point2d> side;
         for (int i = 0; i < BLOCK; i++)
             if (status[i] == REFRACT_OK && z[i] > 0)

@@ -25,27 +25,31 @@ void checkPlane(const Vec4d& p, const char* name)
 }
 
 //! One lane of meetPlane: the answer, or why there is none. m is 1/s of the ray's point.
-static uchar meetPlaneOne(const Layers& layers, const Vec3d& abc, double planeD, double tau, const Vec3d& d, Vec3d& X, double& m)
+static uchar meetPlaneOne(const Layers& layers, const Vec3d& abc, double planeD, const Rays& rays, int i, Vec3d& X, double& m)
 {
-    const double along = abc.dot(d);
-    m = along/(planeD - tau*abc.dot(layers.normal()));
-    X = d + m*tau*layers.normal();
+    const Vec3d d = rays.direction(i), offset = rays.offsetOf(i);
+    const double along = abc.dot(d), tau = rays.tau[i];
+    m = along/(planeD - tau*abc.dot(layers.normal()) - abc.dot(offset));
+    X = d + m*tau*layers.normal() + m*offset;
     return std::isnan(planeD) ? REFRACT_NOT_FINITE : along == 0 ? REFRACT_PARALLEL_RAYS :
            !(m >= 0) || std::signbit(m) || std::isinf(m) ? REFRACT_NO_INTERSECTION :
            !layers.isBeyond(X[0], X[1], X[2], m) ? REFRACT_BEHIND_WINDOW : REFRACT_OK;
 }
 
-void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const double* tau,
-               const double* dx, const double* dy, const double* dz,
+void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const Rays& rays,
                double* x, double* y, double* z, double* mu, uchar* status)
 {
-    if (pointKernels().meetPlane(layers.stack(), abc.val, planeD, n, tau, dx, dy, dz, x, y, z, mu))
+    const bool allMeet = rays.hasOffset ?
+        pointKernels().meetPlaneOffAxis(layers.stack(), layers.lastSurface(), rays.offsets(), abc.val, planeD, n, rays.tau, rays.dx,
+                                        rays.dy, rays.dz, x, y, z, mu) :
+        pointKernels().meetPlane(layers.stack(), abc.val, planeD, n, rays.tau, rays.dx, rays.dy, rays.dz, x, y, z, mu);
+    if (allMeet)
         return;
     answerMissing(n, x, status, [&](int i)
     {
         Vec3d X;
         double m;
-        const uchar found = meetPlaneOne(layers, abc, planeD[i], tau[i], Vec3d(dx[i], dy[i], dz[i]), X, m);
+        const uchar found = meetPlaneOne(layers, abc, planeD[i], rays, i, X, m);
         x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
         if (mu)
             mu[i] = m;
@@ -68,14 +72,15 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
     {
-        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+        Rays rays;
+        double u[BLOCK], v[BLOCK];
         double x[BLOCK], y[BLOCK], z[BLOCK], mu[BLOCK], planeD[BLOCK];
         uchar st[BLOCK];
         std::fill(planeD, planeD + n, plane[3]);
         in.load(begin, n, u, v, NULL, st);
-        cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        cam.unproject(n, u, v, rays, st);
         out.prepare(begin, n);
-        meetPlane(cam.layers(), n, abc, planeD, tau, dx, dy, dz, x, y, z, mu, st);
+        meetPlane(cam.layers(), n, abc, planeD, rays, x, y, z, mu, st);
         for (int i = 0; i < n; i++)
         {
             x[i] /= mu[i]; y[i] /= mu[i]; z[i] /= mu[i];

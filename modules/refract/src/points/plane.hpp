@@ -15,12 +15,11 @@ Vec4d planeOfDepth(double depth, const char* name);
 //! Throws unless (a, b, c) is finite and not zero and d is not NaN.
 void checkPlane(const Vec4d& plane, const char* name);
 
-/** Where rays (tau n + s d) meet the plane a x + b y + c z = d, as homogeneous points d + mu (tau n) with mu = 1/s, so that
+/** Where rays o + s d meet the plane a x + b y + c z = d, as homogeneous points d + mu o with mu = 1/s, so that
 a plane at infinity (d infinite) needs no case of its own.
 @param planeD d of each lane
 @param mu may be null */
-void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const double* tau,
-               const double* dx, const double* dy, const double* dz,
+void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const Rays& rays,
                double* x, double* y, double* z, double* mu, uchar* status);
 
 }} // namespace

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_POINT_KERNELS_HPP
 #define OPENCV_REFRACT_POINT_KERNELS_HPP
 
+#include "window/faces.hpp"
 #include "window/layer_kernels.hpp"
 
 /* Transforms, planes, curves, maps and triangulation of many points at once. No OpenCV in here, see dispatch/kernels.hpp. */
@@ -22,12 +23,13 @@ struct SurfaceTile
     double atCentre, middle, scale;
 };
 
-//! Rays of one camera, directions and axis in the frame of camera 1: origin = tau axis + centre.
+//! Rays of one camera, directions and axis in the frame of camera 1: origin = tau axis + offset + centre.
 struct CameraRays
 {
     const double* seen;         //!< NaN: there is no ray
     const double *tau, *dx, *dy, *dz;
     double axis[3], centre[3];
+    Columns offset;             //!< three; may be null: 0
 };
 
 //! Pixels of one camera.
@@ -58,8 +60,8 @@ struct PixelsByParameters
 struct CurveFrame
 {
     double R[9], T[3];
-    double normal[3];           //!< of the first camera's window, in its frame: a ray is tau normal + s d
-    double lastSurface;         //!< along the normal from that camera; 0 without window
+    double normal[3];           //!< of the first camera's window, in its frame: a ray is tau normal + offset + s d
+    Plane lastSurface;          //!< of that window, in the same frame; distance 0 without window
     bool isLimited;             //!< to depths, z from near to far
     double near, far;
 };
@@ -90,6 +92,10 @@ struct PointKernels
     //! See meetPlane; plane (a, b, c) and d of each lane.
     bool (*meetPlane)(const Stack& stack, const double* abc, const double* planeD, int n, const double* tau,
                       const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu);
+    //! The same for rays tau n + offset + s d.
+    bool (*meetPlaneOffAxis)(const Stack& stack, const Plane& lastSurface, const Columns& offset, const double* abc,
+                             const double* planeD, int n, const double* tau, const double* dx, const double* dy, const double* dz,
+                             double* x, double* y, double* z, double* mu);
 
     //! Of each of n pixels between others, n + 2 in all: the square root of its distance from its neighbours' chord.
     void (*chordRoots)(int n, const double* u, const double* v, double* roots);
@@ -127,12 +133,13 @@ struct PointKernels
     void (*pointCovariance)(int n, int cameras, const PixelsByPoint* pixels, double variance, const Columns& E,
                             const Columns& byPixel, const Columns& covariance);
 
-    //! Rays -> curves; no answer (in CURVE_FAR) where a ray has no point in the range.
-    bool (*curvesOf)(const CurveFrame& frame, int n, const double* tau, const double* dx, const double* dy, const double* dz,
-                     const Columns& curves);
-    //! The t at which a ray of the other camera, tau axis + s d, comes nearest by angle; the middle where it is NaN.
-    void (*nearestToRay)(const Columns& curves, const double* axis, int n, const double* tau, const double* dx, const double* dy,
-                         const double* dz, double* t);
+    /** Rays -> curves; no answer (in CURVE_FAR) where a ray has no point in the range.
+    @param offset of the rays' origins; may be null */
+    bool (*curvesOf)(const CurveFrame& frame, int n, const double* tau, const Columns& offset, const double* dx, const double* dy,
+                     const double* dz, const Columns& curves);
+    //! The t at which a ray of the other camera, tau axis + offset + s d, comes nearest by angle; the middle where it is NaN.
+    void (*nearestToRay)(const Columns& curves, const double* axis, int n, const double* tau, const Columns& offset,
+                         const double* dx, const double* dy, const double* dz, double* t);
     //! The curves' points at t, in the frame of the other camera.
     void (*curvePoints)(const Columns& curves, int n, const double* t, double* x, double* y, double* z);
     /** One Gauss-Newton step of t towards the point of the curve that is nearest to the pixel. A step of less than `enough`

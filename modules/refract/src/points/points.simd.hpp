@@ -138,6 +138,19 @@ void interpolateSurface(const SurfaceTile& tile, const double* row, const double
     });
 }
 
+//! Where rays are off the axis: by how much, and the last face, which leans.
+struct OffAxis { Columns offset; Plane lastSurface; };
+struct OnAxis {};
+
+template<typename At>
+inline Vector originOf(const OnAxis&, const double* axis, Lanes tau, At) { return { tau*axis[0], tau*axis[1], tau*axis[2] }; }
+template<typename At>
+inline Vector originOf(const OffAxis& off, const double* axis, Lanes tau, At at)
+{
+    const Vector offset = loadRow(off.offset, 0, at);
+    return { tau*axis[0] + offset.x, tau*axis[1] + offset.y, tau*axis[2] + offset.z };
+}
+
 bool meetPlane(const Stack& stack, const double* plane, const double* planeD, int n, const double* tau,
                const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu)
 {
@@ -156,6 +169,28 @@ bool meetPlane(const Stack& stack, const double* plane, const double* planeD, in
         store(answers.where(good, X), x, at);
         store(Y, y, at);
         store(Z, z, at);
+        if (mu)
+            store(m, mu, at);
+    });
+    return answers.complete();
+}
+
+bool meetPlaneOffAxis(const Stack& stack, const Plane& lastSurface, const Columns& offset, const double* plane, const double* planeD,
+                      int n, const double* tau, const double* dx, const double* dy, const double* dz, double* x, double* y, double* z,
+                      double* mu)
+{
+    const OffAxis off = { offset, lastSurface };
+    const Constants<3> normal(stack.normal), abc(plane);
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Vector o = originOf(off, normal.value, load(tau, at), at), d = { load(dx, at), load(dy, at), load(dz, at) };
+        const Lanes along = dot(abc.value, d), ahead = load(planeD, at) - dot(abc.value, o), m = along/ahead;
+        const Vector X = { d.x + m*o.x, d.y + m*o.y, d.z + m*o.z };
+        const Mask good = (along*ahead > 0) & (m - m == 0) & (dot(off.lastSurface.normal, X) > m*off.lastSurface.distance);
+        store(answers.where(good, X.x), x, at);
+        store(X.y, y, at);
+        store(X.z, z, at);
         if (mu)
             store(m, mu, at);
     });
@@ -183,7 +218,7 @@ inline Vector keep(Mask m, const Vector& a)
 struct RayLanes { Mask seen; Vector d, o; };
 
 //! d is 0 where the ray is not seen.
-template<typename At>
+template<bool OFF_AXIS, typename At>
 inline RayLanes loadRay(const CameraRays& rays, At at)
 {
     const Lanes u = load(rays.seen, at), zero = all(0);
@@ -192,17 +227,22 @@ inline RayLanes loadRay(const CameraRays& rays, At at)
     ray.d = keep(ray.seen, { load(rays.dx, at), load(rays.dy, at), load(rays.dz, at) });
     const Lanes tau = select(ray.seen, load(rays.tau, at), zero);
     ray.o = { tau*rays.axis[0] + rays.centre[0], tau*rays.axis[1] + rays.centre[1], tau*rays.axis[2] + rays.centre[2] };
+    if (OFF_AXIS && rays.offset.data)
+    {
+        const Vector offset = keep(ray.seen, loadRow(rays.offset, 0, at));
+        ray.o = { ray.o.x + offset.x, ray.o.y + offset.y, ray.o.z + offset.z };
+    }
     return ray;
 }
 
 //! The first ray that each lane sees.
-template<typename At>
+template<bool OFF_AXIS, typename At>
 inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
 {
-    RayLanes first = loadRay(rays[0], at);
+    RayLanes first = loadRay<OFF_AXIS>(rays[0], at);
     for (int c = 1; c < cameras && any(isNot(first.seen)); c++)
     {
-        const RayLanes next = loadRay(rays[c], at);
+        const RayLanes next = loadRay<OFF_AXIS>(rays[c], at);
         const auto otherwise = [&](Lanes a, Lanes b) { return select(first.seen, a, b); };
         first.d = { otherwise(first.d.x, next.d.x), otherwise(first.d.y, next.d.y), otherwise(first.d.z, next.d.z) };
         first.o = { otherwise(first.o.x, next.o.x), otherwise(first.o.y, next.o.y), otherwise(first.o.z, next.o.z) };
@@ -211,28 +251,21 @@ inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
     return first;
 }
 
-//! Two unit vectors across d and each other (@cite Duff2017).
-inline void vectorsAcross(const Vector& d, Vector& a, Vector& b)
-{
-    const Lanes sign = select(d.z < 0, all(-1), all(1)), k = -1/(sign + d.z), xy = d.x*d.y*k;
-    a = { 1 + sign*d.x*d.x*k, sign*xy, -sign*d.x };
-    b = { xy, sign + d.y*d.y*k, -d.y };
-}
-
 /* Least squares of (I - d d^T)(X - o), in a frame (s, a, b) with s along the first ray: there what is small between rays that
 are nearly parallel is a product of small numbers, not a difference of large ones. */
-void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
+template<bool OFF_AXIS>
+inline void meetRaysOf(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
 {
     eachRegister(n, [&](auto at)
     {
-        const RayLanes first = firstRay(cameras, rays, at);
+        const RayLanes first = firstRay<OFF_AXIS>(cameras, rays, at);
         Vector a, b;
         vectorsAcross(first.d, a, b);
         Lanes ss = all(0), sa = all(0), sb = all(0), aa = all(0), ab = all(0), bb = all(0);
         Vector g = {};
         for (int c = 0; c < cameras; c++)
         {
-            const RayLanes ray = loadRay(rays[c], at);
+            const RayLanes ray = loadRay<OFF_AXIS>(rays[c], at);
             const Vector w = { ray.o.x - first.o.x, ray.o.y - first.o.y, ray.o.z - first.o.z };
             const Lanes ds = dot(ray.d, first.d), da = dot(ray.d, a), db = dot(ray.d, b);
             const Lanes ws = dot(w, first.d), wa = dot(w, a), wb = dot(w, b);
@@ -248,7 +281,7 @@ void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py
         Lanes nearest = s;
         for (int c = 0; c < cameras; c++)
         {
-            const RayLanes ray = loadRay(rays[c], at);
+            const RayLanes ray = loadRay<OFF_AXIS>(rays[c], at);
             const Lanes far = dot(ray.d, { X.x - ray.o.x, X.y - ray.o.y, X.z - ray.o.z });
             nearest = select(ray.seen & (far < nearest), far, nearest);
         }
@@ -258,6 +291,14 @@ void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py
         store(apart, pApart, at);
         store(nearest, pNearest, at);
     });
+}
+
+void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
+{
+    bool isOffAxis = false;
+    for (int c = 0; c < cameras; c++)
+        isOffAxis |= rays[c].offset.data != nullptr;
+    (isOffAxis ? meetRaysOf<true> : meetRaysOf<false>)(n, cameras, rays, px, py, pz, pApart, pNearest);
 }
 
 void gaussNewton(int n, int cameras, const CameraErrors* errors, double* px, double* py, double* pz, double* pMoved)
@@ -421,21 +462,28 @@ void pointCovariance(int n, int cameras, const PixelsByPoint* pixels, double var
 
 const double CURVE_END = 1e-10;     // of t, from infinity and from the ray's origin
 
-bool curvesOf(const CurveFrame& given, int n, const double* pTau, const double* pdx, const double* pdy, const double* pdz,
-              const Columns& curves)
+//! How far along its ray the last surface is.
+inline Lanes lengthToSurface(const OnAxis&, const CurveFrame& frame, Lanes tau, const Vector&, const Vector& d)
+{ return (frame.lastSurface.distance - tau)/dot(frame.normal, d); }
+inline Lanes lengthToSurface(const OffAxis&, const CurveFrame& frame, Lanes, const Vector& origin, const Vector& d)
+{ return (frame.lastSurface.distance - dot(frame.lastSurface.normal, origin))/dot(frame.lastSurface.normal, d); }
+
+template<typename Off>
+inline bool curvesOfRays(const CurveFrame& given, const Off& off, int n, const double* pTau, const double* pdx, const double* pdy,
+                         const double* pdz, const Columns& curves)
 {
     const CurveFrame frame = given;
     const Constants<9> R(frame.R);
-    const Constants<3> T(frame.T), normal(frame.normal);
+    const Constants<3> T(frame.T);
     Answers answers;
     eachRegister(n, [&](auto at)
     {
         const Lanes tau = load(pTau, at);
         const Vector d = { load(pdx, at), load(pdy, at), load(pdz, at) };
-        const Vector c = { tau*normal[0], tau*normal[1], tau*normal[2] };
+        const Vector c = originOf(off, frame.normal, tau, at);
         const Vector o = { dot(R.value, c) + T[0], dot(R.value + 3, c) + T[1], dot(R.value + 6, c) + T[2] };
         const Lanes length2 = dot(o, o), unit = select(length2 > 0, 1/sqrt(length2), all(1));
-        Lanes sNear = larger((frame.lastSurface - tau)/dot(normal.value, d), all(0)), tFar = all(CURVE_END);
+        Lanes sNear = larger(lengthToSurface(off, frame, tau, c, d), all(0)), tFar = all(CURVE_END);
         Mask good = d.x == d.x;
         if (frame.isLimited)
         {
@@ -458,6 +506,13 @@ bool curvesOf(const CurveFrame& given, int n, const double* pTau, const double* 
     return answers.complete();
 }
 
+bool curvesOf(const CurveFrame& frame, int n, const double* tau, const Columns& offset, const double* dx, const double* dy,
+              const double* dz, const Columns& curves)
+{
+    return offset.data ? curvesOfRays(frame, OffAxis{ offset, frame.lastSurface }, n, tau, dx, dy, dz, curves)
+                       : curvesOfRays(frame, OnAxis(), n, tau, dx, dy, dz, curves);
+}
+
 template<typename At>
 inline Vector loadVector(const Columns& columns, int first, At at)
 {
@@ -468,8 +523,9 @@ inline Lanes within(Lanes a, Lanes low, Lanes high) { return select(a < low, low
 
 /* The directions in which the other camera sees the curve lie in a plane across N = o x D, with o seen from the origin of the
 pixel's own ray e: o + s D is parallel to the part of e in the plane where (o x e).N + s (D x e).N = 0. */
-void nearestToRay(const Columns& curves, const double* pAxis, int n, const double* pTau, const double* pdx, const double* pdy,
-                  const double* pdz, double* pT)
+template<typename Off>
+inline void nearestTo(const Columns& curves, const double* pAxis, const Off& off, int n, const double* pTau, const double* pdx,
+                      const double* pdy, const double* pdz, double* pT)
 {
     const Constants<3> axis(pAxis);
     eachRegister(n, [&](auto at)
@@ -478,13 +534,22 @@ void nearestToRay(const Columns& curves, const double* pAxis, int n, const doubl
         const Lanes tFar = load(curves.at(0, CURVE_FAR), at), tNear = load(curves.at(0, CURVE_NEAR), at);
         const Vector e = { load(pdx, at), load(pdy, at), load(pdz, at) };
         const Vector D = loadVector(curves, CURVE_DIRECTION, at), o = loadVector(curves, CURVE_ORIGIN, at);
-        const Vector from = { o.x - tau*axis[0], o.y - tau*axis[1], o.z - tau*axis[2] };
+        const Vector own = originOf(off, axis.value, tau, at), from = { o.x - own.x, o.y - own.y, o.z - own.z };
         const Vector N = cross(from, D);
         const Lanes s = dot(cross(from, e), N)/dot(cross(e, D), N);
         const Lanes end = select(dot(e, D) > unit*dot(e, from), tFar, tNear);
         const Lanes t = within(select(s > 0, 1/(1 + s*unit), end), tFar, tNear);
         store(select(t == t, t, 0.5*(tFar + tNear)), pT, at);
     });
+}
+
+void nearestToRay(const Columns& curves, const double* axis, int n, const double* tau, const Columns& offset, const double* dx,
+                  const double* dy, const double* dz, double* t)
+{
+    if (offset.data)
+        nearestTo(curves, axis, OffAxis{ offset, Plane() }, n, tau, dx, dy, dz, t);
+    else
+        nearestTo(curves, axis, OnAxis(), n, tau, dx, dy, dz, t);
 }
 
 void curvePoints(const Columns& curves, int n, const double* pT, double* x, double* y, double* z)
@@ -563,8 +628,8 @@ void distanceDerivatives(const CurveMotion& given, int n, const double* px, cons
 }
 
 constexpr PointKernels pointTable = {
-    transform, multiples, pinhole, meetPlane, chordRoots, areClose, chainLinear, interpolate, interpolateSurface, meetRays,
-    gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
+    transform, multiples, pinhole, meetPlane, meetPlaneOffAxis, chordRoots, areClose, chainLinear, interpolate, interpolateSurface,
+    meetRays, gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
 };
 
 }}} // namespace

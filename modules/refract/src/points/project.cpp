@@ -114,15 +114,21 @@ void refractiveUnprojectPoints(InputArray imagePoints, OutputArray origins, Outp
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
     {
-        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK], ox[BLOCK], oy[BLOCK], oz[BLOCK];
+        Rays rays;
+        double u[BLOCK], v[BLOCK], ox[BLOCK], oy[BLOCK], oz[BLOCK];
         uchar st[BLOCK];
         in.load(begin, n, u, v, NULL, st);
         outOrigins.prepare(begin, n);
-        cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        cam.unproject(n, u, v, rays, st);
         outDirections.prepare(begin, n);
-        pointKernels().multiples(normal.val, n, tau, ox, oy, oz);
+        pointKernels().multiples(normal.val, n, rays.tau, ox, oy, oz);
+        for (int i = 0; i < n && rays.hasOffset; i++)
+        {
+            const Vec3d offset = rays.offsetOf(i);
+            ox[i] += offset[0]; oy[i] += offset[1]; oz[i] += offset[2];
+        }
         outOrigins.store(begin, n, ox, oy, oz, st);
-        outDirections.store(begin, n, dx, dy, dz, st);
+        outDirections.store(begin, n, rays.dx, rays.dy, rays.dz, st);
         outStatus.store(begin, n, st);
     });
 }

@@ -12,24 +12,20 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! Rays of one camera for a block of pixels.
-struct Rays
-{
-    double tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
-};
-
 CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n, Rays& r)
 {
     const Camera& camera = *cameras[c].camera;
     forSeen(block, c, n, block.status, [&](uchar* status)
-    { camera.unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r.tau, r.dx, r.dy, r.dz, status); });
+    { camera.unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r, status); });
     const RigidTransform& place = cameras[c].place;
     const Matx33d back = place.R.t();
     const Vec3d axis = back*camera.layers().normal(), centre = -(back*place.T), none;
     if (c > 0)
         pointKernels().transform(back.val, none.val, n, r.dx, r.dy, r.dz);
+    if (c > 0 && r.hasOffset)
+        pointKernels().transform(back.val, none.val, n, r.offset, r.offset + BLOCK, r.offset + 2*BLOCK);
     return { block.pixel(2*c), r.tau, r.dx, r.dy, r.dz, { axis[0], axis[1], axis[2] },
-             { centre[0], centre[1], centre[2] } };
+             { centre[0], centre[1], centre[2] }, r.offsets() };
 }
 
 //! The points nearest to all rays.

@@ -41,14 +41,15 @@ static void undistort(const PointReader& in, OutputArray dst, const Camera& cam,
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
     {
-        double u[BLOCK], v[BLOCK], tau[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+        Rays rays;
+        double u[BLOCK], v[BLOCK];
         double x[BLOCK], y[BLOCK], z[BLOCK], planeD[BLOCK];
         uchar st[BLOCK];
         depths.load(begin, n, planeD);
         in.load(begin, n, u, v, NULL, st);
-        cam.unproject(n, u, v, tau, dx, dy, dz, st);
+        cam.unproject(n, u, v, rays, st);
         out.prepare(begin, n);
-        meetPlane(cam.layers(), n, ahead, planeD, tau, dx, dy, dz, x, y, z, NULL, st);
+        meetPlane(cam.layers(), n, ahead, planeD, rays, x, y, z, NULL, st);
         pinhole(H, axis, n, x, y, z, u, v, st);
         out.store(begin, n, u, v, NULL, st);
         outStatus.store(begin, n, st);

@@ -15,25 +15,26 @@ Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
     b.normalized.assign(pixels.size(), Point2d(NaN, NaN));
     std::vector<Vec3d> directions(pixels.size(), Vec3d::all(NaN));
     Vec3d look;
+    Rays rays;
     double sumTau = 0;
+    Vec3d sumOffset;
     int found = 0;
     for (size_t i = 0; i < pixels.size(); i++)
     {
-        double tau;
-        Vec3d d;
         uchar status = REFRACT_OK;
-        camera.unproject(1, &pixels[i].x, &pixels[i].y, &tau, &d[0], &d[1], &d[2], &status);
+        camera.unproject(1, &pixels[i].x, &pixels[i].y, rays, &status);
         if (status != REFRACT_OK)
             continue;
-        directions[i] = d;
-        look += d;
-        sumTau += tau;
+        directions[i] = rays.direction(0);
+        look += directions[i];
+        sumTau += rays.tau[0];
+        sumOffset += rays.offsetOf(0);
         found++;
     }
     if (!(norm(look) > 0))
         return b;
     b.turn = turnToZ(look/norm(look));
-    b.centre = camera.layers().normal()*(sumTau/found);
+    b.centre = camera.layers().normal()*(sumTau/found) + sumOffset*(1./found);
     for (size_t i = 0; i < pixels.size(); i++)
     {
         const Vec3d d = b.turn*directions[i];

@@ -329,7 +329,7 @@ double leastValue(const Camera& camera, int parameter)
     const int ofWindow = parameter - camera.lensCount();
     if (ofWindow < 0)
         return -std::numeric_limits<double>::infinity();
-    const WindowLayout layout = windowLayout((int)camera.window().thickness.size());
+    const WindowLayout layout = windowLayout(camera.window());
     return lowerBound(kindOf(layout, ofWindow), camera.parameters()[parameter]);
 }
 

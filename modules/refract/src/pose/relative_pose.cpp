@@ -13,24 +13,38 @@ namespace {
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-//! Rays of all pixels, moved by an offset.
-std::vector<Vec4d> raysAt(const Camera& camera, const std::vector<Point2d>& pixels, const Point2d& offset)
+//! A pixel's ray, as its numbers: tau, direction, offset; and s at the last surface.
+struct RayNumbers
 {
-    std::vector<Vec4d> rays(pixels.size(), Vec4d::all(NaN));
+    Vec4d ray = Vec4d::all(NaN);
+    Vec3d offset;
+    double surface = NaN;
+};
+
+//! Rays of all pixels, moved by a step.
+std::vector<RayNumbers> raysAt(const Camera& camera, const std::vector<Point2d>& pixels, const Point2d& step)
+{
+    std::vector<RayNumbers> rays(pixels.size());
     forEachBlock((int)pixels.size(), [&](int begin, int n)
     {
-        double u[BLOCK] = {}, v[BLOCK] = {}, tau[BLOCK], x[BLOCK], y[BLOCK], z[BLOCK];
+        Rays block;
+        double u[BLOCK] = {}, v[BLOCK] = {};
         uchar status[BLOCK];
         for (int i = 0; i < n; i++)
         {
-            u[i] = pixels[begin + i].x + offset.x;
-            v[i] = pixels[begin + i].y + offset.y;
+            u[i] = pixels[begin + i].x + step.x;
+            v[i] = pixels[begin + i].y + step.y;
             status[i] = REFRACT_OK;
         }
-        camera.unproject(n, u, v, tau, x, y, z, status);
+        camera.unproject(n, u, v, block, status);
         for (int i = 0; i < n; i++)
             if (status[i] == REFRACT_OK)
-                rays[begin + i] = Vec4d(tau[i], x[i], y[i], z[i]);
+            {
+                RayNumbers& ray = rays[begin + i];
+                ray.ray = Vec4d(block.tau[i], block.dx[i], block.dy[i], block.dz[i]);
+                ray.offset = block.offsetOf(i);
+                ray.surface = 1/camera.layers().leavingMu(block, i);
+            }
     });
     return rays;
 }
@@ -41,7 +55,8 @@ Vec3d directionOf(const Vec4d& ray) { return Vec3d(ray[1], ray[2], ray[3]); }
 struct PoseTerms
 {
     PoseTerms(const MatchedCameras& pair, const RigidMotion& pose)
-        : R(pose.R), t(pose.t), normal1(pose.R*pair.camera1.layers().normal()), normal2(pair.camera2.layers().normal())
+        : R(pose.R), t(pose.t), normal1(pose.R*pair.camera1.layers().normal()), normal2(pair.camera2.layers().normal()),
+          hasOffsets(pair.camera1.layers().isTilted() || pair.camera2.layers().isTilted())
     {
         const Vec3d rvec = rotationVector(pose.R);
         const Rotation rotation(rvec.val);
@@ -55,6 +70,7 @@ struct PoseTerms
     }
     Matx33d R;
     Vec3d t, normal1, normal2;      //!< in camera 2
+    bool hasOffsets;                //!< of rays
     Matx33d turnByRvec;             //!< columns: angular velocities
 };
 
@@ -63,15 +79,29 @@ struct PoseTerms
 @param inFront whether the rays come nearest to each other beyond both windows */
 double sampsonError(const Match& m, const PoseTerms& pose, double* byPose, bool& inFront)
 {
-    const Vec3d a = pose.R*m.ray1.direction, origin = m.ray1.tau*pose.normal1;
-    const Vec3d w = m.ray2.tau*pose.normal2 - origin - pose.t;
+    const Vec3d a = pose.R*m.ray1.direction;
+    Vec3d origin = m.ray1.tau*pose.normal1, origin2 = m.ray2.tau*pose.normal2;
+    if (pose.hasOffsets)
+    {
+        origin += pose.R*m.ray1.offset;
+        origin2 += m.ray2.offset;
+    }
+    const Vec3d w = origin2 - origin - pose.t;
     const Vec3d &d2 = m.ray2.direction, c = a.cross(d2), byA = d2.cross(w), byD2 = w.cross(a);
     const Vec3d byD1 = pose.R.t()*byA;
     const double by1 = -pose.normal1.dot(c), by2 = pose.normal2.dot(c);
-    const double g[4] = { byD1.dot(m.ray1.directionByU) + by1*m.ray1.tauByPixel[0],
+    double g[4] = { byD1.dot(m.ray1.directionByU) + by1*m.ray1.tauByPixel[0],
                           byD1.dot(m.ray1.directionByV) + by1*m.ray1.tauByPixel[1],
                           byD2.dot(m.ray2.directionByU) + by2*m.ray2.tauByPixel[0],
                           byD2.dot(m.ray2.directionByV) + by2*m.ray2.tauByPixel[1] };
+    if (pose.hasOffsets)
+    {
+        const Vec3d byOrigin1 = pose.R.t()*c;
+        g[0] -= byOrigin1.dot(m.ray1.offsetByU);
+        g[1] -= byOrigin1.dot(m.ray1.offsetByV);
+        g[2] += c.dot(m.ray2.offsetByU);
+        g[3] += c.dot(m.ray2.offsetByV);
+    }
     const double scale = 1/std::sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2] + g[3]*g[3]), c2 = c.dot(c);
     inFront = -byA.dot(c) > m.ray1.surface*c2 && byD2.dot(c) > m.ray2.surface*c2;
     const double error = w.dot(c)*scale;
@@ -83,8 +113,13 @@ double sampsonError(const Match& m, const PoseTerms& pose, double* byPose, bool&
     const double tau1 = g[0]*m.ray1.tauByPixel[0] + g[1]*m.ray1.tauByPixel[1];
     const double tau2 = g[2]*m.ray2.tauByPixel[0] + g[3]*m.ray2.tauByPixel[1];
     const Vec3d lengthByW = moved1.cross(d2) + a.cross(moved2);
-    const Vec3d lengthByTurn = moved1.cross(byA) - origin.cross(lengthByW) + a.cross(moved2.cross(w) + tau2*d2.cross(pose.normal2))
-                               - tau1*pose.normal1.cross(a).cross(d2);
+    Vec3d lengthByTurn = moved1.cross(byA) - origin.cross(lengthByW) + a.cross(moved2.cross(w) + tau2*d2.cross(pose.normal2))
+                         - tau1*pose.normal1.cross(a).cross(d2);
+    if (pose.hasOffsets)
+    {
+        const Vec3d moved = pose.R*(g[0]*m.ray1.offsetByU + g[1]*m.ray1.offsetByV);
+        lengthByTurn += a.cross(d2.cross(g[2]*m.ray2.offsetByU + g[3]*m.ray2.offsetByV)) - moved.cross(a).cross(d2);
+    }
     const double ratio = error*scale;
     const Vec3d byTurn = (a.cross(byA) - origin.cross(c) - ratio*lengthByTurn)*scale, byT = (ratio*lengthByW - c)*scale;
     const Vec3d byRvec = pose.turnByRvec.t()*byTurn;
@@ -164,15 +199,15 @@ double minimizeErrors(const MatchedCameras& pair, const PixelMatches& matches, R
 std::vector<PixelRay> pixelRays(const Camera& camera, const std::vector<Point2d>& pixels)
 {
     const double STEP = 1e-2;           // pixels: a central difference is good to eight digits
-    const std::vector<Vec4d> at = raysAt(camera, pixels, Point2d());
-    const std::vector<Vec4d> right = raysAt(camera, pixels, Point2d(STEP, 0)), left = raysAt(camera, pixels, Point2d(-STEP, 0));
-    const std::vector<Vec4d> below = raysAt(camera, pixels, Point2d(0, STEP)), above = raysAt(camera, pixels, Point2d(0, -STEP));
+    const std::vector<RayNumbers> at = raysAt(camera, pixels, Point2d());
+    const std::vector<RayNumbers> right = raysAt(camera, pixels, Point2d(STEP, 0)), left = raysAt(camera, pixels, Point2d(-STEP, 0));
+    const std::vector<RayNumbers> below = raysAt(camera, pixels, Point2d(0, STEP)), above = raysAt(camera, pixels, Point2d(0, -STEP));
     std::vector<PixelRay> rays(pixels.size());
     for (size_t i = 0; i < pixels.size(); i++)
     {
-        const Vec4d byU = (right[i] - left[i])*(0.5/STEP), byV = (below[i] - above[i])*(0.5/STEP);
-        const double leaving = camera.layers().leavingMu(at[i][0], camera.layers().normal().dot(directionOf(at[i])));
-        rays[i] = { at[i][0], directionOf(at[i]), Vec2d(byU[0], byV[0]), directionOf(byU), directionOf(byV), 1/leaving };
+        const Vec4d byU = (right[i].ray - left[i].ray)*(0.5/STEP), byV = (below[i].ray - above[i].ray)*(0.5/STEP);
+        rays[i] = { at[i].ray[0], directionOf(at[i].ray), Vec2d(byU[0], byV[0]), directionOf(byU), directionOf(byV), at[i].surface,
+                    at[i].offset, (right[i].offset - left[i].offset)*(0.5/STEP), (below[i].offset - above[i].offset)*(0.5/STEP) };
     }
     return rays;
 }

@@ -18,7 +18,7 @@ thousand errors take some tenths of a millisecond. */
 
 namespace cv { namespace refract {
 
-//! A pixel's ray, tau normal + s direction, and how it moves with the pixel. NaN where there is none.
+//! A pixel's ray, tau normal + offset + s direction, and how it moves with the pixel. NaN where there is none.
 struct PixelRay
 {
     double tau;
@@ -26,6 +26,7 @@ struct PixelRay
     Vec2d tauByPixel;
     Vec3d directionByU, directionByV;
     double surface;                 //!< s at the last surface
+    Vec3d offset, offsetByU, offsetByV;     //!< 0 behind parallel faces
 };
 
 std::vector<PixelRay> pixelRays(const Camera& camera, const std::vector<Point2d>& pixels);

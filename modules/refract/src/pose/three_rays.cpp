@@ -172,13 +172,10 @@ PointRays::PointRays(const Camera& camera, const ImagePoints& points)
 {
     for (size_t i = 0; i < points.pixel.size(); i++)
     {
-        double tau;
-        Vec3d d;
-        uchar status = REFRACT_OK;
-        camera.unproject(1, &points.pixel[i].x, &points.pixel[i].y, &tau, &d[0], &d[1], &d[2], &status);
-        if (status != REFRACT_OK)
+        SceneRay seen;
+        if (camera.unproject(points.pixel[i], seen.origin, seen.direction) != REFRACT_OK)
             continue;
-        ray.push_back({ tau*camera.layers().normal(), d });
+        ray.push_back(seen);
         point.push_back((int)i);
     }
 }

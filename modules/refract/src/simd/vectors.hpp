@@ -33,6 +33,14 @@ inline Vector cross(const Vector& a, const Vector& b)
     return { a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x };
 }
 
+//! Two unit vectors across d and each other (@cite Duff2017).
+inline void vectorsAcross(const Vector& d, Vector& a, Vector& b)
+{
+    const Lanes sign = select(d.z < 0, all(-1), all(1)), k = -1/(sign + d.z), xy = d.x*d.y*k;
+    a = { 1 + sign*d.x*d.x*k, sign*xy, -sign*d.x };
+    b = { xy, sign + d.y*d.y*k, -d.y };
+}
+
 }}} // namespace
 
 #endif // OPENCV_REFRACT_VECTORS_HPP

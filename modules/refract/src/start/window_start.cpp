@@ -7,6 +7,7 @@
 #include "start/window_start.hpp"
 #include "adjust/minimize.hpp"
 #include "start/normal_from_pairs.hpp"
+#include "window/wedge.hpp"
 
 namespace cv { namespace refract {
 
@@ -304,7 +305,16 @@ double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.c
 
 GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
 {
-    const WindowTransfer transfer(window.normal, window.distance, Extrinsics(from), Extrinsics(to));
+    const Extrinsics a(from), b(to);
+    const WindowTransfer transfer(window.normal, window.distance, a, b);
+    if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
+    {
+        const Matx33d R = b.rotation.R*a.rotation.R.t();
+        const std::vector<double> given = window.thickness;
+        window = windowInFrame(window, R, b.T - R*a.T);
+        for (size_t i = 0; i < given.size(); i++)       // the fit refuses faces that meet before the camera
+            window.thickness[i] = std::max(window.thickness[i], 1e-3*given[i]);
+    }
     window.normal = transfer.normal;
     window.distance = std::max(transfer.distance, 0.);      // the fit refuses a window that is behind the camera
     return window;

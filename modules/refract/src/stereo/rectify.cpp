@@ -51,10 +51,9 @@ std::vector<Point2d> normalized(const Camera& camera, const std::vector<Point2d>
     std::vector<Point2d> result;
     for (const Point2d& pixel : pixels)
     {
-        double tau, dx, dy, dz;
-        uchar status = REFRACT_OK;
-        camera.unproject(1, &pixel.x, &pixel.y, &tau, &dx, &dy, &dz, &status);
-        const Vec3d origin = R*(tau*camera.layers().normal() - T), direction = R*Vec3d(dx, dy, dz);
+        Vec3d from, d;
+        const uchar status = camera.unproject(pixel, from, d);
+        const Vec3d origin = R*(from - T), direction = R*d;
         const double s = (depth - origin[2])/direction[2];
         if (status != REFRACT_OK || !(direction[2] > 0 && s > 0))
             continue;

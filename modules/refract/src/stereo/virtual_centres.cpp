@@ -12,10 +12,11 @@ namespace cv { namespace refract {
 static double paraxialTau(const Camera& camera)
 {
     const Vec3d n = camera.layers().normal();
-    double tau = 0, x, y, z;
+    Rays rays;
     uchar status = REFRACT_OK;
-    camera.layers().traceOut(1, &n[0], &n[1], &n[2], &tau, &x, &y, &z, &status);
-    return tau;
+    rays.tau[0] = 0;
+    camera.layers().traceOut(1, &n[0], &n[1], &n[2], rays, &status);
+    return rays.tau[0];
 }
 
 VirtualPair::VirtualPair(const StereoPair& pair, const Vec2d& tau)
@@ -48,7 +49,8 @@ RowSamples::RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& dept
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < DEPTHS; k++)
         {
-            double u[COLUMNS], v[COLUMNS], tau[COLUMNS], dx[COLUMNS], dy[COLUMNS], dz[COLUMNS], planeD[COLUMNS];
+            Rays seen;
+            double u[COLUMNS], v[COLUMNS], planeD[COLUMNS];
             double x[COLUMNS], y[COLUMNS], z[COLUMNS], w[COLUMNS], u2[COLUMNS], v2[COLUMNS];
             uchar status[COLUMNS] = {};
             const double part = k/(DEPTHS - 1.), depth = 1/((1 - part)/depthRange[0] + part/depthRange[1]);
@@ -58,12 +60,12 @@ RowSamples::RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& dept
                 v[i] = (imageSize.height - 1)*row/(ROWS - 1.);
                 planeD[i] = depth;
             }
-            first.unproject(COLUMNS, u, v, tau, dx, dy, dz, status);
-            meetPlane(first.layers(), COLUMNS, Vec3d(0, 0, 1), planeD, tau, dx, dy, dz, x, y, z, w, status);
+            first.unproject(COLUMNS, u, v, seen, status);
+            meetPlane(first.layers(), COLUMNS, Vec3d(0, 0, 1), planeD, seen, x, y, z, w, status);
             std::vector<Ray> rays;
             for (int i = 0; i < COLUMNS; i++)
             {
-                rays.push_back({ tau[i]*first.layers().normal(), Vec3d(dx[i], dy[i], dz[i]) });
+                rays.push_back({ seen.origin(i, first.layers().normal()), seen.direction(i) });
                 const Vec3d X = R*Vec3d(x[i], y[i], z[i]) + w[i]*pair.T;
                 x[i] = X[0]; y[i] = X[1]; z[i] = X[2];
             }
@@ -71,12 +73,12 @@ RowSamples::RowSamples(const StereoPair& pair, Size imageSize, const Vec2d& dept
             for (int i = 0; i < COLUMNS; i++)
                 if (status[i] == REFRACT_OK && !(u2[i] >= 0 && v2[i] >= 0 && u2[i] <= imageSize.width - 1 && v2[i] <= imageSize.height - 1))
                     status[i] = REFRACT_NO_INTERSECTION;
-            second.unproject(COLUMNS, u2, v2, tau, dx, dy, dz, status);
+            second.unproject(COLUMNS, u2, v2, seen, status);
             for (int i = 0; i < COLUMNS; i++)
                 if (status[i] == REFRACT_OK)
                 {
                     rays1_.push_back(rays[i]);
-                    rays2_.push_back({ tau[i]*second.layers().normal(), Vec3d(dx[i], dy[i], dz[i]) });
+                    rays2_.push_back({ seen.origin(i, second.layers().normal()), seen.direction(i) });
                 }
         }
     if (rays1_.empty())

@@ -9,9 +9,9 @@
 
 namespace cv { namespace refract {
 
-/* All rays of a camera meet the axis of its window, C + tau n, each at a tau of its own. A pinhole at one well chosen tau, its
-virtual centre, that shows one plane exactly, shows what lies before and behind it nearly so: a pair of such pinholes is
-rectified to first order in all that varies with depth. */
+/* All rays of a camera meet the axis of its window, C + tau n, each at a tau of its own (behind faces that are not parallel, nearly
+so). A pinhole at one well chosen tau, its virtual centre, that shows one plane exactly, shows what lies before and behind it nearly
+so: a pair of such pinholes is rectified to first order in all that varies with depth. */
 
 //! A pair of pinholes at virtual centres, turned so that one's rows (or columns) are the other's.
 struct VirtualPair

@@ -6,6 +6,9 @@
 #include "math/missing.hpp"
 #include "window/parameters.hpp"
 #include "window/path.hpp"
+#include "window/wedge.hpp"
+#include "window/wedge_kernels.hpp"
+#include "window/wedge_path.hpp"
 #include <numeric>
 
 namespace cv { namespace refract {
@@ -44,8 +47,29 @@ Layers::Layers(const GlassWindow& window)
     media_ = mediaOf(height_, index_, outer, rarest);
     const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
     stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
-               NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout((int)window.thickness.size()) };
+               NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout(window) };
+    last_ = { { normal_[0], normal_[1], normal_[2] }, total };
+    isTilted_ = false;
+    tilted_ = TiltedFaces();
+    if (!window.wedge.empty())
+        setWedge(window);
     pointIntoVectors();
+}
+
+void Layers::setWedge(const GlassWindow& window)
+{
+    isTilted_ = std::any_of(window.wedge.begin(), window.wedge.end(), [](const Vec2d& w) { return w != Vec2d(); });
+    faces_ = facesOf(window);
+    const Matx33d axes = windowAxes(normal_);
+    std::copy_n(axes.val, 9, tilted_.axes);
+    tilted_.count = (int)faces_.size();
+    tilted_.inner = stack_.inner;
+    tilted_.outer = stack_.outer;
+    tilted_.at = stack_.at;
+    if (!isTilted_)
+        return;
+    const Vec3d last = axes.t()*Vec3d(faces_.back().normal);
+    last_ = { { last[0], last[1], last[2] }, faces_.back().distance };
 }
 
 Layers& Layers::operator=(const Layers& other)
@@ -55,6 +79,10 @@ Layers& Layers::operator=(const Layers& other)
     index_ = other.index_;
     media_ = other.media_;
     stack_ = other.stack_;
+    last_ = other.last_;
+    isTilted_ = other.isTilted_;
+    faces_ = other.faces_;
+    tilted_ = other.tilted_;
     pointIntoVectors();
     return *this;
 }
@@ -64,20 +92,42 @@ void Layers::pointIntoVectors()
     stack_.media = media_.data();
     stack_.heights = height_.data();
     stack_.indices = index_.data();
+    tilted_.faces = faces_.data();
 }
 
-void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz,
-                      double* tau, double* dx, double* dy, double* dz, uchar* status) const
+void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
 {
+    rays.hasOffset = isTilted_;
+    if (isTilted_)
+        return traceOutTilted(n, wx, wy, wz, rays, status);
     if (!stack_.refracts)
     {
-        std::fill(tau, tau + n, 0.);
-        std::copy(wx, wx + n, dx); std::copy(wy, wy + n, dy); std::copy(wz, wz + n, dz);
+        std::fill(rays.tau, rays.tau + n, 0.);
+        std::copy(wx, wx + n, rays.dx); std::copy(wy, wy + n, rays.dy); std::copy(wz, wz + n, rays.dz);
         return;
     }
-    if (!layerKernels().traceOut(stack_, n, wx, wy, wz, tau, dx, dy, dz))
-        answerMissing(n, tau, status, [=](int i)
+    if (!layerKernels().traceOut(stack_, n, wx, wy, wz, rays.tau, rays.dx, rays.dy, rays.dz))
+        answerMissing(n, rays.tau, status, [=](int i)
                       { return normal_.dot(Vec3d(wx[i], wy[i], wz[i])) > 0 ? REFRACT_TOTAL_REFLECTION : REFRACT_BEHIND_WINDOW; });
+}
+
+void Layers::traceOutTilted(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
+{
+    if (!wedgeKernels().traceOut(tilted_, n, wx, wy, wz, rays.tau, rays.offsets(), rays.dx, rays.dy, rays.dz))
+        answerMissing(n, rays.tau, status, [=](int i)
+                      { return statusOfDirection(tilted_, Matx33d(tilted_.axes)*Vec3d(wx[i], wy[i], wz[i])); });
+}
+
+double Layers::leavingMu(const Rays& rays, int i) const
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (!stack_.refracts)
+        return infinity;
+    if (!isTilted_)
+        return stack_.total > rays.tau[i] ? normal_.dot(rays.direction(i))/(stack_.total - rays.tau[i]) : infinity;
+    const Vec3d last(last_.normal);
+    const double height = last_.distance - last.dot(rays.origin(i, normal_));
+    return height > 0 ? last.dot(rays.direction(i))/height : infinity;
 }
 
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
@@ -88,6 +138,8 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
         std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
         return;
     }
+    if (isTilted_)
+        return solveInTilted(n, x, y, z, w, dx, dy, dz, status);
     if (layerKernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
         return;
     answerMissing(n, dx, status, [=](int i)
@@ -98,6 +150,22 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
         if (ratio)
             ratio[i] = found;
         return solved;
+    });
+}
+
+void Layers::solveInTilted(int n, const double* x, const double* y, const double* z, const double* w,
+                           double* dx, double* dy, double* dz, uchar* status) const
+{
+    if (wedgeKernels().solveIn(stack_, tilted_, n, x, y, z, w, dx, dy, dz))
+        return;
+    answerMissing(n, dx, status, [=](int i)
+    {
+        const Matx33d axes(tilted_.axes);
+        Vec3d d;
+        const uchar found = findWedgePath(tilted_, axes*Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d);
+        d = axes.t()*d;
+        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
+        return found;
     });
 }
 
@@ -130,10 +198,15 @@ uchar Layers::solveOne(const Vec3d& X, double w, double* d, double& ratio) const
     return status;
 }
 
-void Layers::chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
-                   const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const
+void Layers::chain(int rows, int n, const double* x, const double* y, const double* z, const double* dx, const double* dy,
+                   const double* dz, const double* ratio, const Columns& byDirection, const Columns& byPoint,
+                   const Columns& byWindow) const
 {
-    if (stack_.refracts)
+    if (isTilted_ || (!faces_.empty() && byWindow.data))
+        wedgeKernels().chain(tilted_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
+    if (isTilted_)
+        return;
+    if (stack_.refracts)        // of a wedge of 0, all but by the wedge once more: as without it
     {
         layerKernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
         return;

@@ -6,11 +6,13 @@
 #define OPENCV_REFRACT_LAYERS_HPP
 
 #include "precomp.hpp"
+#include "window/faces.hpp"
 #include "window/layer_kernels.hpp"
+#include "window/rays.hpp"
 
 namespace cv { namespace refract {
 
-/* The physics of parallel layers. With n the unit normal, c = n.w the cosine of the inner direction w, and
+/* The physics of layers. With n the unit normal, c = n.w the cosine of the inner direction w, and
 p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_i = sqrt(n_i^2 - p^2):
 
     tau(p) = sum_i h_i (1 - q_out / q_i)
@@ -18,6 +20,8 @@ p = n_inner sin(theta_inner), which Snell's law keeps through all layers, and q_
 is where the outgoing line meets the axis O + tau n. (A gap whose medium is the scene's is left out, as it has no part in it; of
 the others, what cancels is the rounding of h_i.) The way back is in path.hpp.
 For one pane in air: equations (12) and (16) of Plate2024.
+
+Faces that are not parallel (GlassWindow::wedge) have kernels of their own, chosen once per call: wedge.simd.hpp.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
 results are not meaningful. */
@@ -31,9 +35,8 @@ public:
     //! False: no window; directions pass unchanged and origins are the centre of projection.
     bool refracts() const { return stack_.refracts; }
 
-    //! Inner directions (unit) -> height tau of the outgoing line on the axis, outer directions (unit).
-    void traceOut(int n, const double* wx, const double* wy, const double* wz,
-                  double* tau, double* dx, double* dy, double* dz, uchar* status) const;
+    //! Inner directions (unit) -> rays outside.
+    void traceOut(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
 
     /** Homogeneous scene points (x, y, z, w), w >= 0 (0 = infinitely far; null = all 1) -> inner directions, not unit:
     n + kappa (X - (n.X) n). Domain: beyond the last surface.
@@ -44,30 +47,38 @@ public:
     //! Where the columns of a derivative by the window stand.
     const WindowLayout& at() const { return stack_.at; }
 
-    /** Chain rule through solveIn for finite points: rows of derivatives by the direction -> by the point (3 columns) and by
-    the window (at().count columns, by the *unnormalised* normal; may be null).
-    @param ratio as solveIn gave it */
-    void chain(int rows, int n, const double* x, const double* y, const double* z, const double* ratio,
-               const Columns& byDirection, const Columns& byPoint, const Columns& byWindow) const;
+    /** Chain rule through solveIn for finite points: two or three rows of derivatives by the direction -> by the point (3 columns)
+    and by the window (at().count columns, by the *unnormalised* normal; may be null).
+    @param dx, dy, dz, ratio as solveIn gave them */
+    void chain(int rows, int n, const double* x, const double* y, const double* z, const double* dx, const double* dy,
+               const double* dz, const double* ratio, const Columns& byDirection, const Columns& byPoint,
+               const Columns& byWindow) const;
 
     //! True where the homogeneous point lies beyond the last surface (always true without window).
     bool isBeyond(double x, double y, double z, double w = 1.) const
-    { return !stack_.refracts || normal_[0]*x + normal_[1]*y + normal_[2]*z > w*stack_.total; }
+    { return !stack_.refracts || last_.normal[0]*x + last_.normal[1]*y + last_.normal[2]*z > w*last_.distance; }
 
-    /** 1/s at which a ray tau n + s d leaves the last surface (infinity without window): it exists for smaller 1/s.
-    @param cosine n.d */
-    double leavingMu(double tau, double cosine) const
-    { return stack_.refracts && stack_.total > tau ? cosine/(stack_.total - tau) : std::numeric_limits<double>::infinity(); }
+    //! 1/s at which a ray leaves the last surface (infinity without window): it exists for smaller 1/s.
+    double leavingMu(const Rays& rays, int i) const;
 
     const Vec3d& normal() const { return normal_; }
+    //! The last surface, camera frame; without window it means nothing.
+    const Plane& lastSurface() const { return last_; }
+    //! The faces are not parallel: origins of rays are off the axis.
+    bool isTilted() const { return isTilted_; }
+    const TiltedFaces& tilted() const { return tilted_; }
 
     //! The layers as the kernels see them; it lives as long as this object.
     const Stack& stack() const { return stack_; }
 
 private:
+    void setWedge(const GlassWindow& window);
     void pointIntoVectors();    //!< where stack_ has pointers
     //! One lane that the kernel left without an answer: the answer, or why there is none.
     uchar solveOne(const Vec3d& X, double w, double* d, double& ratio) const;
+    void traceOutTilted(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
+    void solveInTilted(int n, const double* x, const double* y, const double* z, const double* w,
+                       double* dx, double* dy, double* dz, uchar* status) const;
 
     Vec3d normal_;
     std::vector<double> height_;    //!< inner gap, then the layers
@@ -76,6 +87,10 @@ private:
     /* Not made anew for every call of a kernel: to read, as a whole, what was just written in parts, a processor waits until
     everything written before has reached memory. */
     Stack stack_;
+    Plane last_;
+    bool isTilted_;
+    std::vector<Face> faces_;       //!< empty where the window's wedge is
+    TiltedFaces tilted_;            //!< they as the kernels see them
 };
 
 }} // namespace

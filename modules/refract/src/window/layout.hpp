@@ -17,6 +17,7 @@ struct WindowLayout
     int distance;
     int thickness, index;       //!< one per layer
     int innerIndex, outerIndex;
+    int wedge;                  //!< two per layer, if the window has a wedge; they follow all others
     int count;
 };
 

@@ -8,7 +8,7 @@ namespace cv { namespace refract {
 
 static const double LEAST_THICKNESS = 1e-6;      // of its start
 
-WindowLayout windowLayout(int layers)
+WindowLayout windowLayout(int layers, bool hasWedge)
 {
     WindowLayout at;
     at.layers = layers;
@@ -18,8 +18,14 @@ WindowLayout windowLayout(int layers)
     at.index = at.thickness + layers;
     at.innerIndex = at.index + layers;
     at.outerIndex = at.innerIndex + 1;
-    at.count = at.outerIndex + 1;
+    at.wedge = at.outerIndex + 1;
+    at.count = at.wedge + (hasWedge ? 2*layers : 0);
     return at;
+}
+
+WindowLayout windowLayout(const GlassWindow& window)
+{
+    return windowLayout((int)window.thickness.size(), !window.wedge.empty());
 }
 
 WindowParameter kindOf(const WindowLayout& at, int parameter)
@@ -29,29 +35,31 @@ WindowParameter kindOf(const WindowLayout& at, int parameter)
            parameter < at.thickness ? WindowParameter::DISTANCE :
            parameter < at.index ? WindowParameter::THICKNESS :
            parameter < at.innerIndex ? WindowParameter::INDEX :
-           parameter < at.outerIndex ? WindowParameter::INNER_INDEX : WindowParameter::OUTER_INDEX;
+           parameter < at.outerIndex ? WindowParameter::INNER_INDEX :
+           parameter < at.wedge ? WindowParameter::OUTER_INDEX : WindowParameter::WEDGE;
 }
 
-std::vector<String> windowParameterNames(int layers)
+std::vector<String> windowParameterNames(const WindowLayout& at)
 {
-    const WindowLayout at = windowLayout(layers);
     std::vector<String> names(at.count);
     for (int i = 0; i < 3; i++)
         names[at.normal + i] = format("normal[%d]", i);
     names[at.distance] = "distance";
-    for (int i = 0; i < layers; i++)
+    for (int i = 0; i < at.layers; i++)
     {
         names[at.thickness + i] = format("thickness[%d]", i);
         names[at.index + i] = format("index[%d]", i);
     }
     names[at.innerIndex] = "innerIndex";
     names[at.outerIndex] = "outerIndex";
+    for (int i = 0; i < at.count - at.wedge; i++)
+        names[at.wedge + i] = format("wedge[%d][%d]", i/2, i % 2);
     return names;
 }
 
 std::vector<double> windowParameters(const GlassWindow& window)
 {
-    const WindowLayout at = windowLayout((int)window.thickness.size());
+    const WindowLayout at = windowLayout(window);
     std::vector<double> p(at.count);
     std::copy(window.normal.val, window.normal.val + 3, p.begin() + at.normal);
     p[at.distance] = window.distance;
@@ -59,25 +67,28 @@ std::vector<double> windowParameters(const GlassWindow& window)
     std::copy(window.index.begin(), window.index.end(), p.begin() + at.index);
     p[at.innerIndex] = window.innerIndex;
     p[at.outerIndex] = window.outerIndex;
+    for (int i = 0; i < at.count - at.wedge; i++)
+        p[at.wedge + i] = window.wedge[i/2][i % 2];
     return p;
 }
 
 GlassWindow withParameters(GlassWindow window, const double* p)
 {
-    const int layers = (int)window.thickness.size();
-    const WindowLayout at = windowLayout(layers);
+    const WindowLayout at = windowLayout(window);
+    const int layers = at.layers;
     window.normal = normalize(Vec3d(p + at.normal));
     window.distance = p[at.distance];
     window.thickness.assign(p + at.thickness, p + at.thickness + layers);
     window.index.assign(p + at.index, p + at.index + layers);
     window.innerIndex = p[at.innerIndex];
     window.outerIndex = p[at.outerIndex];
+    for (int i = 0; i < at.count - at.wedge; i++)
+        window.wedge[i/2][i % 2] = p[at.wedge + i];
     return window;
 }
 
-std::vector<bool> freeWindowParameters(int layers, int flags)
+std::vector<bool> freeWindowParameters(const WindowLayout& at, int flags)
 {
-    const WindowLayout at = windowLayout(layers);
     std::vector<bool> isFree(at.count, false);
     for (int i = 0; i < at.count; i++)
         switch (kindOf(at, i))
@@ -88,6 +99,7 @@ std::vector<bool> freeWindowParameters(int layers, int flags)
         case WindowParameter::INDEX: isFree[i] = (flags & GLASS_FREE_INDEX) != 0; break;
         case WindowParameter::INNER_INDEX: break;
         case WindowParameter::OUTER_INDEX: isFree[i] = (flags & GLASS_FREE_OUTER_INDEX) != 0; break;
+        case WindowParameter::WEDGE: break;
         }
     return isFree;
 }
@@ -96,7 +108,7 @@ double lowerBound(WindowParameter kind, double start)
 {
     switch (kind)
     {
-    case WindowParameter::NORMAL: return -std::numeric_limits<double>::infinity();
+    case WindowParameter::NORMAL: case WindowParameter::WEDGE: return -std::numeric_limits<double>::infinity();
     case WindowParameter::DISTANCE: return 0.;
     case WindowParameter::THICKNESS: return LEAST_THICKNESS*start;
     default: return 1.;         // an index
@@ -106,7 +118,9 @@ double lowerBound(WindowParameter kind, double start)
 double upperBound(WindowParameter kind)
 {
     const bool isLength = kind == WindowParameter::DISTANCE || kind == WindowParameter::THICKNESS;
-    return kind == WindowParameter::NORMAL ? std::numeric_limits<double>::infinity() : isLength ? MAX_LENGTH : MAX_INDEX;
+    if (kind == WindowParameter::NORMAL || kind == WindowParameter::WEDGE)
+        return std::numeric_limits<double>::infinity();
+    return isLength ? MAX_LENGTH : MAX_INDEX;
 }
 
 }} // namespace

@@ -15,20 +15,21 @@ namespace cv { namespace refract {
 // Beyond what there is, and small enough that no product of them overflows.
 const double MAX_LENGTH = 1e100, MAX_INDEX = 1e6;
 
-enum class WindowParameter { NORMAL, DISTANCE, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX };
+enum class WindowParameter { NORMAL, DISTANCE, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX, WEDGE };
 
-WindowLayout windowLayout(int layers);
+WindowLayout windowLayout(int layers, bool hasWedge = false);
+WindowLayout windowLayout(const GlassWindow& window);
 WindowParameter kindOf(const WindowLayout& at, int parameter);
 
-//! normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex
-std::vector<String> windowParameterNames(int layers);
+//! normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex, wedge[0][0], wedge[0][1], ...
+std::vector<String> windowParameterNames(const WindowLayout& at);
 std::vector<double> windowParameters(const GlassWindow& window);
 /** The window with other parameters; it keeps what is none of them.
 @param parameters of a normal of any length */
 GlassWindow withParameters(GlassWindow window, const double* parameters);
 
 //! GlassCalibrationFlags -> which are free. The normal is always.
-std::vector<bool> freeWindowParameters(int layers, int flags);
+std::vector<bool> freeWindowParameters(const WindowLayout& at, int flags);
 //! What no parameter falls below while it is estimated, by where it starts.
 double lowerBound(WindowParameter kind, double start);
 //! What GlassWindow::check() refuses beyond.

@@ -43,6 +43,31 @@ static void checkBetween(const char* name, double value, double least, double mo
     CV_Error_(Error::StsOutOfRange, ("%s%s is %g; it must be finite and at least %g", name, element.c_str(), value, least));
 }
 
+//! Faces that lean by a right angle are no window; and where a thickness is 0, faces that lean meet on the axis.
+static void checkWedge(const GlassWindow& window)
+{
+    if (!window.wedge.empty() && window.wedge.size() != window.thickness.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("window.wedge has %d layers, window.thickness %d; it must be empty, or they must agree",
+                                             (int)window.wedge.size(), (int)window.thickness.size()));
+    Vec2d lean;
+    for (size_t i = 0; i < window.wedge.size(); i++)
+    {
+        const Vec2d& w = window.wedge[i];
+        lean += w;
+        if (!(cv::norm(w) < CV_PI/2))
+            CV_Error_(Error::StsOutOfRange, ("window.wedge[%d] is (%g, %g); it must be finite and below 90 degrees, in radians", (int)i,
+                                             w[0], w[1]));
+        if (!(cv::norm(lean) < CV_PI/2))
+            CV_Error_(Error::StsOutOfRange, ("window.wedge[0] to [%d] add up to (%g, %g); that must be below 90 degrees, in radians",
+                                             (int)i, lean[0], lean[1]));
+    }
+    const bool isTilted = std::any_of(window.wedge.begin(), window.wedge.end(), [](const Vec2d& w) { return w != Vec2d(); });
+    for (size_t i = 0; isTilted && i < window.thickness.size(); i++)
+        if (!(window.thickness[i] > 0))
+            CV_Error_(Error::StsOutOfRange, ("window.thickness[%d] is %g; it must be positive in a window with a wedge", (int)i,
+                                             window.thickness[i]));
+}
+
 void GlassWindow::check() const
 {
     const double length = cv::norm(normal);
@@ -64,6 +89,8 @@ void GlassWindow::check() const
         checkBetween("window.thickness", thickness[i], 0, MAX_LENGTH, (int)i);
         checkBetween("window.index", index[i], 1, MAX_INDEX, (int)i);
     }
+    if (!wedge.empty())
+        checkWedge(*this);
     checkBetween("window.wavelength", wavelength, 0, MAX_LENGTH);
     if (!materials.empty() && materials.size() != index.size() + 2)
         CV_Error_(Error::StsUnmatchedSizes, ("window.materials has %d names; it must be empty or have %d: inner medium, layers, "
@@ -101,6 +128,12 @@ void GlassWindow::write(FileStorage& fs) const
     fs << "]" << "index" << "[:";
     for (double n : index) fs << n;
     fs << "]" << "inner_index" << innerIndex << "outer_index" << outerIndex;
+    if (!wedge.empty())
+    {
+        fs << "wedge" << "[:";
+        for (const Vec2d& w : wedge) fs << "[:" << w[0] << w[1] << "]";
+        fs << "]";
+    }
     if (wavelength > 0)
         fs << "wavelength" << wavelength;
     if (!materials.empty())
@@ -132,6 +165,20 @@ static std::vector<double> readSequence(const FileNode& map, const char* key)
         values.push_back((double)item);
     }
     return values;
+}
+
+static std::vector<Vec2d> readPairs(const FileNode& map, const char* key)
+{
+    std::vector<Vec2d> pairs;
+    const FileNode node = map[key];
+    for (FileNodeIterator it = node.begin(); it != node.end(); it++)
+    {
+        const FileNode pair = *it;
+        if (!node.isSeq() || !pair.isSeq() || pair.size() != 2 || pair[0].isString() || pair[1].isString())
+            CV_Error_(Error::StsParseError, ("glass_window.%s must be a list of pairs of numbers, one a layer", key));
+        pairs.push_back(Vec2d((double)pair[0], (double)pair[1]));
+    }
+    return pairs;
 }
 
 static std::vector<String> readNames(const FileNode& map, const char* key)
@@ -170,8 +217,8 @@ static void readMaterials(const FileNode& node, GlassWindow& window)
 //! A slip in a name would leave what it names at its default: air.
 static void checkKeys(const FileNode& map)
 {
-    const std::vector<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "materials",
-                                             "wavelength" };
+    const std::vector<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "wedge",
+                                             "materials", "wavelength" };
     std::string names;
     for (const std::string& name : known)
         names += (names.empty() ? "" : ", ") + name;
@@ -198,6 +245,7 @@ void GlassWindow::read(const FileNode& node)
     window.index = readSequence(node, "index");
     window.innerIndex = readNumber(node, "inner_index", 1);
     window.outerIndex = readNumber(node, "outer_index", 1);
+    window.wedge = readPairs(node, "wedge");
     readMaterials(node, window);
     window.check();
     *this = window;

@@ -89,6 +89,9 @@ class refract_test(NewOpenCVTests):
         self.assertEqual((30, 1.333, 1), (window.distance, window.innerIndex, window.outerIndex))
         self.assertEqual([6, 0.76, 6], list(window.thickness))
         self.assertEqual([1.52, 1.48, 1.52], list(window.index))
+        window.wedge = [(1e-3, 0), (0, 0), (-1e-3, 2e-3)]
+        window.check()
+        self.assertEqual([(1e-3, 0), (0, 0), (-1e-3, 2e-3)], [tuple(pair) for pair in window.wedge])
         window.index = [0.9, 1.48, 1.52]
         with self.assertRaisesRegex(cv.error, r'window\.index\[0\] is 0\.9'):
             window.check()

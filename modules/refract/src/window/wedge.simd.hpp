@@ -1,0 +1,453 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_WEDGE_SIMD_HPP
+#define OPENCV_REFRACT_WEDGE_SIMD_HPP
+
+#include "simd/vectors.hpp"
+#include "window/layers.simd.hpp"
+#include "window/wedge_kernels.hpp"
+
+/* Light through faces that are not parallel, in the window's frame. With the optical vector p = index * direction, of which a face
+of normal m changes m.p = c alone (Snell's law),
+
+    p' = p + gamma m,    gamma = sqrt(c^2 + n'^2 - n^2) - c
+
+and P' = P + s p from one face to the next, s = (distance - m.P)/(m.p) there. */
+
+namespace cv { namespace refract { namespace {
+
+//! a + k b
+inline Vector plus(const Vector& a, Lanes k, const Vector& b) { return { a.x + k*b.x, a.y + k*b.y, a.z + k*b.z }; }
+inline Vector plus(const Vector& a, Lanes k, const double* b) { return { a.x + k*b[0], a.y + k*b[1], a.z + k*b[2] }; }
+
+inline Vector intoFrame(const double* axes, const Vector& a) { return { dot(axes, a), dot(axes + 3, a), dot(axes + 6, a) }; }
+inline Vector outOfFrame(const double* axes, const Vector& a)
+{
+    return { axes[0]*a.x + axes[3]*a.y + axes[6]*a.z, axes[1]*a.x + axes[4]*a.y + axes[7]*a.z,
+             axes[2]*a.x + axes[5]*a.y + axes[8]*a.z };
+}
+
+/* The outgoing line goes through P - (s_0 + s_1 + ...) p, which is - sum over the faces of gamma m (s_0 + ... up to there): a sum of
+what is small, without a difference of points; on the axis where all m are one. */
+bool traceOutWedge(const TiltedFaces& window, int n, const double* wx, const double* wy, const double* wz,
+                   double* tau, const Columns& offset, double* dx, double* dy, double* dz)
+{
+    const Constants<9> axes(window.axes);
+    const Face* const faces = window.faces;
+    const int count = window.count;
+    const double inner = window.inner, inverseOuter = 1/window.outer;
+    Answers answers;
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes zero = all(0);
+        const Vector w = intoFrame(axes.value, { load(wx, at), load(wy, at), load(wz, at) });
+        Vector p = { inner*w.x, inner*w.y, inner*w.z }, P = { zero, zero, zero }, origin = P;
+        Lanes sum = zero;
+        Mask good = p.z > 0;
+        for (int k = 0; k < count; k++)
+        {
+            const Face& face = faces[k];
+            const Lanes c = dot(face.normal, p), s = (face.distance - dot(face.normal, P))/c, after2 = c*c + face.excess;
+            good &= (c > 0) & (s >= 0) & (after2 > 0);
+            const Lanes gamma = after2*inverseSqrt(after2) - c;
+            P = plus(P, s, p);
+            p = plus(p, gamma, face.normal);
+            sum += s;
+            origin = plus(origin, -gamma*sum, face.normal);
+        }
+        store(answers.where(good, origin.z), tau, at);
+        const Vector o = outOfFrame(axes.value, { origin.x, origin.y, zero }), d = outOfFrame(axes.value, p);
+        storeAt(o.x, offset, 0, 0, at);
+        storeAt(o.y, offset, 0, 1, at);
+        storeAt(o.z, offset, 0, 2, at);
+        store(d.x*inverseOuter, dx, at);
+        store(d.y*inverseOuter, dy, at);
+        store(d.z*inverseOuter, dz, at);
+    });
+    return answers.complete();
+}
+
+/* A point's direction: Newton's method in the tangent t (2 components) of the direction in the rarest medium, from that of
+parallel faces. The error is where the ray of t misses the point, in the plane through it that is parallel to the last face.
+
+Optical vectors are in units of rarest cos(theta) of the rarest medium: (t, 1) there, and
+
+    c'^2 = c^2 + excess (1 + t^2),    excess = (n'^2 - n^2)/rarest^2 */
+struct WedgeSearch
+{
+    Path<Lanes> path;           //!< by parallel faces
+    Lanes ratio, step, slope;   //!< t/V of these, the last step of it, and dV/dt
+    Vector X;                   //!< the point, in the window's frame
+    Lanes height;               //!< of the scene's medium, along the last face's normal
+    Lanes tx, ty;
+    Lanes J[2][2];              //!< inverse of d miss/d t
+    Lanes step2, bound2;        //!< square of the last step; of the step that the derivatives are from
+    Mask good;
+
+    // The ray of t behind a face, and its derivatives by t.
+    Vector p, P, dp[2], dP[2];
+    Lanes inverseIn, inverseQ;              //!< 1/c before and behind the first face
+    Lanes c, behind2, both;                 //!< at the face to pass: m.p before it, its square behind it, 1/(c c')
+    Lanes inverseLast, dLast[2];            //!< 1/c' of the last face passed, and its derivatives over -c'^2
+};
+
+//! What the stages below have in common. A root waits for the one before it, so each ends a stage (see Group).
+struct WedgeStages
+{
+    WedgeStages(const Stack& s, const TiltedFaces& window)
+        : unit(1/(s.rarest*s.rarest)), inner2(s.inner*s.inner*unit), gap(window.faces[0].distance),
+          after2(window.faces[0].after*window.faces[0].after*unit), isInnerRarest(s.inner == s.rarest) {}
+
+    //! The first face is across the axis. q^2 = n^2 - p^2 by t: no cancellation near grazing.
+    void firstRoots(WedgeSearch& search) const
+    {
+        const Lanes t2 = search.tx*search.tx + search.ty*search.ty;
+        search.inverseIn = isInnerRarest ? all(1) : inverseSqrt(inner2 + (inner2 - 1)*t2);
+        search.inverseQ = inverseSqrt(after2 + (after2 - 1)*t2);
+    }
+
+    template<bool DERIVATIVES>
+    void passFirst(WedgeSearch& search) const
+    {
+        const Lanes zero = all(0), x = search.tx, y = search.ty, s0 = gap*search.inverseIn;
+        const Lanes q = (after2 + (after2 - 1)*(x*x + y*y))*search.inverseQ;
+        search.p = { x, y, q };
+        search.P = { s0*x, s0*y, all(gap) };
+        search.good = search.height > 0;
+        if (!DERIVATIVES)
+            return;
+        const Lanes bend = (1 - inner2)*s0*search.inverseIn*search.inverseIn, slope = (after2 - 1)*search.inverseQ, xy = bend*x*y;
+        search.dp[0] = { all(1), zero, slope*x };
+        search.dp[1] = { zero, all(1), slope*y };
+        search.dP[0] = { s0 + bend*x*x, xy, zero };
+        search.dP[1] = { xy, s0 + bend*y*y, zero };
+    }
+
+    void root(const Face& face, WedgeSearch& search) const
+    {
+        const Lanes secant2 = 1 + (search.tx*search.tx + search.ty*search.ty);
+        search.c = dot(face.normal, search.p);
+        search.behind2 = search.c*search.c + face.excess*unit*secant2;
+        search.both = inverseSqrt(search.c*search.c*search.behind2);
+    }
+
+    template<bool DERIVATIVES>
+    void pass(const Face& face, WedgeSearch& search) const
+    {
+        const double* const m = face.normal;
+        const Lanes c = search.c, inverseBehind = c*search.both, behind = search.behind2*inverseBehind, inverse = search.both*behind;
+        const Lanes length = (face.distance - dot(m, search.P))*inverse;
+        search.good &= (c > 0) & (length > 0) & (search.behind2 > 0);
+        const Vector p = search.p;
+        const Lanes t[2] = { search.tx, search.ty };
+        for (int j = 0; j < 2 && DERIVATIVES; j++)
+        {
+            const Vector dp = search.dp[j], dP = search.dP[j];
+            const Lanes dc = dot(m, dp), dBehind = (c*dc + face.excess*unit*t[j])*inverseBehind;
+            const Lanes dLength = -(dot(m, dP) + length*dc)*inverse;
+            search.dP[j] = plus(plus(dP, length, dp), dLength, p);
+            search.dp[j] = plus(dp, dBehind - dc, m);
+            search.dLast[j] = -dBehind*inverseBehind;
+        }
+        search.P = plus(search.P, length, p);
+        search.p = plus(p, behind - c, m);
+        search.inverseLast = inverseBehind;
+    }
+
+    //! The step, with the derivatives of this ray or of the one that had them last.
+    template<bool DERIVATIVES>
+    void move(WedgeSearch& search) const
+    {
+        const Vector &p = search.p, &P = search.P;
+        const Lanes length = search.height*search.inverseLast, w = search.path.weight;
+        const Lanes missX = w*P.x + length*p.x - search.X.x, missY = w*P.y + length*p.y - search.X.y;
+        if (DERIVATIVES)
+        {
+            const auto byX = [&](int j) { return w*search.dP[j].x + length*(search.dp[j].x + search.dLast[j]*p.x); };
+            const auto byY = [&](int j) { return w*search.dP[j].y + length*(search.dp[j].y + search.dLast[j]*p.y); };
+            const Lanes xx = byX(0), xy = byX(1), yx = byY(0), yy = byY(1), inverse = roughInverse(xx*yy - xy*yx);
+            search.J[0][0] = yy*inverse;
+            search.J[0][1] = -xy*inverse;
+            search.J[1][0] = -yx*inverse;
+            search.J[1][1] = xx*inverse;
+        }
+        const Lanes x = search.J[0][0]*missX + search.J[0][1]*missY, y = search.J[1][0]*missX + search.J[1][1]*missY;
+        search.tx -= x;
+        search.ty -= y;
+        search.step2 = x*x + y*y;
+        if (DERIVATIVES)
+            search.bound2 = search.step2;
+    }
+
+    double unit, inner2, gap, after2;
+    bool isInnerRarest;
+};
+
+//! A step of Newton's method; without DERIVATIVES it takes those of a step before.
+template<bool DERIVATIVES>
+inline void wedgeStep(const Stack& s, const TiltedFaces& window, Group<WedgeSearch>& group)
+{
+    const WedgeStages stages(s, window);
+    group.each([&](WedgeSearch& search, Part) { stages.firstRoots(search); });
+    group.each([&](WedgeSearch& search, Part)
+    {
+        stages.passFirst<DERIVATIVES>(search);
+        stages.root(window.faces[1], search);
+    });
+    const int last = window.count - 1;
+    for (int k = 1; k < last; k++)
+        group.each([&](WedgeSearch& search, Part)
+        {
+            stages.pass<DERIVATIVES>(window.faces[k], search);
+            stages.root(window.faces[k + 1], search);
+        });
+    group.each([&](WedgeSearch& search, Part)
+    {
+        stages.pass<DERIVATIVES>(window.faces[last], search);
+        stages.move<DERIVATIVES>(search);
+    });
+}
+
+/* The path through parallel faces, and the derivatives that it has: of the distance V by t is 1/ratio across the radius and slope along
+it. What a step with them leaves is of second order in the wedge. */
+inline void startWedge(const Stack& s, Group<WedgeSearch>& group)
+{
+    const double NEAR = 0.05;       // relative: the next step is a few times its cube
+    const int STEPS = 3;
+    group.each([&](WedgeSearch& search, Part) { search.ratio = firstRatio(s, search.path); });
+    bool more = true;
+    for (int k = 0; k < STEPS && more; k++)
+    {
+        group.each([&](WedgeSearch& search, Part)
+        {
+            const PathFunction<Lanes> F(s, search.path, search.ratio);
+            search.step = halleyStep(F);
+            search.slope = F.slope - 2*search.step*F.bend;
+            search.ratio += search.step;
+        });
+        more = group.some([&](const WedgeSearch& search) { return absolute(search.step) > NEAR*search.ratio; });
+    }
+    group.each([&](WedgeSearch& search, Part)
+    {
+        const Lanes ratio = search.ratio, slope = search.slope, x = search.X.x, y = search.X.y;
+        const Lanes along = (1 - ratio*slope)*roughInverse(larger(slope*search.path.radius2, all(1e-300)));
+        search.tx = ratio*x;
+        search.ty = ratio*y;
+        search.J[0][0] = ratio + along*x*x;
+        search.J[0][1] = search.J[1][0] = along*x*y;
+        search.J[1][1] = ratio + along*y*y;
+        search.bound2 = all(1e300);         // these derivatives are not the wedge's: no such step is the last
+    });
+}
+
+//! What a step leaves is a few times itself times the step that its derivatives are from.
+inline Lanes leftBy(const WedgeSearch& search) { return search.step2*search.bound2; }
+
+//! Of leftBy.
+inline Lanes enoughFor(const WedgeSearch& search)
+{
+    const double ENOUGH = 1e-16;
+    return ENOUGH*ENOUGH*square(1 + search.tx*search.tx + search.ty*search.ty);
+}
+
+bool solveInWedge(const Stack& stack, const TiltedFaces& window, int n, const double* px, const double* py, const double* pz,
+                  const double* pw, double* dx, double* dy, double* dz)
+{
+    const int STEPS = 10;
+    const double MOST = 1e16;       // of t^2: what goes astray ends beyond, where every step is small
+    const Stack s = stack;
+    const Constants<9> axes(window.axes);
+    const Face& last = window.faces[window.count - 1];
+    Answers answers;
+    eachGroup<WedgeSearch>(n, [&](Group<WedgeSearch>& group)
+    {
+        group.each([&](WedgeSearch& search, Part at)
+        {
+            const Lanes weight = pw ? load(pw, at) : all(1);
+            const Vector X = intoFrame(axes.value, { load(px, at), load(py, at), load(pz, at) });
+            search.X = X;
+            search.height = dot(last.normal, X) - weight*last.distance;
+            Path<Lanes>& path = search.path;
+            path.weight = weight;
+            path.scene = X.z - weight*s.total;
+            path.radius2 = X.x*X.x + X.y*X.y;
+        });
+        startWedge(s, group);
+        bool more = true;
+        for (int k = 0; k < STEPS && more; k++)
+        {
+            if (k % 2 == 1)
+                wedgeStep<true>(s, window, group);
+            else
+                wedgeStep<false>(s, window, group);
+            more = group.some([&](const WedgeSearch& search) { return leftBy(search) > enoughFor(search); });
+        }
+        group.each([&](WedgeSearch& search, Part at)
+        {
+            const double inner2 = s.inner*s.inner, excess = inner2 - s.rarest*s.rarest;
+            const Lanes t2 = search.tx*search.tx + search.ty*search.ty;
+            const Mask good = search.good & (leftBy(search) <= enoughFor(search)) & (t2 < MOST);
+            const Lanes kappa = excess > 0 ? s.rarest*inverseSqrt(inner2 + excess*t2) : all(1);
+            const Vector d = outOfFrame(axes.value, { kappa*search.tx, kappa*search.ty, all(1) });
+            store(answers.where(good, d.x), dx, at);
+            store(d.y, dy, at);
+            store(d.z, dz, at);
+        });
+    });
+    return answers.complete();
+}
+
+/* How the direction moves with all that there is. V is the optical length of the path from O to X: p = -dV/dO at the camera, and what
+moves a face or an index moves V as if the path stayed where it is,
+
+    dV = sum over the media of s n dn + sum over the faces of gamma (dm.P - d distance)
+
+So D.dp = -(D.d/dO) dV, the change of these terms and, by X, of the vector p there, when O moves by D and X stays. Two rays through X
+beside the ray's own say how: they are followed back to the camera, which tells by how much of each of them O moves by D. */
+struct RaysBeside
+{
+    Vector Q, p;                //!< where the ray is, and its optical vector
+    Vector dQ[2], dp[2];        //!< of the two beside it
+    Lanes gamma, dGamma[2];     //!< at the last face passed
+    Lanes ds[2];                //!< of the way back to it
+};
+
+//! From where they are back to a face and through it.
+inline void passBack(const Face& face, RaysBeside& rays)
+{
+    const double* const m = face.normal;
+    const Lanes c = dot(m, rays.p), inverse = 1/c, s = (dot(m, rays.Q) - face.distance)*inverse;
+    const Lanes before2 = c*c - face.excess, inverseBefore = inverseSqrt(before2), gamma = c - before2*inverseBefore;
+    for (int j = 0; j < 2; j++)
+    {
+        const Vector moved = plus(rays.dQ[j], -s, rays.dp[j]);
+        rays.ds[j] = dot(m, moved)*inverse;
+        rays.dQ[j] = plus(moved, -rays.ds[j], rays.p);
+        rays.dGamma[j] = dot(m, rays.dp[j])*(1 - c*inverseBefore);
+        rays.dp[j] = plus(rays.dp[j], -rays.dGamma[j], m);
+    }
+    rays.Q = plus(rays.Q, -s, rays.p);
+    rays.p = plus(rays.p, -gamma, m);
+    rays.gamma = gamma;
+}
+
+//! A sum over the faces of gamma (dm.P - d distance), as the two rays change it.
+struct FaceSum
+{
+    Lanes by[2] = { all(0), all(0) };
+    void add(const RaysBeside& rays, const double* dm, double dDistance)
+    {
+        for (int j = 0; j < 2; j++)
+            by[j] += rays.dGamma[j]*(dot(dm, rays.Q) - dDistance) + rays.gamma*dot(dm, rays.dQ[j]);
+    }
+};
+
+//! The optical vector behind the last face, from that at the camera.
+inline Vector behindWindow(const TiltedFaces& window, Vector p)
+{
+    for (int k = 0; k < window.count; k++)
+    {
+        const Face& face = window.faces[k];
+        const Lanes c = dot(face.normal, p), after2 = c*c + face.excess;
+        p = plus(p, after2*inverseSqrt(after2) - c, face.normal);
+    }
+    return p;
+}
+
+/** The two rays' changes of all parameters, as rows 0 and 1 of byWindow; with no byWindow they are only followed.
+@return how the rays' origin moves with each */
+template<typename At>
+inline void followBack(const TiltedFaces& window, const Columns& byWindow, At at, RaysBeside& rays, Vector (&dO)[2])
+{
+    const WindowLayout& column = window.at;
+    const bool isWanted = byWindow.data != nullptr;
+    const auto put = [&](int c, Lanes first, Lanes second)
+    {
+        storeAt(first, byWindow, 0, c, at);
+        storeAt(second, byWindow, 1, c, at);
+    };
+    const double none[3] = { 0, 0, 0 };
+    FaceSum height, lean[2], turn[2];
+    for (int k = window.count - 1; k >= 0; k--)
+    {
+        const Face& face = window.faces[k];
+        passBack(face, rays);
+        if (!isWanted)
+            continue;
+        put(k == window.count - 1 ? column.outerIndex : column.index + k, face.after*rays.ds[0], face.after*rays.ds[1]);
+        height.add(rays, none, face.byHeight);
+        put(k == 0 ? column.distance : column.thickness + k - 1, height.by[0], height.by[1]);
+        for (int a = 0; a < 2; a++)
+        {
+            turn[a].add(rays, face.byTurn[a], 0);
+            lean[a].add(rays, face.byLean[a], face.distanceByLean[a]);
+            if (k > 0)
+                put(column.wedge + 2*(k - 1) + a, lean[a].by[0], lean[a].by[1]);
+        }
+    }
+    const Vector& p = rays.p;
+    const Lanes s = rays.Q.z/p.z;
+    Vector byNormal[2];
+    for (int j = 0; j < 2; j++)
+    {
+        rays.ds[j] = dot(p, rays.dQ[j])*(1/(window.inner*window.inner));
+        dO[j] = plus(plus(rays.dQ[j], -s, rays.dp[j]), -rays.ds[j], p);
+        byNormal[j] = outOfFrame(window.axes, { turn[0].by[j], turn[1].by[j], all(0) });
+    }
+    if (!isWanted)
+        return;
+    put(column.innerIndex, window.inner*rays.ds[0], window.inner*rays.ds[1]);
+    put(column.normal, byNormal[0].x, byNormal[1].x);
+    put(column.normal + 1, byNormal[0].y, byNormal[1].y);
+    put(column.normal + 2, byNormal[0].z, byNormal[1].z);
+}
+
+//! Rows D by the direction -> by the point and by the window; two rows at least.
+void chainWedge(const TiltedFaces& window, int rows, int n, const double* px, const double* py, const double* pz,
+                const double* pdx, const double* pdy, const double* pdz, const Columns& byDirection, const Columns& byPoint,
+                const Columns& byWindow)
+{
+    const Constants<9> axes(window.axes);
+    eachRegister(n, [&](auto at)
+    {
+        const Lanes zero = all(0);
+        const Vector d = intoFrame(axes.value, { load(pdx, at), load(pdy, at), load(pdz, at) });
+        const Lanes scale = window.inner*inverseSqrt(dot(d, d));
+        RaysBeside rays;
+        rays.Q = intoFrame(axes.value, { load(px, at), load(py, at), load(pz, at) });
+        rays.p = behindWindow(window, { scale*d.x, scale*d.y, scale*d.z });
+        const Lanes inverse = all(1/window.outer);
+        vectorsAcross({ inverse*rays.p.x, inverse*rays.p.y, inverse*rays.p.z }, rays.dp[0], rays.dp[1]);
+        rays.dQ[0] = rays.dQ[1] = { zero, zero, zero };
+        const Vector atPoint[2] = { outOfFrame(axes.value, rays.dp[0]), outOfFrame(axes.value, rays.dp[1]) };
+        Vector dO[2];
+        followBack(window, byWindow, at, rays, dO);
+        const Lanes factor = -1/(scale*(dO[0].x*dO[1].y - dO[0].y*dO[1].x));
+        enum { MOST_ROWS = 3 };
+        Lanes share[MOST_ROWS][2];
+        for (int row = 0; row < rows; row++)
+        {
+            const Vector D = intoFrame(axes.value, loadRow(byDirection, row, at));
+            const Lanes a = (D.x*dO[1].y - D.y*dO[1].x)*factor, b = (dO[0].x*D.y - dO[0].y*D.x)*factor;
+            share[row][0] = a;
+            share[row][1] = b;
+            storeAt(a*atPoint[0].x + b*atPoint[1].x, byPoint, row, 0, at);
+            storeAt(a*atPoint[0].y + b*atPoint[1].y, byPoint, row, 1, at);
+            storeAt(a*atPoint[0].z + b*atPoint[1].z, byPoint, row, 2, at);
+        }
+        for (int column = 0; byWindow.data && column < window.at.count; column++)
+        {
+            const Lanes first = load(byWindow.at(0, column), at), second = load(byWindow.at(1, column), at);
+            for (int row = 0; row < rows; row++)
+                storeAt(share[row][0]*first + share[row][1]*second, byWindow, row, column, at);
+        }
+    });
+}
+
+constexpr WedgeKernels wedgeTable = { traceOutWedge, solveInWedge, chainWedge };
+
+}}} // namespace
+
+#endif // OPENCV_REFRACT_WEDGE_SIMD_HPP
