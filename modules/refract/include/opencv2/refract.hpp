@@ -146,7 +146,8 @@ enum GlassCalibrationFlags {
     GLASS_FIX_NORMAL = 1048576,         //!< the normal stays (refractiveBundleAdjust only)
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
-    GLASS_REQUIRE_EXTRINSICS = 8388608  //!< the same of R and T
+    GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
+    GLASS_FREE_WEDGE = 16777216         //!< wedge of every layer; a window without one gets one, starting at 0
 };
 
 //! How calibrateGlassRig used one image

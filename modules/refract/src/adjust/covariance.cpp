@@ -17,6 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Commercial panes are sold with up to 3 arc minutes: a standard deviation of as much tells nothing.
+const double MAX_WEDGE_SIGMA = 3*CV_PI/180/60;
 // Nobody finds points better than this: without it, noise-free data would seem to determine anything.
 const double LEAST_SIGMA = 0.01;
 
@@ -72,8 +74,9 @@ std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
             const bool isAngle = block.kind == ParameterBlock::NORMAL || (block.kind == ParameterBlock::EXTRINSICS && i < 3);
             const bool isLength = block.kind == ParameterBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
                                   block.kind == ParameterBlock::EXTRINSICS && i >= 3;
+            const bool isWedge = block.kind == ParameterBlock::MEDIA && block.windowParameter(i) == WindowParameter::WEDGE;
             p.maxSigma = !(required & requirementOf(block.kind)) ? infinity : isAngle ? CV_PI/4 : isLength ? range :
-                block.kind == ParameterBlock::MEDIA || i < 2 ? p.value() : infinity;
+                isWedge ? MAX_WEDGE_SIGMA : block.kind == ParameterBlock::MEDIA || i < 2 ? p.value() : infinity;
             parameters.push_back(p);
         }
     return parameters;

@@ -11,6 +11,7 @@ namespace cv { namespace refract {
 typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Map33;
 typedef Eigen::Map<const Eigen::Vector3d> Map3;
 
+static const double MAX_TRIAL_WEDGE = 1;        // radians: GlassWindow::check() refuses 90 degrees
 static const double NOWHERE_ELSE[6] = { 0, 0, 0, 0, 0, 0 };
 
 Extrinsics::Extrinsics(const double* six) : rotation(six ? six : NOWHERE_ELSE), T(six ? six + 3 : NOWHERE_ELSE) {}
@@ -73,7 +74,10 @@ bool RigCamera::setWindow(const Parameters& parameters)
     const Vec3d normal = window ? window->normal : Vec3d(parameters.normal);
     std::copy(normal.val, normal.val + 3, p + at().normal);
     std::copy(parameters.media, parameters.media + mediaCount(), p + at().media);
-    if (window && at().count > at().wedge && !turnWedge(parameters, p))
+    const bool hasWedge = at().count > at().wedge;
+    if (hasWedge && !(norm(Mat(1, at().count - at().wedge, CV_64F, p + at().wedge), NORM_L1) < MAX_TRIAL_WEDGE))
+        return false;
+    if (window && hasWedge && !turnWedge(parameters, p))
         return false;
     double& distance = p[at().distance];
     if (window)

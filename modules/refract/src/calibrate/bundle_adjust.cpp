@@ -144,6 +144,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
+    addWedges(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     RigViews views;

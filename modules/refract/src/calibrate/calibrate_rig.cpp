@@ -20,8 +20,8 @@ void checkWindow(const GlassWindow& window, int flags)
     if (window.thickness.empty() && equalMedia && !(flags & GLASS_FIX_NORMAL))
         CV_Error_(Error::StsBadArg, ("window has no layer and equal media (index %g): it does not refract, so that its "
                                      "normal is undetermined", window.innerIndex));
-    if (window.thickness.empty() && (flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX)))
-        CV_Error_(Error::StsBadFlag, ("flags is %d, but window has no layer whose thickness or index could be free", flags));
+    if (window.thickness.empty() && (flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_WEDGE)))
+        CV_Error_(Error::StsBadFlag, ("flags is %d, but window has no layer whose thickness, index or wedge could be free", flags));
     if (equalMedia && (flags & GLASS_FREE_DISTANCE))
         CV_Error_(Error::StsBadFlag, ("flags has GLASS_FREE_DISTANCE, but innerIndex and outerIndex are both %g: the "
                                       "distance has no effect then and is undetermined", window.innerIndex));
@@ -33,6 +33,18 @@ void checkFlags(int flags, int allowed)
 {
     if (flags & ~allowed)
         CV_Error_(Error::StsBadFlag, ("flags is %d; %d has no meaning here", flags, flags & ~allowed));
+}
+
+void addWedges(std::vector<Camera>& cameras, int flags)
+{
+    for (Camera& camera : cameras)
+    {
+        GlassWindow window = camera.window();
+        if (!(flags & GLASS_FREE_WEDGE) || !window.wedge.empty())
+            continue;
+        window.wedge.assign(window.thickness.size(), Vec2d());
+        camera.setWindow(window);
+    }
 }
 
 void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names)
@@ -256,6 +268,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
+    addWedges(rig.cameras, flags);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
@@ -326,6 +339,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_SHARED_WINDOW);
     Rig rig;
     rig.cameras = camerasOf({ camera1, camera2 }, { "camera1", "camera2" });
+    addWedges(rig.cameras, flags);
     rig.extrinsics = { Pose(), poseOf({ readRotation(R, "R"), readVec3(T, "T") }) };
     setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
     RigTask task;

@@ -99,7 +99,7 @@ std::vector<bool> freeWindowParameters(const WindowLayout& at, int flags)
         case WindowParameter::INDEX: isFree[i] = (flags & GLASS_FREE_INDEX) != 0; break;
         case WindowParameter::INNER_INDEX: break;
         case WindowParameter::OUTER_INDEX: isFree[i] = (flags & GLASS_FREE_OUTER_INDEX) != 0; break;
-        case WindowParameter::WEDGE: break;
+        case WindowParameter::WEDGE: isFree[i] = (flags & GLASS_FREE_WEDGE) != 0; break;
         }
     return isFree;
 }
