@@ -13,7 +13,10 @@ void fuzz::tryFile(const std::string& path)
     const tools::Calibration calibration = tools::readCalibration(path);
     promise(!calibration.cameras.empty(), "at least one camera");
     for (size_t c = 0; c < calibration.cameras.size(); c++)
-        promise(cv::checkRange(calibration.Rs.at(c)) && cv::checkRange(calibration.Ts.at(c)), "R and T are finite");
+    {
+        const tools::RigidTransform& cam_from_cam1 = calibration.extrinsics.at(c);
+        promise(cv::checkRange(cv::Mat(cam_from_cam1.R)) && cv::checkRange(cv::Mat(cam_from_cam1.T)), "R and T are finite");
+    }
     const std::string copy = (scratch().path() / "copy.yml").string();
     tools::writeCalibration(copy, calibration);
     const tools::Calibration again = tools::readCalibration(copy);
