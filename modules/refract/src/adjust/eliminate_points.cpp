@@ -51,6 +51,8 @@ void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
         {
             const int count = (int)images[i].columns.size();
             products[i] = MatrixXd::Zero(count, count);
+            if (count == 0)         // Eigen has no products of nothing
+                continue;
             products[i].selfadjointView<Eigen::Lower>().rankUpdate(images[i].outer.transpose());
             gradients[i] = images[i].outer.transpose()*images[i].residuals;
         }
@@ -132,14 +134,7 @@ EliminatedCluster eliminate(const Problem& problem, int index, const FreeSpace& 
         for (size_t c = 0; c < image.columns.size(); c++)
             EF.block<3, 1>(at, place[image.columns[c]]) += E.transpose()*image.outer.block<2, 1>(2*o.row, c);
     }
-    Eigen::RowVectorXd byValues;
-    for (const KnownLength& length : cluster.lengths)
-    {
-        const double sigma = problem.pixelSigma(), residual = sigma*cluster.residual(length, byValues);
-        byValues *= sigma;
-        EE += byValues.transpose()*byValues;
-        Er += byValues.transpose()*residual;
-    }
+    cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
     result.W = Y*EF;
     result.residual = Y*Er;

@@ -43,8 +43,7 @@ public:
             {
                 const Image& image = problem_.images()[i];
                 problem_.evaluate(image, image.rootWeights, Problem::BY_POSE, images_[i]);
-                const Matx33d R = rotationMatrix(problem_.pose(image.view).rvec);
-                images_[i].byPose.rightCols<3>() *= Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+                images_[i].byPose.rightCols<3>() = problem_.byScenePoint(image, images_[i].byPose);
             }
         });
     }
@@ -68,15 +67,7 @@ public:
             sum.matrix.block<3, 3>(at, at) += E.transpose()*E;
             sum.gradient.segment<3>(at) += E.transpose()*residual;
         }
-        Eigen::RowVectorXd byValues;
-        for (const KnownLength& length : cluster.lengths)
-        {
-            const double sigma = problem_.pixelSigma(), residual = sigma*cluster.residual(length, byValues);
-            byValues *= sigma;
-            sum.value += residual*residual;
-            sum.matrix += byValues.transpose()*byValues;
-            sum.gradient += byValues.transpose()*residual;
-        }
+        sum.value += cluster.addLengths(problem_.pixelSigma(), sum.matrix, sum.gradient);
         return sum;
     }
 

@@ -27,9 +27,7 @@ ImageRows::ImageRows(const Problem& problem, const FreeSpace& space, int i, cons
     std::vector<int> blocks = problem.cameraBlocksOf(image);
     if (problem.hasScene())
     {
-        // A point moves as the view's translation does, turned into the scene's frame.
-        const Matx33d R = rotationMatrix(problem.pose(image.view).rvec);
-        inner = d.byPose.rightCols<3>()*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+        inner = problem.byScenePoint(image, d.byPose);
         blocks.push_back(problem.poseBlock(image.view));
         d.byBlock.push_back(d.byPose);
     }

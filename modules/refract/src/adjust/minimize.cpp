@@ -84,57 +84,56 @@ public:
     FitOutcome run(const TermCriteria& criteria);
 
 private:
-    void solve(TrustRegion& region);
+    bool solve(TrustRegion& region);
     bool isOnBound() const;
     bool holdAtBounds();
     bool isAtMinimum() const;
     Problem& problem_;
+    std::unique_ptr<ReducedCost> cost_;     //!< of what is not held
 };
 
-void Minimization::solve(TrustRegion& region)
+/** The problem comes to where Ceres ends, and the cost is linearised there.
+@return false if the cost has no derivatives where it begins */
+bool Minimization::solve(TrustRegion& region)
 {
-    ReducedCost* const cost = new ReducedCost(problem_);
-    const std::unique_ptr<ceres::CostFunction> keep(cost);
-    double squaredError;
-    if (cost->variableBlocks().empty())
-    {
-        region.outcome = optimizeInner(problem_, squaredError) ? ceres::CONVERGENCE : ceres::FAILURE;
-        region.iterations = 1;
-        return;
-    }
+    if (!cost_)
+        cost_.reset(new ReducedCost(problem_));
     ceres::Problem::Options options;
     options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(options);
     // Ceres has values of its own while it solves: the problem's are where the cost was asked for last.
     std::vector<Eigen::VectorXd> values;
     std::vector<double*> parameters;
-    for (int i : cost->variableBlocks())
+    for (int i : cost_->variableBlocks())
         values.push_back(problem_.blocks()[i].values);
     const std::vector<Eigen::VectorXd> begin = values;
     const Eigen::VectorXd inner = innerValues(problem_);
     for (size_t k = 0; k < values.size(); k++)
     {
-        ParameterBlock block = problem_.blocks()[cost->variableBlocks()[k]];
+        ParameterBlock block = problem_.blocks()[cost_->variableBlocks()[k]];
         new (&block.values) Eigen::Map<Eigen::VectorXd>(values[k].data(), values[k].size());
         addBlock(problem, block);
         parameters.push_back(values[k].data());
     }
-    problem.AddResidualBlock(cost, nullptr, parameters);
-    if (cost->linearizeAt(parameters.data()))
-        region.solve(problem);
-    else
+    if (!cost_->linearizeAt(parameters.data()))
+        return false;
+    if (parameters.empty())         // only inner blocks are free
     {
-        region.outcome = ceres::FAILURE;
-        region.iterations = 0;
+        region.outcome = ceres::CONVERGENCE;
+        region.iterations = 1;
+        return true;
     }
-    std::vector<double> residuals(cost->num_residuals());
-    if (cost->Evaluate(parameters.data(), residuals.data(), nullptr))   // the problem comes to where Ceres has ended
-        return;
+    problem.AddResidualBlock(cost_.get(), nullptr, parameters);
+    region.solve(problem);
+    if (cost_->linearizeAt(parameters.data()))
+        return true;
     for (size_t k = 0; k < begin.size(); k++)
-        problem_.blocks()[cost->variableBlocks()[k]].values = begin[k];
+        problem_.blocks()[cost_->variableBlocks()[k]].values = begin[k];
     problem_.updateCameras();
     setInnerValues(problem_, inner);
+    cost_.reset();
     region.outcome = ceres::FAILURE;
+    return true;
 }
 
 bool Minimization::isOnBound() const
@@ -164,6 +163,8 @@ bool Minimization::holdAtBounds()
             block.isHeld[i] = hold;
         }
     }
+    if (changed)
+        cost_.reset();
     return changed;
 }
 
@@ -173,7 +174,7 @@ bool Minimization::isAtMinimum() const
     const double NEGLIGIBLE = 1e-3;     // standard deviations
     const double LEAST_SIGMA = problem_.hasScene() ? 1e-3 : 1e-6;   // px: perfect data end in rounding errors
     const double variance = problem_.freedom() > 0 ? problem_.squaredError()/problem_.freedom() : 0;
-    return newtonDecrement(informationOf(problem_, false)) < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
+    return newtonDecrement(cost_->information()) < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
 }
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
@@ -192,8 +193,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
     {
         TrustRegion& region = regions[turn];
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
-        solve(region);
-        if (region.iterations == 0)
+        if (!solve(region))
             break;
         if (region.outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && region.outcome == ceres::CONVERGENCE
             && isAtMinimum())

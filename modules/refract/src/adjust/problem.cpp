@@ -270,22 +270,27 @@ void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlie
     placePoints(scene_.points());
 }
 
+//! @return its RefractiveStatus; the camera must be possible
+uchar Problem::project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const
+{
+    const RigCamera& camera = cameras_[image.camera];
+    const Vec3d X = camera.extrinsics.apply(toCamera1.apply(Vec3d(image.points.object[row])));
+    uchar status = REFRACT_OK;
+    camera.camera(image.refracted)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+    return status;
+}
+
 std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) const
 {
-    const Camera* camera = cameras_[image.camera].camera(image.refracted);
-    if (!camera)
-        return std::vector<double>(image.points.pixel.size(), std::numeric_limits<double>::infinity());
-    const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
+    const int count = (int)image.points.pixel.size();
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> errors(count, infinity);
     const Extrinsics toCamera1(pose);
-    std::vector<double> errors;
-    for (size_t i = 0; i < image.points.pixel.size(); i++)
+    for (int row = 0; row < count && cameras_[image.camera].camera(image.refracted); row++)
     {
-        const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(image.points.object[i])));
         Point2d pixel;
-        uchar status = REFRACT_OK;
-        camera->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
-        errors.push_back(status == REFRACT_OK ? norm(pixel - image.points.pixel[i]) :
-                         std::numeric_limits<double>::infinity());
+        if (project(image, toCamera1, row, pixel) == REFRACT_OK)
+            errors[row] = norm(pixel - image.points.pixel[row]);
     }
     return errors;
 }
@@ -294,12 +299,11 @@ FitOutcome Problem::findPointWithoutImage() const
 {
     for (const Image& image : images_)
     {
-        const Camera* camera = cameras_[image.camera].camera(image.refracted);
         FitOutcome outcome(FitOutcome::NO_IMAGE);
         outcome.camera = image.camera;
         outcome.view = image.view;
         outcome.refracted = image.refracted;
-        if (!camera)
+        if (!cameras_[image.camera].camera(image.refracted))
         {
             const WindowTransfer* window = cameras_[image.camera].window.get();
             CV_Assert(window);
@@ -308,19 +312,15 @@ FitOutcome Problem::findPointWithoutImage() const
             outcome.distance = window->distance;
             return outcome;
         }
-        const Extrinsics& toCamera = cameras_[image.camera].extrinsics;
         const Extrinsics toCamera1(pose(image.view));
-        for (size_t i = 0; i < image.points.object.size(); i++)
+        for (int row = 0; row < (int)image.points.object.size(); row++)
         {
-            if (image.rootWeights[i] == 0)
+            if (image.rootWeights[row] == 0)
                 continue;
-            outcome.point = image.points.object[i];
-            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(outcome.point)));
-            double u, v;
-            uchar status = REFRACT_OK;
-            camera->project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
-            outcome.imageStatus = status;
-            if (status != REFRACT_OK)
+            Point2d pixel;
+            outcome.point = image.points.object[row];
+            outcome.imageStatus = project(image, toCamera1, row, pixel);
+            if (outcome.imageStatus != REFRACT_OK)
                 return outcome;
         }
     }
@@ -352,6 +352,13 @@ bool Problem::evaluate(const Image& image, const std::vector<double>& rootWeight
     return residual.evaluate(pose, result.residuals.data(), jacobians.data());
 }
 
+//! A point moves as the view's translation does, turned into the scene's frame.
+RowMajorMatrix Problem::byScenePoint(const Image& image, const RowMajorMatrix& byPose) const
+{
+    const Matx33d R = rotationMatrix(pose(image.view).rvec);
+    return byPose.rightCols<3>()*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+}
+
 double Problem::squaredPixelError(const Image& image) const
 {
     Derivatives result;
@@ -366,10 +373,8 @@ double Problem::squaredError() const
         sum += squaredPixelError(image);
     for (int block = 0; block < (int)blocks_.size(); block++)
         sum += priorResidual(block).squaredNorm();
-    Eigen::RowVectorXd byValues;
     for (const Cluster& cluster : scene_.clusters())
-        for (const KnownLength& length : cluster.lengths)
-            sum += std::pow(pixelSigma_*cluster.residual(length, byValues), 2);
+        sum += cluster.squaredLengthError(pixelSigma_);
     return sum;
 }
 

@@ -150,6 +150,9 @@ public:
     //! @return false where a point with a weight has no image; its residuals are infinite
     bool evaluate(const Image& image, const std::vector<double>& rootWeights, Wanted wanted, Derivatives& result) const;
 
+    //! Derivatives by the scene's points, from those by the view's pose.
+    RowMajorMatrix byScenePoint(const Image& image, const RowMajorMatrix& byPose) const;
+
     /** d public parameters / d free coordinates of the camera blocks, in their order. What the other cameras see of a shared
     window follows from its owner's. */
     Eigen::MatrixXd publicBasis() const;
@@ -162,6 +165,7 @@ private:
                              const std::vector<String>& names, const std::vector<bool>& isFree);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
+    uchar project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const;
     bool isActive(int block) const;
     int blockOf(ParameterBlock::Kind kind, int camera) const;
     const double* valuesOf(ParameterBlock::Kind kind, int camera) const;    //!< null for the extrinsics of camera 1

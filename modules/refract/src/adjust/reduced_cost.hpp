@@ -23,6 +23,8 @@ public:
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
     //! False where there is no cost, or a derivative overflows.
     bool linearizeAt(double const* const* parameters) const;
+    //! Where it was linearised last.
+    const Information& information() const { return anchor_->information; }
 
 private:
     //! Where the last linearisation was made.

@@ -35,6 +35,7 @@ std::vector<int> firstOfCluster(const std::vector<Point3d>& points, const std::v
 
 } // namespace
 
+//! Length minus the known one, in its standard deviations, and its derivatives by values.
 double Cluster::residual(const KnownLength& length, Eigen::RowVectorXd& byValues) const
 {
     const Eigen::Vector3d between = values.segment<3>(3*length.a) - values.segment<3>(3*length.b);
@@ -46,6 +47,30 @@ double Cluster::residual(const KnownLength& length, Eigen::RowVectorXd& byValues
         byValues.segment<3>(3*length.b) = -byValues.segment<3>(3*length.a);
     }
     return (found - length.length)/length.sigma;
+}
+
+double Cluster::addLengths(double pixelSigma, Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient) const
+{
+    double squares = 0;
+    Eigen::RowVectorXd byValues;
+    for (const KnownLength& length : lengths)
+    {
+        const double r = pixelSigma*residual(length, byValues);
+        byValues *= pixelSigma;
+        matrix += byValues.transpose()*byValues;
+        gradient += byValues.transpose()*r;
+        squares += r*r;
+    }
+    return squares;
+}
+
+double Cluster::squaredLengthError(double pixelSigma) const
+{
+    double squares = 0;
+    Eigen::RowVectorXd byValues;
+    for (const KnownLength& length : lengths)
+        squares += std::pow(pixelSigma*residual(length, byValues), 2);
+    return squares;
 }
 
 Scene::Scene(int pointCount, const std::vector<KnownLength>& lengths)

@@ -26,7 +26,12 @@ struct Cluster
     Eigen::Map<Eigen::VectorXd> values; //!< x, y, z of each point, kept by the scene
 
     int size() const { return (int)values.size(); }
-    //! Length minus the known one, in its standard deviations, and its derivatives by values.
+    /** Adds what its lengths give to normal equations by values; returns their squared residuals.
+    @param pixelSigma to which a length's standard deviation is scaled */
+    double addLengths(double pixelSigma, Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient) const;
+    double squaredLengthError(double pixelSigma) const;
+
+private:
     double residual(const KnownLength& length, Eigen::RowVectorXd& byValues) const;
 };
 
