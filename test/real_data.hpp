@@ -36,6 +36,28 @@ inline bool load(const std::string& path, json& data)
     return true;
 }
 
+//! Points of a target and where a camera saw them: lines "u v x y z", perhaps under a heading. Empty where there is no such file.
+struct Dots
+{
+    Object object;
+    Pixels pixels;
+};
+
+inline Dots readDots(const std::string& path)
+{
+    Dots dots;
+    std::ifstream file = open(path);
+    std::string heading;
+    if (file.peek() == '#')
+        std::getline(file, heading);
+    for (double u, v, x, y, z; file >> u >> v >> x >> y >> z;)
+    {
+        dots.object.emplace_back(x, y, z);
+        dots.pixels.emplace_back(u, v);
+    }
+    return dots;
+}
+
 inline Pixels pixelsOf(const json& list)
 {
     Pixels pixels;

@@ -57,12 +57,18 @@ TEST_CASE("The interpolated map is the exact one in float32, for windows, lenses
     Random random(910);
     CAPTURE(seed());
     double worst = 0;
+    int lensNumber = 0;
     for (const LensKind& lens : allLenses())
+    {
+        // Pixels that a wedge shows nothing take long to be sure of: with every fourth lens.
+        const bool isWedgeTested = lensNumber++ % 4 == 0;
         for (WindowKind kind : allWindows())
             for (double halfField : { 0.5, 0.95, 1.3 })     // inside the lens' domain, up to its edge, beyond it
             {
                 CAPTURE(lens.name, name(kind), halfField);
                 const GlassWindow window = makeWindow(kind, random);
+                if (!window.wedge.empty() && !isWedgeTested)
+                    continue;
                 const double half = std::min(halfField*lens.halfField, 85.)*CV_PI/180, f = SIZE.width/2/std::tan(half);
                 const Matx33d newK(f, 0, SIZE.width/2., 0, f, SIZE.height/2., 0, 0, 1);
                 const Vec4d plane(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1, random.uniform(300, 2000));
@@ -73,6 +79,7 @@ TEST_CASE("The interpolated map is the exact one in float32, for windows, lenses
                 CHECK(d.largest < 1e-6);
                 worst = std::max(worst, d.largest);
             }
+    }
     printNumber("map, interpolated against exact, beyond the rounding to float32", worst, "px");
 }
 

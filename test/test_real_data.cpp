@@ -422,20 +422,9 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
 {
     for (int cameraNumber = 1; cameraNumber <= 3; cameraNumber++)
     {
-        const std::string path = paths::data() + format("/myptv/cam%d_cal_points", cameraNumber);
-        std::ifstream file(path);
-        if (!file)
-        {
-            WARN("SKIPPED: there is no " << path);
+        const Dots dots = readDots(format("myptv/cam%d_cal_points", cameraNumber));
+        if (dots.object.empty())
             return;
-        }
-        std::vector<Point3d> object;
-        std::vector<Point2d> pixels;
-        for (double u, v, x, y, z; file >> u >> v >> x >> y >> z;)
-        {
-            object.push_back({ x, y, z });
-            pixels.push_back({ u, v });
-        }
         for (int coefficients : { 0, 4 })
         {
             std::vector<double> rms;
@@ -448,8 +437,8 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
                     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(
                         Matx33d(focal, 0, 640, 0, focal, 512, 0, 0, 1), std::vector<double>(coefficients, 0.), window);
                     Mat rvecs, tvecs;
-                    rms.push_back(calibrateGlass(std::vector<Object>{ object }, noArray(), std::vector<Pixels>{ pixels }, camera,
-                                                 rvecs, tvecs,
+                    rms.push_back(calibrateGlass(std::vector<Object>{ dots.object }, noArray(), std::vector<Pixels>{ dots.pixels },
+                                                 camera, rvecs, tvecs,
                                                  GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST));
                 }
             CAPTURE(cameraNumber, coefficients, rms);

@@ -4,53 +4,22 @@
 // Four real cameras behind one wall of a tank (proPTV's comparison): a lens with more coefficients than one view determines. For
 // two of them the least error lies where the wall would pass through the nearest markers: that is refused.
 #include "real_data.hpp"
-#include "scenes.hpp"
-
-#include <fstream>
 
 using namespace cv;
 using namespace cv::refract;
-using namespace scenes;
-
-namespace {
-
-struct Markers
-{
-    std::vector<Point3d> object;
-    std::vector<Point2d> pixels;
-};
-
-Markers readMarkers(const std::string& path)
-{
-    Markers markers;
-    std::ifstream file(path);
-    std::string heading;
-    std::getline(file, heading);
-    for (double u, v, x, y, z; file >> u >> v >> x >> y >> z;)
-    {
-        markers.object.push_back({ x, y, z });
-        markers.pixels.push_back({ u, v });
-    }
-    return markers;
-}
-
-} // namespace
+using namespace real_data;
 
 TEST_CASE("A lens that one view hardly determines is answered within 100 iterations, or refused", "[real]")
 {
     int answers = 0;
     for (int c = 0; c < 4; c++)
     {
-        const std::string path = paths::data() + format("/proptv/markers_c%d.txt", c);
-        const Markers all = readMarkers(path);
+        const Dots all = readDots(format("proptv/markers_c%d.txt", c));
         if (all.object.empty())
-        {
-            WARN("SKIPPED: there is no " << path);
             return;
-        }
         for (int half = 0; half < 2; half++)
         {
-            Markers some;
+            Dots some;
             for (size_t i = half; i < all.object.size(); i += 2)
             {
                 some.object.push_back(all.object[i]);
@@ -63,7 +32,7 @@ TEST_CASE("A lens that one view hardly determines is answered within 100 iterati
                                                                           std::vector<double>(5, 0.), window);
             Mat rvecs, tvecs, deviations;
             double rms = 0;
-            const std::string refusal = thrown([&]
+            const std::string refusal = scenes::thrown([&]
             {
                 rms = calibrateGlass(std::vector<std::vector<Point3d> >{ some.object }, noArray(),
                                      std::vector<std::vector<Point2d> >{ some.pixels }, camera, rvecs, tvecs, deviations, noArray(),

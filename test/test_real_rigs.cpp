@@ -29,14 +29,15 @@ bool loadMyptv(RealRig& rig)
     std::map<std::array<double, 3>, std::vector<Point2d> > seen;
     for (int c = 0; c < 3; c++)
     {
-        std::ifstream file = open(format("myptv/cam%d_cal_points", c + 1));
-        if (!file)
+        const Dots dots = readDots(format("myptv/cam%d_cal_points", c + 1));
+        if (dots.object.empty())
             return false;
-        for (double u, v, x, y, z; file >> u >> v >> x >> y >> z; )
+        for (size_t i = 0; i < dots.object.size(); i++)
         {
-            std::vector<Point2d>& pixels = seen[{ { x, y, z } }];
+            const Point3d& X = dots.object[i];
+            std::vector<Point2d>& pixels = seen[{ { X.x, X.y, X.z } }];
             pixels.resize(3, Point2d(scenes::NaN, scenes::NaN));
-            pixels[c] = Point2d(u, v);
+            pixels[c] = dots.pixels[i];
         }
     }
     rig.pixels.resize(3);

@@ -84,6 +84,16 @@ Projected projectPoint(const Ptr<RefractiveCamera>& camera, const Vec3d& X, cons
     return { pixel[0], status[0] };
 }
 
+struct PixelRay { Vec3d origin, direction; uchar status; };
+
+PixelRay rayOf(const Ptr<RefractiveCamera>& camera, const Vec2d& pixel)
+{
+    std::vector<Vec3d> origin, direction;
+    std::vector<uchar> status;
+    refractiveUnprojectPoints(std::vector<Vec2d>{ pixel }, origin, direction, camera, status);
+    return { origin[0], direction[0], status[0] };
+}
+
 } // namespace
 
 //! @param tolerance px
@@ -130,14 +140,12 @@ TEST_CASE("Rays through a wedge equal the 60-digit references", "[reference][wed
         for (const json& p : c["points"])
         {
             CAPTURE(p.dump());
-            std::vector<Vec3d> origin, direction;
-            std::vector<uchar> status;
-            refractiveUnprojectPoints(std::vector<Vec2d>{ vec2(p["pixel"]) }, origin, direction, camera, status);
-            REQUIRE(status[0] == REFRACT_OK);
+            const PixelRay ray = rayOf(camera, vec2(p["pixel"]));
+            REQUIRE(ray.status == REFRACT_OK);
             // At a grazing angle behind the last face a rounding of the pixel is 1/cos times larger there.
             const double cosine = camera->window().normal.dot(vec3(p["direction"]));
-            const double directionError = norm(direction[0] - vec3(p["direction"]))*std::abs(cosine);
-            const Vec3d off = (origin[0] - vec3(p["point"])).cross(vec3(p["direction"]));
+            const double directionError = norm(ray.direction - vec3(p["direction"]))*std::abs(cosine);
+            const Vec3d off = (ray.origin - vec3(p["point"])).cross(vec3(p["direction"]));
             const double originError = norm(off)/(1 + norm(vec3(p["point"])))*cosine*cosine;
             CHECK(directionError < 2e-15);
             CHECK(originError < 1e-14);
@@ -160,15 +168,13 @@ TEST_CASE("Rays equal the 60-digit references", "[reference]")
         for (const json& p : c["points"])
         {
             CAPTURE(p.dump());
-            std::vector<Vec3d> origin, direction;
-            std::vector<uchar> status;
-            refractiveUnprojectPoints(std::vector<Vec2d>{ vec2(p["pixel"]) }, origin, direction, camera, status);
-            REQUIRE(status[0] == REFRACT_OK);
+            const PixelRay ray = rayOf(camera, vec2(p["pixel"]));
+            REQUIRE(ray.status == REFRACT_OK);
             // At a grazing angle in the rarest medium a rounding of the pixel is 1/cos times larger there.
             const double sine = norm(n.cross(vec3(p["direction"])))*camera->window().outerIndex/smallestIndex(c);
             const double cosine = std::sqrt(1 - sine*sine), tau = p["tau"];
-            const double directionError = norm(direction[0] - vec3(p["direction"]))*cosine;
-            const double tauError = norm(origin[0] - tau*n)/(1 + std::abs(tau))*cosine*cosine;
+            const double directionError = norm(ray.direction - vec3(p["direction"]))*cosine;
+            const double tauError = norm(ray.origin - tau*n)/(1 + std::abs(tau))*cosine*cosine;
             CHECK(directionError < 1e-14);
             CHECK(tauError < 1e-13);
             worstDirection = std::max(worstDirection, directionError);
@@ -195,12 +201,10 @@ TEST_CASE("What no light connects has the status of total reflection", "[referen
         }
         for (const json& pixel : c["unseeing"])
         {
-            std::vector<Vec3d> origin, direction;
-            std::vector<uchar> status;
-            refractiveUnprojectPoints(std::vector<Vec2d>{ vec2(pixel) }, origin, direction, camera, status);
-            CHECK(status[0] == REFRACT_TOTAL_REFLECTION);
-            CHECK(std::isnan(origin[0][0]));
-            CHECK(std::isnan(direction[0][2]));
+            const PixelRay ray = rayOf(camera, vec2(pixel));
+            CHECK(ray.status == REFRACT_TOTAL_REFLECTION);
+            CHECK(std::isnan(ray.origin[0]));
+            CHECK(std::isnan(ray.direction[2]));
             unseeing++;
         }
     }
