@@ -22,7 +22,8 @@ inline cv::refract::Pose poseOf(const cv::Vec3d& rvec, const cv::Vec3d& tvec)
 }
 
 //! @param paired with the direct images too
-inline std::unique_ptr<cv::refract::Problem> problemAt(const RigTruth& truth, const RigScene& scene, bool paired, int flags)
+inline std::unique_ptr<cv::refract::Problem> problemAt(const RigTruth& truth, const RigScene& scene, bool paired, int flags,
+                                                       const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd())
 {
     using namespace cv::refract;
     Rig rig;
@@ -40,7 +41,7 @@ inline std::unique_ptr<cv::refract::Problem> problemAt(const RigTruth& truth, co
     std::vector<Pose> poses;
     for (size_t view = 0; view < scene.object.size(); view++)
         poses.push_back(poseOf(scene.rvecs[view], scene.tvecs[view]));
-    return std::unique_ptr<Problem>(new Problem(rig, views, poses, {}, {}, flags));
+    return std::unique_ptr<Problem>(new Problem(rig, views, poses, {}, {}, flags, targetCovariance));
 }
 
 //! The joint problem of a scene at the truth.

@@ -41,7 +41,8 @@ struct Image
             for (int i = 0; i < (owner == CAMERA_3 ? 3 : 2); i++)
                 blocks.push_back(window_[i]);
         setCamera();
-        residual.reset(new ImageResidual(camera, points, rootWeights, { refracted, isCamera1, owner == CAMERA_1 }));
+        residual.reset(new ImageResidual(camera, points, rootWeights, { refracted, isCamera1, owner == CAMERA_1, false },
+                                         noTargetErrors));
     }
 
     //! The camera holds what the blocks say.
@@ -64,6 +65,7 @@ struct Image
 
     RigCamera camera;
     Blocks blocks;
+    const SharedTargetErrors noTargetErrors;
     std::unique_ptr<ImageResidual> residual;
 
 private:

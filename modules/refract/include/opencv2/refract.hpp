@@ -1298,6 +1298,26 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
         InputArrayOfArrays cameraCovariances = noArray());
 
 /** @overload
+With systematic errors of the targets.
+@param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance: relative
+error of their scale (1; the square of a printed board), then rotation vector and translation (6) by which all targets, or the
+mount of all cameras, moved between the direct and the refracted images, in the frame of camera 1, about the mean of the targets'
+initial tvec. A variance of 0: there is no such error. These errors are estimated within the prior, so that all uncertainties
+contain them: in air a common motion of the targets resembles a tilt of the window. Empty: there are none.
+@param targetErrors 7x2 CV_64F: estimate and standard deviation of each. NaN without targetCovariance.
+*/
+CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArrays objectPoints,
+        const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
+        OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
+        int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+        InputArrayOfArrays cameraCovariances, InputArray targetCovariance, OutputArray targetErrors);
+
+/** @overload
 The short form: the results are lenses and windows in cameras and (with GLASS_FREE_EXTRINSICS) Rs and Ts.
 */
 CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,

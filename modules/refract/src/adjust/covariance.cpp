@@ -52,7 +52,7 @@ double meanRange(const Problem& problem)
 int requirementOf(ParameterBlock::Kind kind)
 {
     return kind == ParameterBlock::LENS ? GLASS_REQUIRE_INTRINSICS : kind == ParameterBlock::EXTRINSICS ? GLASS_REQUIRE_EXTRINSICS :
-           GLASS_REQUIRE_WINDOW;
+           kind == ParameterBlock::TARGETS ? 0 : GLASS_REQUIRE_WINDOW;
 }
 
 std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
@@ -67,7 +67,7 @@ std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
                 continue;
             FreeParameter p;
             p.name = block.kind == ParameterBlock::NORMAL ? "normal" : block.names[i];
-            if (problem.cameraCount() > (block.kind == ParameterBlock::EXTRINSICS ? 2 : 1))
+            if (block.kind != ParameterBlock::TARGETS && problem.cameraCount() > (block.kind == ParameterBlock::EXTRINSICS ? 2 : 1))
                 p.name += format(" of camera %d", block.index + 1);
             p.block = &block;
             p.coordinate = i;
@@ -195,6 +195,20 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
     }
     return outcome;
+}
+
+Mat Covariance::ofTargetErrors() const
+{
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    Mat_<double> deviations(SharedTargetErrors::COUNT, 1, problem_->targetBlock() < 0 ? NaN : 0);
+    if (problem_->targetBlock() < 0)
+        return deviations;
+    const ParameterBlock& block = problem_->blocks()[problem_->targetBlock()];
+    int row = FreeSpace(*problem_).first[problem_->targetBlock()];
+    for (int i = 0; i < deviations.rows; i++)
+        if (block.isFree[i])
+            deviations(i) = std::sqrt(variance_)*half_.row(row++).norm();
+    return deviations;
 }
 
 Mat Covariance::ofPoints() const

@@ -24,7 +24,7 @@ ImageRows::ImageRows(const Problem& problem, const FreeSpace& space, int i, cons
     Problem::Derivatives d;
     CV_Assert(problem.evaluate(image, rootWeights, Problem::ALL, d));
     residuals = d.residuals;
-    std::vector<int> blocks = problem.cameraBlocksOf(image);
+    std::vector<int> blocks = problem.blocksOf(image);
     if (problem.hasScene())
     {
         inner = problem.byScenePoint(image, d.byPose);

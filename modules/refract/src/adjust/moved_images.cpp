@@ -93,7 +93,7 @@ std::vector<MovedImages::View> MovedImages::viewsOfSeveral() const
         if (view.images.size() < 2)
             continue;
         for (int i : view.images)
-            view.own.push_back(ownPose(rig_, image(i)));
+            view.own.push_back(problem_.inDirectImages(image(i), ownPose(rig_, image(i))));
         view.gain = gainOfOwnPoses(view);
         views.push_back(view);
     }

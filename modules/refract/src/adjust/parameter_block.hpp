@@ -16,9 +16,9 @@ typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> R
 //! Parameters of the problem that belong together.
 struct ParameterBlock
 {
-    enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS, POSE };
+    enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS, TARGETS, POSE };
     Kind kind;
-    int index;                      //!< the camera (of a window: its owner); of a pose the view
+    int index;                      //!< the camera (of a window: its owner); of a pose the view; 0 of TARGETS
     WindowLayout at;                //!< of the camera's window
     Eigen::Map<Eigen::VectorXd> values;     //!< kept by the problem
     std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole

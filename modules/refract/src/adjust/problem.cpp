@@ -37,10 +37,10 @@ RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount)
 } // namespace
 
 Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-                 const std::vector<CameraPrior>& cameraPriors, int flags)
+                 const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance)
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), pixelSigma_(1)
 {
-    addBlocks(poses, posePriors, cameraPriors, flags);
+    addBlocks(poses, posePriors, cameraPriors, flags, targetCovariance);
     addImages(views);
     updateCameras();
 }
@@ -49,15 +49,15 @@ Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int poin
                  const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags)
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
 {
-    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags);
+    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags, Eigen::MatrixXd());
     addImages(viewsOfScene(pixels, pointCount));
     updateCameras();
 }
 
 void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-                        const std::vector<CameraPrior>& cameraPriors, int flags)
+                        const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance)
 {
-    size_t most = 6*(rig_.cameras.size() + poses.size());
+    size_t most = 6*(rig_.cameras.size() + poses.size()) + SharedTargetErrors::COUNT;
     for (const Camera& camera : rig_.cameras)
         most += camera.parameterCount();
     values_.reserve(most);              // blocks point into it
@@ -67,6 +67,9 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
     for (int c = 1; c < rig_.count(); c++)
         addBlock(ParameterBlock::EXTRINSICS, c, sixOf(rig_.extrinsics[c]), names,
                  std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
+    targetBlock_ = -1;
+    if (targetCovariance.size() > 0)
+        addTargetBlock(poses, targetCovariance);
     cameraBlocks_ = (int)blocks_.size();
     for (int view = 0; view < (int)poses.size(); view++)
     {
@@ -78,6 +81,24 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
     }
     for (const Camera& camera : rig_.cameras)
         cameras_.push_back(RigCamera(camera));
+}
+
+void Problem::addTargetBlock(const std::vector<Pose>& poses, const Eigen::MatrixXd& covariance)
+{
+    const int count = SharedTargetErrors::COUNT;
+    const String scale = "scale of the targets", motion = "motion of the targets";
+    targetBlock_ = (int)blocks_.size();
+    ParameterBlock& block = addBlock(ParameterBlock::TARGETS, 0, std::vector<double>(count, 0.),
+                                     { scale, motion, motion, motion, motion, motion, motion }, std::vector<bool>(count, false));
+    if (!block.setPrior(covariance))
+        CV_Error(Error::StsBadArg, "targetCovariance is not positive definite where it is not 0");
+    int found = 0;
+    for (const Pose& pose : poses)
+    {
+        targetErrors_.center += pose.found ? pose.tvec : Vec3d();
+        found += pose.found;
+    }
+    targetErrors_.center *= 1./std::max(found, 1);
 }
 
 void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
@@ -178,10 +199,12 @@ const double* Problem::valuesOf(ParameterBlock::Kind kind, int camera) const
     return block < 0 ? nullptr : blocks_[block].values.data();
 }
 
-std::vector<int> Problem::cameraBlocksOf(const Image& image) const
+std::vector<int> Problem::blocksOf(const Image& image) const
 {
     const int c = image.camera, owner = rig_.owner[c];
     std::vector<int> blocks;
+    if (targetBlock_ >= 0)
+        blocks.push_back(targetBlock_);
     if (c > 0)
         blocks.push_back(blockOf(ParameterBlock::EXTRINSICS, c));
     blocks.push_back(blockOf(ParameterBlock::LENS, c));
@@ -196,6 +219,8 @@ std::vector<int> Problem::cameraBlocksOf(const Image& image) const
 
 void Problem::updateCameras()
 {
+    if (targetBlock_ >= 0)
+        targetErrors_ = SharedTargetErrors(blocks_[targetBlock_].values.data(), targetErrors_.center);
     for (int c = 0; c < rig_.count(); c++)
     {
         RigCamera::Parameters parameters;
@@ -271,10 +296,10 @@ void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlie
 }
 
 //! @return its RefractiveStatus; the camera must be possible
-uchar Problem::project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const
+uchar Problem::project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const
 {
     const RigCamera& camera = cameras_[image.camera];
-    const Vec3d X = camera.extrinsics.apply(toCamera1.apply(Vec3d(image.points.object[row])));
+    const Vec3d X = camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
     uchar status = REFRACT_OK;
     camera.camera(image.refracted)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
     return status;
@@ -285,11 +310,11 @@ std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) c
     const int count = (int)image.points.pixel.size();
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> errors(count, infinity);
-    const Extrinsics toCamera1(pose);
+    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(pose.rvec), pose.tvec, image.refracted);
     for (int row = 0; row < count && cameras_[image.camera].camera(image.refracted); row++)
     {
         Point2d pixel;
-        if (project(image, toCamera1, row, pixel) == REFRACT_OK)
+        if (project(image, placed, row, pixel) == REFRACT_OK)
             errors[row] = norm(pixel - image.points.pixel[row]);
     }
     return errors;
@@ -312,14 +337,15 @@ FitOutcome Problem::findPointWithoutImage() const
             outcome.distance = window->distance;
             return outcome;
         }
-        const Extrinsics toCamera1(pose(image.view));
+        const Pose direct = pose(image.view);
+        const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, image.refracted);
         for (int row = 0; row < (int)image.points.object.size(); row++)
         {
             if (image.rootWeights[row] == 0)
                 continue;
             Point2d pixel;
             outcome.point = image.points.object[row];
-            outcome.imageStatus = project(image, toCamera1, row, pixel);
+            outcome.imageStatus = project(image, placed, row, pixel);
             if (outcome.imageStatus != REFRACT_OK)
                 return outcome;
         }
@@ -330,7 +356,8 @@ FitOutcome Problem::findPointWithoutImage() const
 bool Problem::evaluate(const Image& image, const std::vector<double>& rootWeights, Wanted wanted, Derivatives& result) const
 {
     const ImageResidual residual(cameras_[image.camera], image.points, rootWeights,
-                                 { image.refracted, image.camera == 0, rig_.owner[image.camera] == 0 });
+                                 { image.refracted, image.camera == 0, rig_.owner[image.camera] == 0, targetBlock_ >= 0 },
+                                 targetErrors_);
     const double* const pose = blocks_[poseBlock(image.view)].values.data();
     const int rows = residual.count();
     result.residuals.resize(rows);
@@ -350,6 +377,18 @@ bool Problem::evaluate(const Image& image, const std::vector<double>& rootWeight
         }
     }
     return residual.evaluate(pose, result.residuals.data(), jacobians.data());
+}
+
+Pose Problem::inDirectImages(const Image& image, const Pose& pose) const
+{
+    if (!image.refracted || !pose.found || targetBlock_ < 0)
+        return pose;
+    const Matx33d back = targetErrors_.rotation.R.t();
+    Pose direct;
+    direct.rvec = rotationVector(back*rotationMatrix(pose.rvec));
+    direct.tvec = targetErrors_.center + back*(pose.tvec - targetErrors_.center - targetErrors_.translation);
+    direct.found = true;
+    return direct;
 }
 
 //! A point moves as the view's translation does, turned into the scene's frame.
@@ -437,7 +476,8 @@ Eigen::MatrixXd Problem::publicBasis() const
     for (int i = 0; i < cameraBlocks_; i++)
     {
         const Eigen::MatrixXd tangent = blocks_[i].tangentBasis();
-        basis.block(publicRow(blocks_[i].kind, blocks_[i].index), column, tangent.rows(), tangent.cols()) = tangent;
+        if (i != targetBlock_)          // not among the public parameters
+            basis.block(publicRow(blocks_[i].kind, blocks_[i].index), column, tangent.rows(), tangent.cols()) = tangent;
         column += (int)tangent.cols();
     }
     for (int c = 0; c < rig_.count(); c++)

@@ -9,6 +9,7 @@
 #include "adjust/parameter_block.hpp"
 #include "adjust/residual.hpp"
 #include "adjust/scene.hpp"
+#include "adjust/shared_target_errors.hpp"
 
 namespace cv { namespace refract {
 
@@ -73,9 +74,10 @@ class Problem
 public:
     /** Known targets. The start of what is known is the known value.
     @param posePriors one per view, or empty
-    @param cameraPriors one per camera, or empty; throws if one is not positive definite */
+    @param cameraPriors one per camera, or empty; throws if one is not positive definite
+    @param targetCovariance of SharedTargetErrors; a variance of 0: there is no such error; empty: there is none. Throws as above */
     Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-            const std::vector<CameraPrior>& cameraPriors, int flags);
+            const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd());
     /** A scene.
     @param pixels per camera, per view: one per scene point, or none */
     Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
@@ -91,7 +93,7 @@ public:
     const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
     void setRootWeights(int image, const std::vector<double>& rootWeights);
     int pointCount() const;             //!< of those with a weight
-    /** Distance of each predicted from the observed pixel, whatever its weight, with this pose; infinite without image. */
+    /** Distance of each predicted from the observed pixel, whatever its weight, with this pose of the view; infinite without image. */
     std::vector<double> pixelErrors(const Image& image, const Pose& pose) const;
     std::vector<double> pixelErrors(const Image& image) const { return pixelErrors(image, pose(image.view)); }
     double squaredPixelError(const Image& image) const;     //!< weighted
@@ -104,13 +106,17 @@ public:
     int outerCount() const { return hasScene() ? (int)blocks_.size() : poseBlock(0); }     //!< blocks; these come first
     int poseBlock(int view) const { return cameraBlocks_ + view; }
     //! Indices into blocks(), in the order of ImageResidual's blocks after the pose.
-    std::vector<int> cameraBlocksOf(const Image& image) const;
+    std::vector<int> blocksOf(const Image& image) const;
     //! The cameras at the current values of the blocks.
     void updateCameras();
     Rig rig() const;                    //!< with the current parameters
     Camera camera(int c) const;
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
+    //! The pose in the direct images of a target that has this pose in an image.
+    Pose inDirectImages(const Image& image, const Pose& pose) const;
+    //! Of SharedTargetErrors; -1: the problem has none.
+    int targetBlock() const { return targetBlock_; }
     bool isAdjusted(int view) const { return isSeen_[view] && blocks_[poseBlock(view)].isFree[0]; }
 
     // A scene
@@ -139,7 +145,7 @@ public:
     Eigen::MatrixXd priorRows(int block) const;
     Eigen::VectorXd priorResidual(int block) const;
 
-    //! One image's residuals and their derivatives: by its pose, and by all coordinates of cameraBlocksOf().
+    //! One image's residuals and their derivatives: by its pose, and by all coordinates of blocksOf().
     struct Derivatives
     {
         Eigen::VectorXd residuals;
@@ -153,19 +159,20 @@ public:
     //! Derivatives by the scene's points, from those by the view's pose.
     RowMajorMatrix byScenePoint(const Image& image, const RowMajorMatrix& byPose) const;
 
-    /** d public parameters / d free coordinates of the camera blocks, in their order. What the other cameras see of a shared
+    /** d public parameters / d free coordinates of the blocks before the poses, in their order. What the other cameras see of a shared
     window follows from its owner's. */
     Eigen::MatrixXd publicBasis() const;
     int publicCount() const { return publicRow(ParameterBlock::EXTRINSICS, rig_.count()); }
 
 private:
     void addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-                   const std::vector<CameraPrior>& cameraPriors, int flags);
+                   const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance);
     ParameterBlock& addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
                              const std::vector<String>& names, const std::vector<bool>& isFree);
+    void addTargetBlock(const std::vector<Pose>& poses, const Eigen::MatrixXd& covariance);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
-    uchar project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const;
+    uchar project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const;
     bool isActive(int block) const;
     int blockOf(ParameterBlock::Kind kind, int camera) const;
     const double* valuesOf(ParameterBlock::Kind kind, int camera) const;    //!< null for the extrinsics of camera 1
@@ -179,7 +186,9 @@ private:
     std::vector<bool> isSeen_;          //!< per view: some image has a weight
     std::vector<double> values_;        //!< of all blocks, one after the other
     std::vector<ParameterBlock> blocks_;
-    int cameraBlocks_;
+    int cameraBlocks_;                  //!< and of the targets: those before the poses
+    int targetBlock_;
+    SharedTargetErrors targetErrors_;
     Scene scene_;
     std::vector<std::vector<Observation> > observations_;
     double pixelSigma_;

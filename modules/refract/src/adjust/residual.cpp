@@ -23,8 +23,8 @@ Matrix3Map eigen(const Matx33d& m) { return Matrix3Map(m.val); }
 } // namespace
 
 ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights,
-                             const Kind& kind)
-    : camera_(camera), points_(points), rootWeights_(rootWeights), refracted_(kind.refracted)
+                             const Kind& kind, const SharedTargetErrors& targetErrors)
+    : camera_(camera), points_(points), rootWeights_(rootWeights), targetErrors_(targetErrors), refracted_(kind.refracted)
 {
     const auto addBlock = [&](bool exists, int size)
     {
@@ -33,12 +33,25 @@ ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points,
         return exists ? (int)sizes_.size() - 1 : -1;
     };
     addBlock(true, 6);
+    targets_ = addBlock(kind.hasTargetErrors, SharedTargetErrors::COUNT);
     extrinsics_ = addBlock(!kind.isCamera1, 6);
     lens_ = addBlock(true, camera.lensCount());
     normal_ = addBlock(kind.refracted, 3);
     media_ = addBlock(kind.refracted, camera.mediaCount());
     owner_ = addBlock(kind.refracted && camera.window && !kind.ownerIsCamera1, 6);
 }
+
+//! Where the target is in this image.
+struct ImageResidual::Target
+{
+    Target(const double* pose, const SharedTargetErrors& errors, bool refracted)
+        : rotation(pose), t(pose + 3), placed(errors.place(rotation.R, t, refracted)),
+          motion(refracted ? errors.rotation.R : Matx33d::eye()) {}
+    Rotation rotation;              //!< object -> camera 1 in the direct images
+    Vec3d t;
+    SimilarityTransform placed;     //!< object -> camera 1 in this one
+    Matx33d motion;
+};
 
 //! One point on its way, and the derivatives of its weighted pixel.
 struct ImageResidual::Point
@@ -49,15 +62,17 @@ struct ImageResidual::Point
 };
 
 //! The rows of point i in every jacobian that is wanted.
-void ImageResidual::writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const
+void ImageResidual::writeJacobians(const Target& target, const Point& point, int i, double** jacobians) const
 {
     const auto wanted = [&](int block) { return block >= 0 && jacobians[block]; };
     if (wanted(0))
     {
         RowsMap<6> pose = rowsOf<6>(jacobians[0], i);
-        pose.rightCols<3>() = point.byPoint*eigen(camera_.extrinsics.rotation.R);
-        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(object.derivativeOf(point.inObject));
+        pose.rightCols<3>() = point.byPoint*eigen(camera_.extrinsics.rotation.R*target.motion);
+        pose.leftCols<3>() = pose.rightCols<3>().eval()*eigen(target.rotation.derivativeOf(point.inObject*targetErrors_.scale));
     }
+    if (wanted(targets_))
+        writeTargetErrors(target, point, jacobians[targets_] + (size_t)2*i*SharedTargetErrors::COUNT);
     if (wanted(extrinsics_))
     {
         RowsMap<6> rows = rowsOf<6>(jacobians[extrinsics_], i);
@@ -90,10 +105,23 @@ void ImageResidual::writeJacobians(const Rotation& object, const Point& point, i
     media.col(at.distance - at.media) = byWindow.col(3);
 }
 
+void ImageResidual::writeTargetErrors(const Target& target, const Point& point, double* jacobian) const
+{
+    RowsMap<SharedTargetErrors::COUNT> rows = rowsOf<SharedTargetErrors::COUNT>(jacobian, 0);
+    const Eigen::Matrix<double, 2, 3> byCamera1 = point.byPoint*eigen(camera_.extrinsics.rotation.R);
+    const Vec3d turned = target.rotation.R*point.inObject, byScale = target.motion*turned;
+    rows.setZero();
+    rows.col(0) = byCamera1*Eigen::Map<const Eigen::Vector3d>(byScale.val);
+    if (!refracted_)
+        return;
+    const Vec3d direct = turned*targetErrors_.scale + target.t;
+    rows.middleCols<3>(1) = byCamera1*eigen(targetErrors_.rotation.derivativeOf(direct - targetErrors_.center));
+    rows.rightCols<3>() = byCamera1;
+}
+
 bool ImageResidual::linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const
 {
-    const Rotation object(pose);
-    const Vec3d t(pose + 3);
+    const Target target(pose, targetErrors_, refracted_);
     // Known windows and lenses do without the derivatives by camera parameters.
     const bool byParameters = std::any_of(jacobians + lens_, jacobians + sizes_.size(),
                                           [](const double* jacobian) { return jacobian != nullptr; }) ||
@@ -110,7 +138,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
     for (int begin = 0; begin < (int)points_.pixel.size(); begin += SMALL)
     {
         const int n = std::min(SMALL, (int)points_.pixel.size() - begin);
-        placePoints(object.R, t, begin, n, x, y, z, status);
+        placePoints(target.placed, begin, n, x, y, z, status);
         camera.projectJacobian(n, x, y, z, u, v, byPoint, byParameter, status);
         for (int k = 0; k < n; k++)
         {
@@ -119,7 +147,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
             areAll = areAll && hasImage;
             const double w = hasImage ? rootWeights_[i] : 0;
             point.inObject = points_.object[i];
-            point.inCamera1 = object.R*point.inObject + t;
+            point.inCamera1 = target.placed.apply(point.inObject);
             for (int r = 0; r < 2; r++)
             {
                 for (int c = 0; c < 3; c++)
@@ -127,19 +155,19 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
                 for (int c = 0; c < count && byParameters; c++)
                     point.byParameters(r, c) = w == 0 ? 0 : w*byParameter.at(r, c)[k];
             }
-            writeJacobians(object, point, i, jacobians);
+            writeJacobians(target, point, i, jacobians);
         }
     }
     return areAll;
 }
 
 //! Points begin ... begin + n - 1 in the camera's frame.
-void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
+void ImageResidual::placePoints(const SimilarityTransform& placed, int begin, int n, double* x, double* y, double* z,
                                 uchar* status) const
 {
     const Extrinsics& toCamera = camera_.extrinsics;
-    const Matx33d R = toCamera.rotation.R*R1;
-    const Vec3d t = toCamera.apply(t1);
+    const Matx33d R = toCamera.rotation.R*placed.A;
+    const Vec3d t = toCamera.apply(placed.t);
     for (int k = 0; k < n; k++)
     {
         const Vec3d X = R*Vec3d(points_.object[begin + k]) + t;
@@ -160,14 +188,14 @@ bool ImageResidual::writeResidual(int i, double u, double v, uchar status, doubl
 
 bool ImageResidual::project(const Camera& camera, const double* pose, double* residuals) const
 {
-    const Matx33d R = Rotation(pose).R;
+    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(Vec3d(pose)), Vec3d(pose + 3), refracted_);
     double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
     uchar status[BLOCK];
     bool areAll = true;
     for (int begin = 0; begin < (int)points_.pixel.size(); begin += BLOCK)
     {
         const int n = std::min(BLOCK, (int)points_.pixel.size() - begin);
-        placePoints(R, Vec3d(pose + 3), begin, n, x, y, z, status);
+        placePoints(placed, begin, n, x, y, z, status);
         camera.project(n, x, y, z, nullptr, u, v, status);
         for (int k = 0; k < n; k++)
             areAll = writeResidual(begin + k, u[k], v[k], status[k], residuals) && areAll;

@@ -6,16 +6,17 @@
 #define OPENCV_REFRACT_RESIDUAL_HPP
 
 #include "adjust/rig_camera.hpp"
+#include "adjust/shared_target_errors.hpp"
 #include "arrays/views.hpp"
 
 namespace cv { namespace refract {
 
 /** Predicted minus observed pixel of all points of one image, with analytic derivatives through Camera::projectJacobian.
 
-    object --pose--> camera 1 --extrinsics--> camera --window, lens--> pixel
+    object --pose, errors of all targets--> camera 1 --extrinsics--> camera --window, lens--> pixel
 
-The camera is evaluated once for all its images (RigCamera). Blocks in this order: pose (rvec, tvec; 6), extrinsics (rvec, T; 6)
-but for camera 1, lens, and through a window its normal (3, unit), media, and the owner's extrinsics if the window is neither the
+The camera is evaluated once for all its images (RigCamera). Blocks in this order: pose (rvec, tvec; 6), the errors that all
+targets share (7; if the problem has them), extrinsics (rvec, T; 6) but for camera 1, lens, and through a window its normal (3, unit), media, and the owner's extrinsics if the window is neither the
 camera's own nor camera 1's.
 
 Every point has a weight: its residual is multiplied by the weight's root. 0: left out. */
@@ -24,10 +25,11 @@ class ImageResidual
 public:
     struct Kind
     {
-        bool refracted, isCamera1, ownerIsCamera1;
+        bool refracted, isCamera1, ownerIsCamera1, hasTargetErrors;
     };
     //! All arguments must outlive it. rootWeights: one per point.
-    ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights, const Kind& kind);
+    ImageResidual(const RigCamera& camera, const ImagePoints& points, const std::vector<double>& rootWeights, const Kind& kind,
+                  const SharedTargetErrors& targetErrors);
 
     int count() const { return 2*(int)points_.pixel.size(); }
     const std::vector<int>& blockSizes() const { return sizes_; }
@@ -38,20 +40,22 @@ public:
     bool evaluate(const double* pose, double* residuals, double** jacobians) const;
 
 private:
+    struct Target;
     struct Point;
     bool project(const Camera& camera, const double* pose, double* residuals) const;
     bool linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const;
-    void placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
-                     uchar* status) const;
+    void placePoints(const SimilarityTransform& placed, int begin, int n, double* x, double* y, double* z, uchar* status) const;
     bool writeResidual(int i, double u, double v, uchar status, double* residuals) const;
-    void writeJacobians(const Rotation& object, const Point& point, int i, double** jacobians) const;
+    void writeJacobians(const Target& target, const Point& point, int i, double** jacobians) const;
+    void writeTargetErrors(const Target& target, const Point& point, double* rows) const;
 
     const RigCamera& camera_;
     const ImagePoints& points_;
     const std::vector<double>& rootWeights_;
+    const SharedTargetErrors& targetErrors_;
     bool refracted_;
     std::vector<int> sizes_;
-    int extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
+    int targets_, extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
 };
 
 }} // namespace

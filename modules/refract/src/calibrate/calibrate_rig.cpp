@@ -216,6 +216,25 @@ static void readCameraPriors(InputArrayOfArrays covariances, const std::vector<C
     }
 }
 
+//! 7x7, or nothing.
+static Eigen::MatrixXd readTargetCovariance(InputArray covariance)
+{
+    const int count = SharedTargetErrors::COUNT;
+    const Mat given = covariance.getMat();
+    if (given.empty())
+        return Eigen::MatrixXd();
+    if (given.channels() != 1 || given.rows != count || given.cols != count)
+        CV_Error_(Error::StsBadSize, ("targetCovariance is %dx%d with %d channels; it must be 7x7 (relative error of the scale, "
+                                      "rotation vector, translation), or empty", given.rows, given.cols, given.channels()));
+    Mat_<double> numbers;
+    given.convertTo(numbers, CV_64F);
+    for (int i = 0; i < count; i++)
+        if (!(numbers(i, i) >= 0 && std::isfinite(numbers(i, i))))
+            CV_Error_(Error::StsBadArg, ("targetCovariance has the variance %g in row %d; it must be finite and not negative",
+                                         numbers(i, i), i));
+    return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
+}
+
 //! As the arrays have them: an empty list is no view.
 static std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
 {
@@ -245,7 +264,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
                         InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                        InputArrayOfArrays cameraCovariances)
+                        InputArrayOfArrays cameraCovariances, InputArray targetCovariance)
 {
     const int count = (int)cameras.size();
     if (count == 0)
@@ -277,6 +296,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
         task.posePriors = readPosePriors(poseCovariances, task.views.count());
     }
     readCameraPriors(cameraCovariances, rig.cameras, task);
+    task.targetCovariance = readTargetCovariance(targetCovariance);
     task.flags = flags;
     task.criteria = criteria;
     const bool placesFollow = task.isIncremental() && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
@@ -299,15 +319,31 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
                          InputArrayOfArrays cameraCovariances)
 {
+    return calibrateGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
+                             stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, flags, poseCovariances,
+                             criteria, cameraCovariances, noArray(), noArray());
+}
+
+double calibrateGlassRig(InputArrayOfArrays objectPoints,
+                         const std::vector<std::vector<Mat> >& imagePointsDirect,
+                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
+                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                         InputArrayOfArrays cameraCovariances, InputArray targetCovariance, OutputArray targetErrors)
+{
     CV_INSTRUMENT_REGION();
 
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances);
+                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance);
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
     writeMat(fit.otherMinima, otherMinima);
+    writeMat(fit.targetErrors, targetErrors);
     return fit.rms;
 }
 
@@ -321,7 +357,7 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std:
 
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 noArray(), noArray(), flags, noArray(), criteria, noArray());
+                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray());
     writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
     return fit.rms;
 }

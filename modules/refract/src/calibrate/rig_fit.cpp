@@ -103,6 +103,15 @@ int requiredOf(const RigTask& task)
     return task.isSealed() ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
+Mat targetErrorsOf(const Problem& problem, const Covariance& covariance)
+{
+    Mat values(SharedTargetErrors::COUNT, 1, CV_64F, Scalar(NaN)), both;
+    if (problem.targetBlock() >= 0)
+        eigen2cv(Eigen::VectorXd(problem.blocks()[problem.targetBlock()].values), values);
+    hconcat(values, covariance.ofTargetErrors(), both);
+    return both;
+}
+
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
@@ -164,7 +173,8 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
     if (!outcome.converged())
         return outcome;
     fit.otherMinima = toMat(minima);
-    Problem problem(start.rig, task.views, start.poses, task.posePriors, task.cameraPriors, task.flags);
+    Problem problem(start.rig, task.views, start.poses, task.posePriors, task.cameraPriors, task.flags,
+                    task.targetCovariance);
     TargetOutliers outliers(problem);
     if (!task.isRobust())
         outcome = checkFreedom(problem);
@@ -186,6 +196,7 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
         return determined.converged() ? outcome : determined;
     eigen2cv(covariance.ofParameters, fit.covariance);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
+    fit.targetErrors = targetErrorsOf(problem, covariance);
     describeImages(problem, task, outliers.imageStatus(), fit);
     markUnusable(given, fit);
     if (task.wantsJacobian)

@@ -61,6 +61,15 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
 
 double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
+                         InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
+                         OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, int, InputArrayOfArrays, TermCriteria,
+                         InputArrayOfArrays, InputArray, OutputArray)
+{
+    throwWithoutCeres("calibrateGlassRig");
+}
+
+double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                         const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, OutputArrayOfArrays, OutputArrayOfArrays, int, TermCriteria)
 {
     throwWithoutCeres("calibrateGlassRig");

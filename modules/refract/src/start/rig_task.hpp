@@ -16,6 +16,7 @@ struct RigTask
     std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
     std::vector<PosePrior> posePriors;          //!< of the same
     std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
+    Eigen::MatrixXd targetCovariance;           //!< of SharedTargetErrors, or empty
     int flags;
     TermCriteria criteria;
     bool wantsJacobian = false;
