@@ -3,6 +3,7 @@
 
 // Errors that the targets of all views share: their scale, and a motion between the direct and the refracted images.
 #include "problem_scenes.hpp"
+#include "target_scenes.hpp"
 #include <opencv2/core/eigen.hpp>
 
 using namespace cv;
@@ -10,66 +11,6 @@ using namespace cv::refract;
 using namespace scenes;
 
 namespace {
-
-//! What a scene's targets have in common.
-struct TargetTruth
-{
-    double scale = 0;       //!< they are larger by this part than the object points say
-    Vec3d rvec, translation;
-};
-
-//! Deviations: of the scale, radians, millimetres.
-Mat targetCovariance(double scale, double rotation, double translation)
-{
-    Mat covariance = Mat::zeros(7, 7, CV_64F);
-    for (int i = 0; i < 7; i++)
-        covariance.at<double>(i, i) = std::pow(i == 0 ? scale : i < 4 ? rotation : translation, 2);
-    return covariance;
-}
-
-TargetTruth drawTargets(Random& random, double scale, double rotation, double translation)
-{
-    TargetTruth targets;
-    targets.scale = random.normal(scale);
-    for (int i = 0; i < 3; i++)
-    {
-        targets.rvec[i] = random.normal(rotation);
-        targets.translation[i] = random.normal(translation);
-    }
-    return targets;
-}
-
-//! The images of a scene's views with such targets.
-void imageTargets(const RigTruth& rig, const TargetTruth& targets, Random& random, double sigma, RigScene& scene)
-{
-    const Vec3d center(0, 0, 610);
-    Matx33d motion;
-    Rodrigues(targets.rvec, motion);
-    for (size_t view = 0; view < scene.object.size(); view++)
-    {
-        std::vector<Point3d> object;
-        for (const Point3d& p : scene.object[view])
-            object.push_back(p*(1 + targets.scale));
-        for (size_t c = 0; c < rig.cameras.size(); c++)
-            for (bool refracted : { false, true })
-            {
-                Matx33d R;
-                Rodrigues(scene.rvecs[view], R);
-                Vec3d t = scene.tvecs[view];
-                if (refracted)
-                {
-                    R = motion*R;
-                    t = center + motion*(t - center) + targets.translation;
-                }
-                Vec3d rvec;
-                Rodrigues(rig.Rs[c]*R, rvec);
-                const Ptr<RefractiveCamera> camera = refracted ? rig.cameras[c]
-                    : RefractiveCamera::create(rig.cameras[c]->cameraMatrix(), rig.cameras[c]->distCoeffs());
-                (refracted ? scene.refracted : scene.direct)[c][view] = seen(object, rvec, rig.Rs[c]*t + rig.Ts[c], camera, random,
-                                                                             sigma);
-            }
-    }
-}
 
 Mat run(RigCall& call, const Mat& covariance, int flags)
 {

@@ -6,6 +6,7 @@
 #include "adjust/reduced_cost.hpp"
 #include "bundle_scenes.hpp"
 #include "problem_scenes.hpp"
+#include "window/wedge.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -99,6 +100,25 @@ TEST_CASE("The gradient is that of the squared error with the best poses", "[adj
         CAPTURE(shared);
         CHECK(largestGradientError(*problem) < 1e-5);
     }
+}
+
+TEST_CASE("The gradient holds behind a pane with a wedge that two cameras share, none of them the first", "[adjust][wedge]")
+{
+    CAPTURE(seed());
+    Random random(32);
+    RigTruth truth = makeRig(3, { 0, 1, 1 }, 1.333);
+    for (int c = 0; c < 2; c++)
+    {
+        GlassWindow window = truth.cameras[c]->window();
+        window.wedge = { Vec2d(0.01 - 0.03*c, 0.02) };
+        truth.cameras[c]->setWindow(window);
+    }
+    const Matx33d R = truth.Rs[2]*truth.Rs[1].t();
+    truth.cameras[2]->setWindow(windowInFrame(truth.cameras[1]->window(), R, truth.Ts[2] - R*truth.Ts[1]));
+    const RigScene scene = makeRigScene(truth, 4, random, 0.5);
+    const std::unique_ptr<Problem> problem = problemAt(truth, scene, true, GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE |
+                                                       GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_WEDGE);
+    CHECK(largestGradientError(*problem) < 1e-5);
 }
 
 TEST_CASE("The gradient is that of the squared error with the best points", "[adjust]")

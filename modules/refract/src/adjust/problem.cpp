@@ -330,11 +330,13 @@ FitOutcome Problem::findPointWithoutImage() const
         outcome.refracted = image.refracted;
         if (!cameras_[image.camera].camera(image.refracted))
         {
-            const WindowTransfer* window = cameras_[image.camera].window.get();
+            const SharedWindow* window = cameras_[image.camera].window.get();
             CV_Assert(window);
-            outcome.status = window->normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
-            outcome.point = Point3d(window->normal);
-            outcome.distance = window->distance;
+            const WindowLayout& at = cameras_[image.camera].at();
+            const double* const normal = &window->parameters[at.normal];
+            outcome.status = normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
+            outcome.point = Point3d(normal[0], normal[1], normal[2]);
+            outcome.distance = window->parameters[at.distance];
             return outcome;
         }
         const Pose direct = pose(image.view);
@@ -491,16 +493,14 @@ void Problem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
 {
     const int owner = rig_.owner[camera], row = publicRow(ParameterBlock::NORMAL, camera);
     const int ownerRow = publicRow(ParameterBlock::NORMAL, owner);
-    const WindowTransfer& window = *cameras_[camera].window;
-    Eigen::MatrixXd rows = window.byWindow*basis.middleRows<4>(ownerRow);
+    const SharedWindow& window = *cameras_[camera].window;
+    const int count = rig_.cameras[camera].layers().at().count;
+    Eigen::MatrixXd rows = window.byWindow*basis.middleRows(ownerRow, count);
     if (camera > 0)
         rows += window.byCamera*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, camera));
     if (owner > 0)
         rows += window.byOwner*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, owner));
-    basis.middleRows<4>(row) = rows;
-    const WindowLayout& at = rig_.cameras[camera].layers().at();
-    const int rest = at.thickness - at.normal, others = at.count - at.thickness;
-    basis.middleRows(row + rest, others) = basis.middleRows(ownerRow + rest, others).eval();
+    basis.middleRows(row, count) = rows;
 }
 
 }} // namespace

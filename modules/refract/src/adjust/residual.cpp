@@ -58,11 +58,11 @@ struct ImageResidual::Point
 {
     Vec3d inObject, inCamera1;
     Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
-    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> byParameters;
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> byParameters, byOwnersWindow;
 };
 
 //! The rows of point i in every jacobian that is wanted.
-void ImageResidual::writeJacobians(const Target& target, const Point& point, int i, double** jacobians) const
+void ImageResidual::writeJacobians(const Target& target, Point& point, int i, double** jacobians) const
 {
     const auto wanted = [&](int block) { return block >= 0 && jacobians[block]; };
     if (wanted(0))
@@ -85,24 +85,21 @@ void ImageResidual::writeJacobians(const Target& target, const Point& point, int
     if (!refracted_)
         return;
 
-    Eigen::Matrix<double, 2, 4> byWindow = point.byParameters.middleCols<4>(lensCount + camera_.at().normal);     // and distance
+    const WindowLayout& at = camera_.at();
+    auto byWindow = point.byParameters.middleCols(lensCount, at.count);
     if (camera_.window)
     {
         if (wanted(extrinsics_))
-            rowsOf<6>(jacobians[extrinsics_], i) += byWindow*camera_.window->byCamera;
+            rowsOf<6>(jacobians[extrinsics_], i) += byWindow.lazyProduct(camera_.window->byCamera);
         if (wanted(owner_))
-            rowsOf<6>(jacobians[owner_], i) = byWindow*camera_.window->byOwner;
-        byWindow *= camera_.window->byWindow;
+            rowsOf<6>(jacobians[owner_], i) = byWindow.lazyProduct(camera_.window->byOwner);
+        point.byOwnersWindow.noalias() = byWindow.lazyProduct(camera_.window->byWindow);
+        byWindow = point.byOwnersWindow;
     }
     if (wanted(normal_))
-        rowsOf<3>(jacobians[normal_], i) = byWindow.leftCols<3>();
-    if (!wanted(media_))
-        return;
-    const int mediaCount = sizes_[media_];
-    RowsMap<Eigen::Dynamic> media = rowsOf<Eigen::Dynamic>(jacobians[media_], i, mediaCount);
-    const WindowLayout& at = camera_.at();
-    media = point.byParameters.middleCols(lensCount + at.media, mediaCount);
-    media.col(at.distance - at.media) = byWindow.col(3);
+        rowsOf<3>(jacobians[normal_], i) = byWindow.middleCols<3>(at.normal);
+    if (wanted(media_))
+        rowsOf<Eigen::Dynamic>(jacobians[media_], i, sizes_[media_]) = byWindow.middleCols(at.media, sizes_[media_]);
 }
 
 void ImageResidual::writeTargetErrors(const Target& target, const Point& point, double* jacobian) const

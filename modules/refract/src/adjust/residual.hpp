@@ -46,7 +46,7 @@ private:
     bool linearize(const Camera& camera, const double* pose, double* residuals, double** jacobians) const;
     void placePoints(const SimilarityTransform& placed, int begin, int n, double* x, double* y, double* z, uchar* status) const;
     bool writeResidual(int i, double u, double v, uchar status, double* residuals) const;
-    void writeJacobians(const Target& target, const Point& point, int i, double** jacobians) const;
+    void writeJacobians(const Target& target, Point& point, int i, double** jacobians) const;
     void writeTargetErrors(const Target& target, const Point& point, double* rows) const;
 
     const RigCamera& camera_;

@@ -5,42 +5,10 @@
 #ifndef OPENCV_REFRACT_RIG_CAMERA_HPP
 #define OPENCV_REFRACT_RIG_CAMERA_HPP
 
+#include "adjust/shared_window.hpp"
 #include "camera/camera.hpp"
-#include "math/rotation.hpp"
-#include "pose/poses.hpp"
-#include <Eigen/Core>
 
 namespace cv { namespace refract {
-
-// Not aligned: they are members of what std::vector and plain new hold.
-template<int Rows, int Columns>
-using PlainMatrix = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor | Eigen::DontAlign>;
-typedef PlainMatrix<6, 6> Matrix6;
-
-//! Where a camera of the rig is: X = R X1 + T.
-struct Extrinsics
-{
-    //! rvec and T; null: camera 1.
-    explicit Extrinsics(const double* six = nullptr);
-    explicit Extrinsics(const Pose& pose);
-    Vec3d apply(const Vec3d& X) const { return rotation.R*X + T; }
-    Rotation rotation;
-    Vec3d T;
-};
-
-/** A window's normal and distance, described in the frame of one camera of the rig (its owner), in the frame of another.
-With n.X = d the first surface, X_owner = Ro X1 + To and X = R X1 + T:
-
-    n1 = Ro^T n_owner,  d1 = d_owner - n_owner.To;    n = R n1,  d = d1 + n.T */
-struct WindowTransfer
-{
-    WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const Extrinsics& owner, const Extrinsics& camera);
-    Vec3d normal;
-    double distance;
-    // Rows: normal (3), distance.
-    PlainMatrix<4, 4> byWindow;             //!< by the owner's normal and distance
-    PlainMatrix<4, 6> byOwner, byCamera;    //!< by rvec and T of the two
-};
 
 //! The same lens behind another window, or none.
 Camera withWindow(const Camera& camera, const GlassWindow& window = GlassWindow());
@@ -73,11 +41,11 @@ public:
     const Camera* camera(bool refracted) const;
 
     Extrinsics extrinsics;
-    std::unique_ptr<WindowTransfer> window;     //!< null if it is the camera's own
+    std::unique_ptr<SharedWindow> window;       //!< null if it is the camera's own
 
 private:
+    std::vector<double> ofOwner(const Parameters& parameters) const;
     bool setWindow(const Parameters& parameters);
-    bool turnWedge(const Parameters& parameters, double* ofWindow) const;
     Camera behindWindow_, bare_;
     bool isLensPossible_, isWindowPossible_;
 };
