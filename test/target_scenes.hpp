@@ -16,12 +16,20 @@ struct TargetTruth
     cv::Vec3d rvec, translation;
 };
 
-//! Deviations: of the scale, radians, millimetres.
+//! About where the targets of makeRigScene are.
+const cv::Vec3d TARGETS(0, 0, 610);
+
+//! Deviations: of the scale, of a rotation about TARGETS in radians, of a translation in millimetres.
 inline cv::Mat targetCovariance(double scale, double rotation, double translation)
 {
+    const cv::Matx33d cross(0, -TARGETS[2], TARGETS[1], TARGETS[2], 0, -TARGETS[0], -TARGETS[1], TARGETS[0], 0);
+    const double variance = rotation*rotation;
     cv::Mat covariance = cv::Mat::zeros(7, 7, CV_64F);
-    for (int i = 0; i < 7; i++)
-        covariance.at<double>(i, i) = std::pow(i == 0 ? scale : i < 4 ? rotation : translation, 2);
+    covariance.at<double>(0, 0) = scale*scale;
+    cv::Mat(variance*cv::Matx33d::eye()).copyTo(covariance(cv::Rect(1, 1, 3, 3)));
+    cv::Mat(variance*cross).copyTo(covariance(cv::Rect(1, 4, 3, 3)));
+    cv::Mat(variance*cross.t()).copyTo(covariance(cv::Rect(4, 1, 3, 3)));
+    cv::Mat(translation*translation*cv::Matx33d::eye() + variance*cross*cross.t()).copyTo(covariance(cv::Rect(4, 4, 3, 3)));
     return covariance;
 }
 
@@ -40,7 +48,6 @@ inline TargetTruth drawTargets(Random& random, double scale, double rotation, do
 //! The images of a scene's views with such targets.
 inline void imageTargets(const RigTruth& rig, const TargetTruth& targets, Random& random, double sigma, RigScene& scene)
 {
-    const cv::Vec3d center(0, 0, 610);
     cv::Matx33d motion;
     cv::Rodrigues(targets.rvec, motion);
     for (size_t view = 0; view < scene.object.size(); view++)
@@ -57,7 +64,7 @@ inline void imageTargets(const RigTruth& rig, const TargetTruth& targets, Random
                 if (refracted)
                 {
                     R = motion*R;
-                    t = center + motion*(t - center) + targets.translation;
+                    t = TARGETS + motion*(t - TARGETS) + targets.translation;
                 }
                 cv::Vec3d rvec;
                 cv::Rodrigues(rig.Rs[c]*R, rvec);

@@ -70,7 +70,7 @@ TEST_CASE("The derivatives by the targets' shared errors are those of difference
     }
 }
 
-TEST_CASE("Errors of the targets that are 0 change no bit", "[targets]")
+TEST_CASE("Errors of the targets that are 0 change nothing", "[targets]")
 {
     Random random(72);
     CAPTURE(seed());
@@ -80,11 +80,14 @@ TEST_CASE("Errors of the targets that are 0 change no bit", "[targets]")
     without.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
     const Mat errors = run(with, Mat::zeros(7, 7, CV_64F), GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
     CHECK(norm(errors, NORM_INF) == 0);
-    CHECK(norm(with.covariance, without.covariance, NORM_INF) == 0);
+    const Rect common(0, 0, without.covariance.cols, without.covariance.rows);
+    CHECK(with.covariance.rows == without.covariance.rows + 7);
+    CHECK(norm(with.covariance(common), without.covariance, NORM_INF) <= 1e-12*norm(without.covariance, NORM_INF));
     CHECK(with.cameras[1]->window().normal == without.cameras[1]->window().normal);
     const Mat none = run(with, Mat(), GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
     CHECK(countNonZero(none == none) == 0);
-    CHECK(none.size() == Size(2, 7));
+    CHECK(none.size() == Size(1, 7));
+    CHECK(with.covariance.size() == without.covariance.size());
 }
 
 TEST_CASE("Boards that moved between direct and glass images: ignored, the normal is wrong; as a nuisance, its +- holds", "[targets]")
@@ -112,7 +115,7 @@ TEST_CASE("Boards that moved between direct and glass images: ignored, the norma
                 considered += normalErrorOverStated(with, truth, c, NORMAL + c*CAMERA)/(2*TRIALS);
             }
             for (int i = 0; i < 3; i++)
-                ofMotion += std::pow((errors.at<double>(1 + i, 0) - targets.rvec[i])/errors.at<double>(1 + i, 1), 2)/(3*TRIALS);
+                ofMotion += std::pow((errors.at<double>(1 + i) - targets.rvec[i])/with.deviations.at<double>(with.deviations.rows - 6 + i), 2)/(3*TRIALS);
         }
         std::cout << "[numbers] boards 0.1 mm and 2 mrad aside in all of 6 pairs, outer index " << outerIndex
                   << ": error of the normal over stated, ignored " << std::sqrt(ignored) << ", as a nuisance "
@@ -145,8 +148,9 @@ TEST_CASE("The square of a board, known to a part in a thousand, is in the +- of
         RigCall without(truth, scene, true), with(truth, scene, true);
         without.run(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
         const Mat errors = run(with, targetCovariance(sigma, 0, 0), GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
-        CHECK(errors.at<double>(0, 1) < sigma*1.0001);
-        CHECK(errors.at<double>(1, 1) == 0);
+        CHECK(with.deviations.at<double>(with.deviations.rows - 7) < sigma*1.0001);
+        CHECK(with.deviations.at<double>(with.deviations.rows - 6) == 0);
+        CHECK(std::abs(errors.at<double>(0)) < 4*sigma);
         ignored += overStated(without)/TRIALS;
         considered += overStated(with)/TRIALS;
     }
@@ -169,7 +173,15 @@ TEST_CASE("Moved targets and GLASS_ROBUST: no image is taken for a moved one", "
     const Mat errors = run(call, targetCovariance(0, 1e-3, 0.3), GLASS_ROBUST);
     CHECK(countNonZero(call.imageStatus != GLASS_IMAGE_USED) == 0);
     CHECK(normalErrorOverStated(call, truth, 0, NORMAL) < 10);
-    CHECK(std::abs(errors.at<double>(4, 0) - 0.3) < 4*errors.at<double>(4, 1));
+    // Where the boards are: M c + d - c, whose derivatives by M's rotation vector are -[c]x.
+    Matx33d M;
+    Rodrigues(Vec3d(errors.at<double>(1), errors.at<double>(2), errors.at<double>(3)), M);
+    const Vec3d moved = M*TARGETS + Vec3d(errors.at<double>(4), errors.at<double>(5), errors.at<double>(6)) - TARGETS;
+    const Mat J = (Mat_<double>(1, 6) << 0, TARGETS[2], -TARGETS[1], 1, 0, 0);
+    const int last = call.covariance.rows - 6;
+    const double sigma = std::sqrt(Mat(J*call.covariance(Rect(last, last, 6, 6))*J.t()).at<double>(0));
+    CHECK(sigma < 0.31);
+    CHECK(std::abs(moved[0] - 0.3) < 4*sigma);
 }
 
 TEST_CASE("A covariance of the targets that is none is named", "[targets]")
@@ -185,10 +197,10 @@ TEST_CASE("A covariance of the targets that is none is named", "[targets]")
         return String();
     };
     CHECK(sentence(Mat::eye(6, 6, CV_64F)).find("targetCovariance is 6x6") == 0);
-    CHECK(sentence(-targetCovariance(1, 1, 1)).find("targetCovariance has the variance -1 in row 0") == 0);
+    CHECK(sentence(-Mat::eye(7, 7, CV_64F)).find("targetCovariance has the variance -1 in row 0") == 0);
     CHECK(sentence(targetCovariance(NaN, 1, 1)).find("targetCovariance has the variance nan in row 0") == 0);
     Mat impossible = targetCovariance(1e-3, 1e-3, 1);
-    impossible.at<double>(4, 5) = impossible.at<double>(5, 4) = 2;
+    impossible.at<double>(4, 5) = impossible.at<double>(5, 4) = 1e6;
     CHECK(sentence(impossible).find("targetCovariance is not positive definite") == 0);
     CHECK(sentence(Mat_<float>(targetCovariance(1e-3, 1e-3, 0.1))).empty());
 }

@@ -51,9 +51,9 @@ inline tools::View observe(const tools::RigModel& rig, const std::vector<cv::Poi
             if (!glass && !direct)
                 continue;
             cv::Vec3d r = rvec, t = tvec;
-            tools::poseInCamera(rig, c, r, t);
+            tools::poseInImage(rig, c, glass, r, t);
             std::vector<cv::Point2d>& pixels = glass ? view.glass[c] : view.direct[c];
-            cv::refract::refractiveProjectPoints(object, r, t,
+            cv::refract::refractiveProjectPoints(tools::pointsOfTarget(rig, object), r, t,
                 glass ? rig.cameras[c] : tools::copyWithWindow(rig.cameras[c], cv::refract::GlassWindow()), pixels);
             for (cv::Point2d& p : pixels)
                 p += cv::Point2d(random.normal(sigma), random.normal(sigma));

@@ -47,6 +47,18 @@ RigModel moved(const RigModel& rig, int column, double step)
         else if (c > 0 && k >= 3 && k < 6)
             result.extrinsics[c].T[k - 3] += step;
     }
+    const int target = column - columnCount(rig);
+    if (target == 0)
+        result.targetScale += step;
+    else if (target > 0 && target < 4)
+    {
+        Vec3d rvec;
+        Rodrigues(rig.targetMotion.R, rvec);
+        rvec[target - 1] += step;
+        Rodrigues(rvec, result.targetMotion.R);
+    }
+    else if (target >= 4)
+        result.targetMotion.T[target - 4] += step;
     return result;
 }
 
@@ -54,7 +66,15 @@ RigModel moved(const RigModel& rig, int column, double step)
 
 TEST_CASE("Derivatives of a view of three cameras agree with differences", "[view_derivatives]")
 {
-    const RigModel rig = paperRig(3);
+    RigModel rig = paperRig(3);
+    const bool targets = GENERATE(false, true);
+    if (targets)
+    {
+        rig.targetCovariance = Mat::eye(TARGET_ERRORS, TARGET_ERRORS, CV_64F);
+        rig.targetScale = 1.01;
+        Rodrigues(Vec3d(0.02, -0.01, 0.03), rig.targetMotion.R);
+        rig.targetMotion.T = Vec3d(1, -2, 3);
+    }
     const std::vector<Point3d> object = board(6, 5);
     const Vec3d rvec(0.2, -0.3, 0.1), tvec(-30, 10, 620);
     std::vector<ImageOfView> images;
@@ -66,6 +86,7 @@ TEST_CASE("Derivatives of a view of three cameras agree with differences", "[vie
     };
     const ViewDerivatives d = differentiateView(rig, object, rvec, tvec, images);
     REQUIRE(d.byParameters.rows() >= 100);
+    REQUIRE(d.byParameters.cols() == columnCount(rig) + (targets ? TARGET_ERRORS : 0));
     const int inner[] = {columnsOf(rig, 0).innerIndex, columnsOf(rig, 1).innerIndex, columnsOf(rig, 2).innerIndex};
     for (int column = 0; column < d.byParameters.cols(); column++)
     {

@@ -36,13 +36,15 @@ class ViewPlanner
 {
 public:
     explicit ViewPlanner(const RigCalibration& c)
-        : c_(c), board_(c.data.views[c.fit.views[0]].objectPoints), now_(toEigen(c.fit.covariance)), sigma_(c.fit.sigma) {}
+        : c_(c), board_(c.data.views[c.fit.views[0]].objectPoints), now_(toEigen(c.fit.withTargets)), sigma_(c.fit.sigma) {}
 
     const MatrixXd& now() const { return now_; }
 
     //! @param columns of the error maps
-    Quality qualityOf(const MatrixXd& covariance, int columns = ERROR_MAP_COLUMNS) const
+    Quality qualityOf(const MatrixXd& withTargets, int columns = ERROR_MAP_COLUMNS) const
     {
+        const int parameters = columnCount(c_.fit.rig);
+        const MatrixXd covariance = withTargets.topLeftCorner(parameters, parameters);
         Quality quality;
         for (int k = 0; k < c_.data.cameraCount; k++)
             quality.normalStdDeg.push_back(normalStdDeg(toMat(covariance), c_.fit.rig, k)[0]);

@@ -18,6 +18,7 @@ Assessment assess(const RigCalibration& c, bool quiet)
         result.errors.push_back(mapErrors(calibration, z, c.fit.sigma, ERROR_MAP_COLUMNS));
     for (const ErrorLimit& limit : c.limits.errors)
         result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS));
+    result.budget = uncertaintyBudget(c);
     result.tolerances = analyseTolerances(c, 1./millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
     result.contradictions = testGivenValues(c.data, c.options, c.fit);

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_ASSESSMENT_HPP
 
 #include "assess/advice.hpp"
+#include "assess/budget.hpp"
 #include "diagnose/hypothesis_tests.hpp"
 #include "measure/point_error.hpp"
 #include "assess/tolerance.hpp"
@@ -16,6 +17,7 @@ struct Assessment
 {
     std::vector<ErrorMap> errors;           //!< from half the nearest to twice the farthest board
     std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
+    std::vector<BudgetRow> budget;
     std::vector<Tolerance> tolerances;
     Advice advice;
     std::vector<Contradiction> contradictions;

@@ -102,13 +102,17 @@ void addLengths(const RigModel& rig, const View& view, Pool& lengths)
 }
 
 //! The board where the direct image shows it: what the glass image should then be.
-void addTransfer(const Ptr<RefractiveCamera>& camera, const View& view, int c, Pool& errors)
+void addTransfer(const RigModel& rig, const View& view, int c, Pool& errors)
 {
+    const Ptr<RefractiveCamera> camera = rig.cameras[c];
+    const std::vector<Point3d> object = pointsOfTarget(rig, view.objectPoints);
     Vec3d rvec, tvec;
-    if (!view.isPair(c) || !refractiveSolvePnP(view.objectPoints, view.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
+    if (!view.isPair(c) || !refractiveSolvePnP(object, view.direct[c], copyWithWindow(camera, GlassWindow()), rvec, tvec))
         return;
+    poseFromImage(rig, c, false, rvec, tvec);
+    poseInImage(rig, c, true, rvec, tvec);
     std::vector<Point2d> predicted;
-    refractiveProjectPoints(view.objectPoints, rvec, tvec, camera, predicted);
+    refractiveProjectPoints(object, rvec, tvec, camera, predicted);
     for (size_t i = 0; i < predicted.size(); i++)
     {
         const double error = norm(view.glass[c][i] - predicted[i]);
@@ -124,7 +128,7 @@ void addTest(const RigData& data, const Fit& trained, const std::vector<int>& te
         views.push_back(data.views[i]);
     try
     {
-        covarianceTest.add(testHeldOut(trained.rig, trained.covariance, trained.sigma, views));
+        covarianceTest.add(testHeldOut(trained.rig, trained.withTargets, trained.sigma, views));
     }
     catch (const Failure&) {}       // no pose: the other numbers say it
 }
@@ -170,7 +174,7 @@ HeldOut holdOut(const RigData& data, const Fit& fit, int flags)
             for (size_t c = 0; c < window.cameras.size(); c++)
             {
                 px.add(view.objectPoints, view.glass[c], window.cameras[c]);
-                addTransfer(window.cameras[c], view, (int)c, transfer);
+                addTransfer(window, view, (int)c, transfer);
             }
             for (size_t c = 0; c < pinhole.cameras.size(); c++)
                 pinholePx.add(view.objectPoints, view.glass[c], pinhole.cameras[c]);

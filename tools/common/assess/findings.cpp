@@ -262,32 +262,34 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE && !isLensFree(c, k))
             f.assumed.push_back(of(c, k) + "the lens of the file, taken as exact, as the file states no covariance");
-    f.assumed.push_back((c.square > 0 ? format("the square of %g", c.square) : std::string("the coordinates of the points in"))
-                        + " " + c.unit + ": all lengths are in proportion to it, and no image shows it. A tape measure does: "
-                        + scaleInWords(c));
+    if (c.options.std.scale == 0.)
+        f.assumed.push_back((c.square > 0 ? format("the square of %g", c.square) : std::string("the coordinates of the points in"))
+                            + " " + c.unit + ": all lengths are in proportion to it, and no image shows it. A tape measure does: "
+                            + scaleInWords(c));
     if (c.options.flags & GLASS_USE_POSES)
         f.assumed.push_back("the poses of the target, within their given standard deviations");
     const GlassWindow& window = c.options.window;
-    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.thicknessStd == 0.)
+    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.std.thickness == 0.)
         f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
                             "the distance, as the media on its two sides differ)"));
-    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.indexStd == 0.)
+    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.std.index == 0.)
         f.assumed.push_back("the index");
     std::vector<GivenIndex> indices = c.options.layers;
     indices.insert(indices.end(), {c.options.inner, c.options.outer});
     for (const GivenIndex& index : indices)
         if (index.isNamed() && std::find(f.assumed.begin(), f.assumed.end(), index.sentence()) == f.assumed.end())
             f.assumed.push_back(index.sentence());
-    if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
+    if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.)
         f.assumed.push_back("the distance");
     for (int k = 0; k < c.data.cameraCount; k++)
-        if (c.data.countPairs(k))
+        if (c.data.countPairs(k) && c.options.std.placement == 0.)
             f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
                                 "all the same way, which no residual shows");
     if (!c.outliers.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.outliers.fault);
-    f.assumed.push_back((c.square > 0 ? "a flat board with even spacing" : "a rigid target that is as its coordinates say")
-                        + std::string(", a flat window with parallel surfaces, and independent corner noise"));
+    f.assumed.push_back(std::string(c.square > 0 ? "a flat board with even spacing" : "a rigid target that is as its coordinates say")
+                        + (c.fit.rig.cameras[0]->window().wedge.empty() ? ", a flat window with parallel surfaces" : ", a flat window")
+                        + ", and independent corner noise");
 }
 
 //! "camera 1: x", "camera 2: x" and so on of all cameras become "x"; of several "cameras 1, 2: x".

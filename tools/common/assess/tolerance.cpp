@@ -252,17 +252,19 @@ void bow(std::vector<Point3d>& board, double height)
 }
 
 //! What no image shows of the target itself, which is calibrated with as given.
-std::vector<Cause> causesOfTarget(bool isBoard, double millimetre)
+std::vector<Cause> causesOfTarget(bool isBoard, double scaleStd, double millimetre)
 {
     const auto scale = [](std::vector<Point3d>& board) {
         for (Point3d& X : board)
             X *= 1. + SQUARE;
     };
     const auto bend = [=](std::vector<Point3d>& board) { bow(board, BOW_MM*millimetre); };
-    if (!isBoard)
-        return {{"coordinates wrong by 0.1 %", 0, false, nullptr, {Vec3d()}, false, scale}};
-    return {{"square wrong by 0.1 %", 0, false, nullptr, {Vec3d()}, false, scale},
-            {"board bent by 0.1 mm", 0, false, nullptr, {Vec3d()}, false, bend}};
+    std::vector<Cause> causes;
+    if (scaleStd == 0.)
+        causes.push_back({isBoard ? "square wrong by 0.1 %" : "coordinates wrong by 0.1 %", 0, false, nullptr, {Vec3d()}, false, scale});
+    if (isBoard)
+        causes.push_back({"board bent by 0.1 mm", 0, false, nullptr, {Vec3d()}, false, bend});
+    return causes;
 }
 
 //! ", camera 2", or all that look through it; nothing for a single camera.
@@ -301,33 +303,36 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
         const std::string whose = whoseWindow(c.fit.rig, k);
         const size_t layer = std::max_element(window.thickness.begin(), window.thickness.end()) - window.thickness.begin();
         const std::string which = window.thickness.size() == 1 ? "" : format(" of layer %zu", layer + 1);
-        if (!(c.options.flags & GLASS_FREE_THICKNESS))
+        if (!(c.options.flags & GLASS_FREE_THICKNESS) && c.options.std.thickness == 0.)
             causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, k, true, [=](GlassWindow& w) {
                 w.thickness[layer] += THICKNESS_MM*millimetre;
             }, {Vec3d()}});
-        if (!(c.options.flags & GLASS_FREE_INDEX))
+        if (!(c.options.flags & GLASS_FREE_INDEX) && c.options.std.index == 0.)
         {
             const GivenIndex given = layer < c.options.layers.size() ? c.options.layers[layer] : GivenIndex();
             causes.push_back({"index" + which + wrongIndexBy(given) + whose, k, true, [=](GlassWindow& w) {
                 w.index[layer] += deviationOf(given);
             }, {Vec3d()}});
         }
+        if (!window.wedge.empty())
+            continue;
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
         causes.push_back({"wedge of 1 arc minute between the faces" + whose, k, true, nullptr,
                           {ARC_MINUTE*across, ARC_MINUTE*window.normal.cross(across)}});
     }
-    if (c.data.countPairs())
+    if (c.data.countPairs() && c.options.std.placement == 0.)
     {
         const double shift = NUDGE_MM*millimetre;
         causes.push_back({"boards moved by 0.1 mm between direct and glass", 0, false, nullptr,
                           {Vec3d(shift, 0, 0), Vec3d(0, shift, 0), Vec3d(0, 0, shift)}, true});
     }
     const GlassWindow first = c.fit.rig.cameras[0]->window();
-    if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX))
+    if (first.innerIndex != first.outerIndex && !(c.options.flags & GLASS_FREE_OUTER_INDEX) &&
+        c.options.std.outerIndex == 0.)
         causes.push_back({"index of the scene's medium" + wrongIndexBy(c.options.outer), 0, false, [&](GlassWindow& w) {
             w.outerIndex += deviationOf(c.options.outer);
         }, {Vec3d()}});
-    for (const Cause& cause : causesOfTarget(c.square > 0, millimetre))
+    for (const Cause& cause : causesOfTarget(c.square > 0, c.options.std.scale, millimetre))
         causes.push_back(cause);
     return causes;
 }

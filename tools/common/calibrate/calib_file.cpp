@@ -51,6 +51,7 @@ void readEstimate(const FileNode& node, CameraCalibration& calibration)
     result.thickness = readList(window["thickness"]);
     result.index = readList(window["index"]);
     result.outerIndex = readNumber(window["outer_index"], 0.);
+    result.wedge = readList(window["wedge"]);
 }
 
 void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
@@ -60,7 +61,10 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
     if (!window.normalDeg.empty())
     {
         fs << "glass_window_std" << "{" << "normal_deg" << window.normalDeg << "distance" << window.distance
-           << "thickness" << window.thickness << "index" << window.index << "outer_index" << window.outerIndex << "}";
+           << "thickness" << window.thickness << "index" << window.index << "outer_index" << window.outerIndex;
+        if (!window.wedge.empty())
+            fs << "wedge" << window.wedge;
+        fs << "}";
     }
     if (calibration.rms >= 0)
         fs << "rms" << calibration.rms;

@@ -32,6 +32,8 @@ WindowStd windowStd(const Fit& fit, int camera)
         result.index.push_back(std(at.index + i));
     }
     result.outerIndex = std(at.outerIndex);
+    for (int i = at.wedge; i < at.end; i++)
+        result.wedge.push_back(std(i));
     return result;
 }
 
@@ -55,6 +57,12 @@ std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit)
             append(list, fit, prefix + "index" + layer, at.index + i, window.index[i]);
         }
         append(list, fit, prefix + "outer index", at.outerIndex, window.outerIndex);
+        for (int i = at.wedge; i < at.end; i++)
+        {
+            const int layer = (i - at.wedge)/2, axis = (i - at.wedge) % 2;
+            append(list, fit, prefix + "wedge " + "xy"[axis] + (at.layers == 1 ? "" : format(" %d", layer + 1)), i,
+                   window.wedge[layer][axis]);
+        }
     }
     return list;
 }

@@ -23,16 +23,16 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
         const Ptr<RefractiveCamera> through = fit.rig.cameras[c], bare = copyWithWindow(through, GlassWindow());
         for (size_t k = 0; k < fit.views.size(); k++)
         {
-            Vec3d rvec, tvec;
-            poseInCamera(fit, k, c, rvec, tvec);
             for (bool glass : {true, false})
             {
+                Vec3d rvec = fit.rvecs[k], tvec = fit.tvecs[k];
+                poseInImage(fit.rig, c, glass, rvec, tvec);
                 const View& view = data.views[fit.views[k]];
                 const std::vector<Point2d>& pixels = glass ? view.glass[c] : view.direct[c];
                 if (pixels.empty())
                     continue;
                 std::vector<Point2d> modelled;
-                refractiveProjectPoints(view.objectPoints, rvec, tvec, glass ? through : bare, modelled);
+                refractiveProjectPoints(pointsOfTarget(fit.rig, view.objectPoints), rvec, tvec, glass ? through : bare, modelled);
                 for (size_t i = 0; i < pixels.size(); i++)
                     if (seen(pixels[i]))
                         residuals.push_back({c, fit.views[k], glass, pixels[i], pixels[i] - modelled[i]});

@@ -15,7 +15,8 @@ struct Fit
     RigModel rig;
     std::vector<int> views;                     //!< that took part, as indices into RigData::views
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< board -> camera 1, of each of them
-    cv::Mat stdDeviations, covariance;
+    cv::Mat stdDeviations, covariance;          //!< of cameras and their places
+    cv::Mat withTargets;                        //!< the covariance, with these errors at its end where they are estimated
     cv::Mat imageStatus;                        //!< GlassImageStatus; a row each: direct 1, glass 1, direct 2, ...
     std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
     cv::Mat otherMinima;                        //!< a row each camera, see calibrateGlassRig

@@ -3,6 +3,7 @@
 
 #include "calibrate/image_fit.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include <algorithm>
 #include <cmath>
 #include <regex>
@@ -48,12 +49,17 @@ void startAtKnown(RigModel& rig)
         if (known.covariance.empty())
             continue;
         rig.cameras[c]->setLensParameters(known.lens);
+        if (known.covariance.rows == known.lens.rows)
+            continue;
         GlassWindow window = rig.cameras[c]->window();
-        if (known.covariance.rows > known.lens.rows)
-        {
-            window.thickness = known.thickness;
-            window.index = known.index;
-        }
+        const ParameterColumns at = columnsOf(*rig.cameras[c]);
+        const auto isKnown = [&](int column) { return known.covariance.at<double>(column, column) > 0; };
+        window.thickness = known.window.thickness;
+        window.index = known.window.index;
+        window.wedge = known.window.wedge;
+        window.outerIndex = known.window.outerIndex;
+        if (isKnown(at.distance))
+            window.distance = known.window.distance;
         rig.cameras[c]->setWindow(window);
     }
 }
@@ -112,6 +118,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
         poseCovariances.push_back(view.pose->covariance);
     }
     std::vector<Mat> Rs, Ts;
+    Mat_<double> targetErrors;
     for (int c = 0; c < data.cameraCount; c++)
     {
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
@@ -125,7 +132,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                                     fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
                                     fit.imageStatus, fit.inliers, fit.otherMinima,
                                     data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                                    covariancesOf(fit.rig));
+                                    covariancesOf(fit.rig), fit.rig.targetCovariance, targetErrors);
     }
     catch (const cv::Exception& e)
     {
@@ -135,6 +142,14 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     {
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     }
+    if (!fit.rig.targetCovariance.empty())
+    {
+        fit.rig.targetScale = 1. + targetErrors(0);
+        fit.rig.targetMotion = {rotationMatrix(Vec3d(targetErrors[1])), Vec3d(targetErrors[4])};
+    }
+    fit.withTargets = fit.covariance;
+    const int count = columnCount(fit.rig);
+    fit.covariance = fit.covariance(Rect(0, 0, count, count)).clone();
     int points = 0;
     for (const Mat& used : fit.inliers)
         points += used.empty() ? 0 : countNonZero(used);

@@ -25,6 +25,7 @@ ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
     columns.index = find("index[0]");
     columns.innerIndex = find("innerIndex");
     columns.outerIndex = find("outerIndex");
+    columns.wedge = find("wedge[0][0]");
     columns.end = first + (int)columns.names.size();
     return columns;
 }

@@ -11,7 +11,7 @@ namespace tools {
 //! Which column of Fit::covariance is what.
 struct ParameterColumns
 {
-    int lens, normal, distance, thickness, index, innerIndex, outerIndex, end;
+    int lens, normal, distance, thickness, index, innerIndex, outerIndex, wedge, end;      //!< wedge == end: there is none
     int lensCount, layers;
     std::vector<cv::String> names;
 };

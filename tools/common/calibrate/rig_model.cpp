@@ -62,6 +62,32 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
     tvec = cam_from_cam1*tvec;
 }
 
+std::vector<Point3d> pointsOfTarget(const RigModel& rig, std::vector<Point3d> objectPoints)
+{
+    for (Point3d& X : objectPoints)
+        X *= rig.targetScale;
+    return objectPoints;
+}
+
+void poseInImage(const RigModel& rig, int camera, bool glass, Vec3d& rvec, Vec3d& tvec)
+{
+    if (glass && !rig.targetCovariance.empty())
+    {
+        rvec = rotationVector(rig.targetMotion.R*rotationMatrix(rvec));
+        tvec = rig.targetMotion*tvec;
+    }
+    poseInCamera(rig, camera, rvec, tvec);
+}
+
+void poseFromImage(const RigModel& rig, int camera, bool glass, Vec3d& rvec, Vec3d& tvec)
+{
+    poseInCamera1(rig, camera, rvec, tvec);
+    if (!glass || rig.targetCovariance.empty())
+        return;
+    rvec = rotationVector(rig.targetMotion.R.t()*rotationMatrix(rvec));
+    tvec = rig.targetMotion.inverse(tvec);
+}
+
 void poseInCamera1(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
     const RigidTransform& cam_from_cam1 = rig.extrinsics[camera];

@@ -13,7 +13,7 @@ namespace tools {
 struct KnownCamera
 {
     cv::Mat lens;                               //!< its parameters
-    std::vector<double> thickness, index;       //!< of its window
+    cv::refract::GlassWindow window;            //!< its given values
     cv::Mat covariance;         //!< as calibrateGlassRig's cameraCovariances, where the values are those; empty: nothing
 };
 
@@ -24,6 +24,9 @@ struct RigModel
     std::vector<RigidTransform> extrinsics = {};    //!< camera 1 -> each camera; the first is the identity
     std::vector<int> windows = {};              //!< which window each camera looks through; empty: each has its own
     std::vector<KnownCamera> known = {};        //!< one per camera, or empty
+    cv::Mat targetCovariance = {};              //!< as calibrateGlassRig's; empty: targets are as given
+    double targetScale = 1.;                    //!< by which they are larger than given
+    RigidTransform targetMotion = {};           //!< of all of them between direct and glass images, in camera 1
 
     RigModel clone() const;
     //! A camera at the end, where it is from camera 1.
@@ -39,9 +42,17 @@ int countWindows(const RigModel& rig);
 cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
                                                       const cv::refract::GlassWindow& window);
 
+const int TARGET_ERRORS = 7;                    //!< rows of targetCovariance
+
+//! A target's points as they are, from what is given.
+std::vector<cv::Point3d> pointsOfTarget(const RigModel& rig, std::vector<cv::Point3d> objectPoints);
+
 //! Board -> a camera of the rig, from board -> camera 1.
 void poseInCamera(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
-//! The way back.
+//! The same in one of its images: between direct and glass images the targets may have moved.
+void poseInImage(const RigModel& rig, int camera, bool glass, cv::Vec3d& rvec, cv::Vec3d& tvec);
+//! The ways back.
+void poseFromImage(const RigModel& rig, int camera, bool glass, cv::Vec3d& rvec, cv::Vec3d& tvec);
 void poseInCamera1(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& tvec);
 
 //! What a file says of them; each window by itself, as one that moved no longer is where the others are.

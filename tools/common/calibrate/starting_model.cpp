@@ -200,31 +200,85 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
 
 KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, int c)
 {
-    const GlassWindow window = camera.window();
-    const int lens = camera.lensParameters().rows, layers = (int)window.thickness.size();
-    KnownCamera known{camera.lensParameters(), window.thickness, window.index, Mat()};
+    const int lens = camera.lensParameters().rows;
+    KnownCamera known{camera.lensParameters(), options.window, Mat()};
     // Without a covariance the lens of a file is exact, unless the caller wants it free.
     const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
-    const bool windowKnown = layers > 0 && (options.thicknessStd > 0. || options.indexStd > 0.);
-    if (!lensKnown && !windowKnown)
+    if (!lensKnown && !options.std.ofWindow())
         return known;
     known.covariance = Mat::zeros(lens, lens, CV_64F);
     if (!lensKnown)
         known.covariance.diag().setTo(NAN);         // nothing is known
     else if (!options.knownCovariance[c].empty())
         options.knownCovariance[c].copyTo(known.covariance);
-    if (!windowKnown)
+    if (!options.std.ofWindow())
         return known;
     const ParameterColumns at = columnsOf(camera);
     Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
     known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
-    for (int i = 0; i < layers; i++)
-    {
-        covariance.at<double>(at.thickness + i, at.thickness + i) = options.thicknessStd*options.thicknessStd;
-        covariance.at<double>(at.index + i, at.index + i) = options.indexStd*options.indexStd;
-    }
+    const auto set = [&covariance](int first, int count, double std) {
+        for (int i = first; i < first + count; i++)
+            covariance.at<double>(i, i) = std*std;
+    };
+    set(at.thickness, at.layers, options.std.thickness);
+    set(at.index, at.layers, options.std.index);
+    set(at.wedge, at.end - at.wedge, options.std.wedge);
+    const bool equalMedia = options.window.innerIndex == options.window.outerIndex;
+    set(at.distance, equalMedia ? 0 : 1, options.std.distance);
+    set(at.outerIndex, 1, options.std.outerIndex);
     known.covariance = covariance;
     return known;
+}
+
+//! The farthest that a target's point is from the middle of its target.
+static double targetRadius(const RigData& data)
+{
+    double radius = 0.;
+    for (const View& view : data.views)
+    {
+        Point3d middle;
+        for (const Point3d& X : view.objectPoints)
+            middle += X*(1./view.objectPoints.size());
+        for (const Point3d& X : view.objectPoints)
+            radius = std::max(radius, norm(X - middle));
+    }
+    return radius;
+}
+
+//! Mean position of the targets in camera 1, of those that it sees without its window.
+static Vec3d meanPosition(const RigData& data, const RigModel& rig)
+{
+    const Ptr<RefractiveCamera> bare = copyWithWindow(rig.cameras[0], GlassWindow());
+    Vec3d sum, t;
+    int count = 0;
+    Matx33d R;
+    for (const View& view : data.views)
+        if (solveView(view, bare, view.direct[0], R, t))
+        {
+            sum += t;
+            count++;
+        }
+    return count ? sum*(1./count) : Vec3d();
+}
+
+Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd& std)
+{
+    const bool moves = std.placement > 0. && data.countPairs() > 0;
+    if (!moves && !(std.scale > 0.))
+        return Mat();
+    Mat covariance = Mat::zeros(TARGET_ERRORS, TARGET_ERRORS, CV_64F);
+    covariance.at<double>(0, 0) = std.scale*std.scale;
+    if (!moves)
+        return covariance;
+    // A rotation about c adds [c]x times its rotation vector to the translation.
+    const Vec3d c = meanPosition(data, rig);
+    const Matx33d cross(0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0), unit = Matx33d::eye();
+    const double rotation = std::pow(std.placement/targetRadius(data), 2), translation = std.placement*std.placement;
+    Mat(rotation*unit).copyTo(covariance(Rect(1, 1, 3, 3)));
+    Mat(rotation*cross).copyTo(covariance(Rect(1, 4, 3, 3)));
+    Mat(rotation*cross.t()).copyTo(covariance(Rect(4, 1, 3, 3)));
+    Mat(translation*unit + rotation*cross*cross.t()).copyTo(covariance(Rect(4, 4, 3, 3)));
+    return covariance;
 }
 
 bool RigOptions::hasMaterials() const
@@ -264,6 +318,7 @@ RigModel startModel(const RigData& data, const RigOptions& options, std::vector<
     startExtrinsics(data, options.flags & GLASS_USE_POSES, rig);
     for (int c = 0; c < data.cameraCount; c++)
         rig.known.push_back(knownOf(*rig.cameras[c], options, c));
+    rig.targetCovariance = targetCovarianceOf(data, rig, options.std);
     return rig;
 }
 

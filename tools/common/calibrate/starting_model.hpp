@@ -11,6 +11,17 @@
 /* Initial values of a fit: the lens from a file or from the direct images, the windows as given, R and T from single views. */
 namespace tools {
 
+//! Standard deviations of given values; 0: exact.
+struct GivenStd
+{
+    double thickness = 0., index = 0., outerIndex = 0., distance = 0.;
+    double wedge = 0.;                                      //!< of each of its two angles, radians
+    double scale = 0.;                                      //!< of the targets (a board's square), relative
+    double placement = 0.;                                  //!< by how much all boards moved between direct and glass, per axis
+
+    bool ofWindow() const { return thickness > 0. || index > 0. || outerIndex > 0. || distance > 0. || wedge > 0.; }
+};
+
 struct RigOptions
 {
     cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
@@ -19,7 +30,7 @@ struct RigOptions
     std::vector<int> windows = {};                          //!< which window each camera looks through; empty: each has its own
     PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
     PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none
-    double thicknessStd = 0., indexStd = 0.;                //!< of the given values; 0: exact
+    GivenStd std;
     std::vector<GivenIndex> layers = {};                    //!< where the window's indices come from; empty: numbers
     GivenIndex inner = {}, outer = {};                      //!< the same of the media
     Channel channel = BRIGHTNESS;                           //!< of colour images, in which the points were found
@@ -41,6 +52,10 @@ double startDistance(const RigData& data, double square);
 /** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
 with the given deviations. */
 KnownCamera knownOf(const cv::refract::RefractiveCamera& camera, const RigOptions& options, int c);
+
+/** What is known of the targets that all views share, as calibrateGlassRig's targetCovariance; empty where they are exact. Where boards
+moved by so much, they also turned about their mean position, so that their edges moved by as much. */
+cv::Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd& std);
 
 //! Initial values: lenses, the windows as given, and R, T from the view that fits the others best.
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);

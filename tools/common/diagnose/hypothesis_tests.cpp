@@ -51,13 +51,13 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
     const GlassWindow& window = options.window;
     const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
     return {
-        {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers && options.thicknessStd == 0.,
+        {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers && options.std.thickness == 0.,
          [](const GlassWindow& w) { return w.thickness; }, [](const ParameterColumns& at) { return at.thickness; }},
-        {GLASS_FREE_INDEX, "index", "--index", layers && options.indexStd == 0.,
+        {GLASS_FREE_INDEX, "index", "--index", layers && options.std.index == 0.,
          [](const GlassWindow& w) { return w.index; }, [](const ParameterColumns& at) { return at.index; }},
-        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia,
+        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && options.std.distance == 0.,
          [](const GlassWindow& w) { return Values{w.distance}; }, [](const ParameterColumns& at) { return at.distance; }},
-        {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia,
+        {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia && options.std.outerIndex == 0.,
          [](const GlassWindow& w) { return Values{w.outerIndex}; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
 }
 
@@ -91,7 +91,7 @@ RigModel withLayersFree(const FittedRig& c, const GivenValue& given)
     const double PART = 0.2;
     const Values values = given.valuesOf(c.options.window);
     RigOptions options = c.options;
-    (given.flag == GLASS_FREE_THICKNESS ? options.thicknessStd : options.indexStd) = PART**std::min_element(values.begin(), values.end());
+    (given.flag == GLASS_FREE_THICKNESS ? options.std.thickness : options.std.index) = PART**std::min_element(values.begin(), values.end());
     RigModel rig = c.fit.rig.clone();
     rig.known.resize(rig.cameras.size());
     for (size_t k = 0; k < rig.cameras.size(); k++)

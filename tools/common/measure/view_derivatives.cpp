@@ -9,30 +9,54 @@
 
 using namespace cv;
 using namespace cv::refract;
+using Eigen::VectorXd;
 
 namespace tools {
 
 namespace {
 
-//! Pose in a camera, and its derivatives (6x6) by the pose in camera 1 and by the rig's R (rotation vector) and T.
-struct PoseInCamera
+/** Pose in a camera in one of its images, and its derivatives (6x6) by the pose in camera 1 and by the rotation vectors and
+translations that lie between: the targets' motion, the camera's place. */
+struct PoseInImage
 {
-    PoseInCamera(const RigModel& rig, int camera, const Vec3d& rvec1, const Vec3d& tvec1)
-        : rvec(rvec1), tvec(tvec1), byPose(MatrixXd::Identity(6, 6)), byRig(MatrixXd::Zero(6, 6))
+    PoseInImage(const RigModel& rig, const ImageOfView& image, const Vec3d& rvec1, const Vec3d& tvec1)
+        : rvec(rvec1), tvec(tvec1), byPose(MatrixXd::Identity(6, 6)), byMotion(MatrixXd::Zero(6, 6)), byRig(MatrixXd::Zero(6, 6))
     {
-        if (camera == 0)
-            return;
-        const Vec3d rigRvec = rotationVector(rig.extrinsics[camera].R);
-        Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
-        composeRT(rvec1, tvec1, rigRvec, rig.extrinsics[camera].T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
-        rvec = Vec3d(r.ptr<double>());
-        tvec = Vec3d(t.ptr<double>());
-        byPose << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
-        byRig << toEigen(rr2), toEigen(rt2), toEigen(tr2), toEigen(tt2);
+        if (image.glass && !rig.targetCovariance.empty())
+            follow(rig.targetMotion, byMotion);
+        if (image.camera > 0)
+            byMotion = follow(rig.extrinsics[image.camera], byRig)*byMotion;
     }
     Vec3d rvec, tvec;
-    MatrixXd byPose, byRig;
+    MatrixXd byPose, byMotion, byRig;
+
+private:
+    //! @param byTransform of the new pose @return its derivatives by the one before
+    MatrixXd follow(const RigidTransform& transform, MatrixXd& byTransform)
+    {
+        Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
+        composeRT(rvec, tvec, rotationVector(transform.R), transform.T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
+        rvec = Vec3d(r.ptr<double>());
+        tvec = Vec3d(t.ptr<double>());
+        MatrixXd byBefore(6, 6);
+        byBefore << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
+        byTransform << toEigen(rr2), toEigen(rt2), toEigen(tr2), toEigen(tt2);
+        byPose = byBefore*byPose;
+        return byBefore;
+    }
 };
+
+//! Rows u, v of each point by the relative scale of the target, from those by the translation in the camera.
+VectorXd byScale(const MatrixXd& byTranslation, const std::vector<Point3d>& object, const Matx33d& R)
+{
+    VectorXd result(byTranslation.rows());
+    for (size_t i = 0; i < object.size(); i++)
+    {
+        const Vec3d X = R*Vec3d(object[i]);
+        result.segment<2>(2*i) = byTranslation.middleRows<2>(2*i)*Eigen::Map<const Eigen::Vector3d>(X.val);
+    }
+    return result;
+}
 
 Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
 {
@@ -50,14 +74,17 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
     ViewDerivatives view;
     view.predicted.resize(rows);
     view.byPose.resize(rows, 6);
-    view.byParameters = MatrixXd::Zero(rows, columnCount(rig));
+    const bool hasTargetErrors = !rig.targetCovariance.empty();
+    const int ofTargets = columnCount(rig);
+    view.byParameters = MatrixXd::Zero(rows, ofTargets + (hasTargetErrors ? TARGET_ERRORS : 0));
     int row = 0;
     for (const ImageOfView& image : images)
     {
-        const PoseInCamera pose(rig, image.camera, rvec, tvec);
-        std::vector<Point3d> object;
+        const PoseInImage pose(rig, image, rvec, tvec);
+        std::vector<Point3d> given;
         for (int i : image.points)
-            object.push_back(objectPoints[i]);
+            given.push_back(objectPoints[i]);
+        const std::vector<Point3d> object = pointsOfTarget(rig, given);
         std::vector<Point2d> pixels;
         Mat jacobian;
         refractiveProjectPoints(object, pose.rvec, pose.tvec, cameraOf(rig, image.camera, image.glass), pixels, noArray(),
@@ -74,6 +101,11 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
         view.byParameters.block(row, at.lens, n, own) = J.middleCols(6, own);
         if (image.camera > 0)
             view.byParameters.block(row, extrinsicsColumn(rig, image.camera), n, 6) = J.leftCols(6)*pose.byRig;
+        if (hasTargetErrors)
+        {
+            view.byParameters.block(row, ofTargets, n, 1) = byScale(J.middleCols(3, 3), given, rotationMatrix(pose.rvec));
+            view.byParameters.block(row, ofTargets + 1, n, 6) = J.leftCols(6)*pose.byMotion;
+        }
         row += n;
     }
     return view;
@@ -83,10 +115,10 @@ ImageOfView pointsInImage(const RigModel& rig, const std::vector<Point3d>& objec
                           int camera, bool glass)
 {
     Vec3d rvecC = rvec, tvecC = tvec;
-    poseInCamera(rig, camera, rvecC, tvecC);
+    poseInImage(rig, camera, glass, rvecC, tvecC);
     const Rect2d image(Point2d(-0.5, -0.5), Size2d(rig.cameras[camera]->imageSize()));
     std::vector<Point2d> pixels;
-    refractiveProjectPoints(objectPoints, rvecC, tvecC, cameraOf(rig, camera, glass), pixels);
+    refractiveProjectPoints(pointsOfTarget(rig, objectPoints), rvecC, tvecC, cameraOf(rig, camera, glass), pixels);
     ImageOfView result{camera, glass, {}};
     for (size_t i = 0; i < pixels.size(); i++)
         if (image.contains(pixels[i]))          // false for NaN

@@ -9,7 +9,7 @@
 
 /* The information in one view of the target, taken or only planned, about a calibrated rig, to first order:
 
-    pixels = predicted + byParameters dp + byPose dpose,      p = the parameters of Fit::covariance
+    pixels = predicted + byParameters dp + byPose dpose,      p = the parameters of Fit::withTargets
 
 The pose of the board is unknown, so that only the part of byParameters that no change of the pose can produce gives information. */
 namespace tools {

@@ -20,9 +20,9 @@ static bool startPose(const RigModel& rig, const View& view, ViewObservations& o
         {
             const std::vector<Point2d>& pixels = glass ? view.glass[c] : view.direct[c];
             const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
-            if (pixels.empty() || !refractiveSolvePnP(view.objectPoints, pixels, camera, observed.rvec, observed.tvec))
+            if (pixels.empty() || !refractiveSolvePnP(pointsOfTarget(rig, view.objectPoints), pixels, camera, observed.rvec, observed.tvec))
                 continue;
-            poseInCamera1(rig, c, observed.rvec, observed.tvec);
+            poseFromImage(rig, c, glass, observed.rvec, observed.tvec);
             return true;
         }
     return false;

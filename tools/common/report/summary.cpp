@@ -146,6 +146,11 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
                            [&](int k) { return estimateOr(window(k).thickness[i], deviation(k).thickness[i], "given"); }));
         rows.push_back(row(c, "index" + layer,
                            [&](int k) { return estimateOr(window(k).index[i], deviation(k).index[i], "given"); }));
+        const double toMinutes = 60.*180./CV_PI;
+        for (size_t axis = 0; axis < 2 && !first.wedge.empty(); axis++)
+            rows.push_back(row(c, std::string("wedge ") + "xy"[axis] + layer + ", arc minutes", [&](int k) {
+                return estimateOr(toMinutes*window(k).wedge[i][(int)axis], toMinutes*deviation(k).wedge[2*i + axis], "given");
+            }));
     }
     rows.push_back(row(c, "index of the scene's medium",
                        [&](int k) { return estimateOr(window(k).outerIndex, deviation(k).outerIndex, "given"); }));
@@ -246,6 +251,14 @@ static std::string roughly(double value, double largest)
     return format("< %g", std::ceil(TOLD*largest/power)*power);
 }
 
+std::vector<SummaryRow> budgetRows(const Assessment& a)
+{
+    std::vector<SummaryRow> rows;
+    for (const BudgetRow& row : a.budget)
+        rows.push_back({row.source, {row.given, format("%.2g", row.effect), format("%.2g", 100.*row.share)}});
+    return rows;
+}
+
 std::vector<SummaryRow> toleranceRows(const Assessment& a)
 {
     double rms = 0., worst = 0., lengths = 0.;
@@ -309,6 +322,8 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     printRows(out, "Expected error of a measured point, " + c.unit + " (one standard deviation, 3-D):",
               {"", "half within", "95 % within", "worst", "of pixel noise", "seen"}, pointErrorRows(c, assessment));
     out << pointErrorNote(c, assessment) << '\n';
+    printRows(out, "What the +- of a point of the working volume is made of, " + c.unit + " (the rows add up in squares):",
+              {"", "known to", "effect", "share, %"}, budgetRows(assessment));
     printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
               {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
     if (!assessment.advice.pairs.empty())

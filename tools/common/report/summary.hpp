@@ -30,6 +30,7 @@ std::vector<SummaryRow> pointErrorRows(const RigCalibration& calibration, const 
 std::string pointErrorNote(const RigCalibration& calibration, const Assessment& assessment);
 
 //! Cells: points RMS, worst point, lengths in parts of a thousand.
+std::vector<SummaryRow> budgetRows(const Assessment& assessment);
 std::vector<SummaryRow> toleranceRows(const Assessment& assessment);
 
 //! Cells: std of the normals, worst point, the calibration's part.

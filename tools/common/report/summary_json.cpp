@@ -167,14 +167,17 @@ Json shotsJson(const std::vector<PlannedImage>& shots)
 
 void addAssessment(Json& json, const Assessment& a)
 {
-    Json errors = Json::array(), tolerances = Json::array();
+    Json errors = Json::array(), tolerances = Json::array(), budget = Json::array();
     for (const ErrorMap& map : a.errors)
         errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
                           {"share_seen", map.seenShare()},
                           {"worst_of_pixel_noise", map.worstPixelNoise()}});
+    for (const BudgetRow& row : a.budget)
+        budget.push_back({{"source", row.source}, {"known_to", row.given}, {"effect", row.effect}, {"share", row.share}});
     for (const Tolerance& t : a.tolerances)
         tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
     json["point_error"] = errors;
+    json["budget"] = budget;
     json["tolerances"] = tolerances;
     json["next_images"] = {{"now", qualityJson(a.advice.now)}, {"pairs", shotsJson(a.advice.pairs)},
                            {"instead_of_the_first", shotsJson(a.advice.instead)}};

@@ -182,8 +182,12 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         outcome = checkSigmas(parameters, half, variance);
     if (!outcome.converged())
         return outcome;
-    const MatrixXd all = problem.publicBasis()*half;
-    ofParameters = variance*all*all.transpose();
+    ofParameters = MatrixXd::Zero(problem.publicCount(), problem.publicCount());
+    if (half.size() > 0)            // else only poses or points are free; Eigen has no products of nothing
+    {
+        const MatrixXd all = problem.publicBasis()*half;
+        ofParameters = variance*all*all.transpose();
+    }
 
     // What the cameras' covariance says of a weak direction so holds for poses and points.
     const int count = (int)half.rows(), others = (int)poses.byOuter.rows();
@@ -195,20 +199,6 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
     }
     return outcome;
-}
-
-Mat Covariance::ofTargetErrors() const
-{
-    const double NaN = std::numeric_limits<double>::quiet_NaN();
-    Mat_<double> deviations(SharedTargetErrors::COUNT, 1, problem_->targetBlock() < 0 ? NaN : 0);
-    if (problem_->targetBlock() < 0)
-        return deviations;
-    const ParameterBlock& block = problem_->blocks()[problem_->targetBlock()];
-    int row = FreeSpace(*problem_).first[problem_->targetBlock()];
-    for (int i = 0; i < deviations.rows; i++)
-        if (block.isFree[i])
-            deviations(i) = std::sqrt(variance_)*half_.row(row++).norm();
-    return deviations;
 }
 
 Mat Covariance::ofPoints() const

@@ -20,7 +20,6 @@ struct Covariance
     FitOutcome compute(const Problem& problem, double variance, int required);
 
     Eigen::MatrixXd ofParameters;       //!< of the public parameters, P x P; 0 where fixed
-    Mat ofTargetErrors() const;         //!< deviations of SharedTargetErrors, 7x1; 0 where fixed, NaN: the problem has none
     Mat ofPoints() const;               //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
 
 private:

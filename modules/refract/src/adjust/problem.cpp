@@ -69,7 +69,7 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
                  std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
     targetBlock_ = -1;
     if (targetCovariance.size() > 0)
-        addTargetBlock(poses, targetCovariance);
+        addTargetBlock(targetCovariance);
     cameraBlocks_ = (int)blocks_.size();
     for (int view = 0; view < (int)poses.size(); view++)
     {
@@ -83,7 +83,7 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
         cameras_.push_back(RigCamera(camera));
 }
 
-void Problem::addTargetBlock(const std::vector<Pose>& poses, const Eigen::MatrixXd& covariance)
+void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
 {
     const int count = SharedTargetErrors::COUNT;
     const String scale = "scale of the targets", motion = "motion of the targets";
@@ -92,13 +92,6 @@ void Problem::addTargetBlock(const std::vector<Pose>& poses, const Eigen::Matrix
                                      { scale, motion, motion, motion, motion, motion, motion }, std::vector<bool>(count, false));
     if (!block.setPrior(covariance))
         CV_Error(Error::StsBadArg, "targetCovariance is not positive definite where it is not 0");
-    int found = 0;
-    for (const Pose& pose : poses)
-    {
-        targetErrors_.center += pose.found ? pose.tvec : Vec3d();
-        found += pose.found;
-    }
-    targetErrors_.center *= 1./std::max(found, 1);
 }
 
 void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
@@ -220,7 +213,7 @@ std::vector<int> Problem::blocksOf(const Image& image) const
 void Problem::updateCameras()
 {
     if (targetBlock_ >= 0)
-        targetErrors_ = SharedTargetErrors(blocks_[targetBlock_].values.data(), targetErrors_.center);
+        targetErrors_ = SharedTargetErrors(blocks_[targetBlock_].values.data());
     for (int c = 0; c < rig_.count(); c++)
     {
         RigCamera::Parameters parameters;
@@ -388,7 +381,7 @@ Pose Problem::inDirectImages(const Image& image, const Pose& pose) const
     const Matx33d back = targetErrors_.rotation.R.t();
     Pose direct;
     direct.rvec = rotationVector(back*rotationMatrix(pose.rvec));
-    direct.tvec = targetErrors_.center + back*(pose.tvec - targetErrors_.center - targetErrors_.translation);
+    direct.tvec = back*(pose.tvec - targetErrors_.translation);
     direct.found = true;
     return direct;
 }
@@ -455,11 +448,11 @@ int Problem::unknownCount() const
 int Problem::publicRow(ParameterBlock::Kind kind, int camera) const
 {
     int row = 0;
-    if (kind == ParameterBlock::EXTRINSICS)
+    if (kind == ParameterBlock::EXTRINSICS || kind == ParameterBlock::TARGETS)
     {
         for (const Camera& c : rig_.cameras)
             row += c.parameterCount();
-        return row + 6*(camera - 1);
+        return row + 6*((kind == ParameterBlock::TARGETS ? rig_.count() : camera) - 1);
     }
     for (int c = 0; c < camera; c++)
         row += rig_.cameras[c].parameterCount();
@@ -478,8 +471,7 @@ Eigen::MatrixXd Problem::publicBasis() const
     for (int i = 0; i < cameraBlocks_; i++)
     {
         const Eigen::MatrixXd tangent = blocks_[i].tangentBasis();
-        if (i != targetBlock_)          // not among the public parameters
-            basis.block(publicRow(blocks_[i].kind, blocks_[i].index), column, tangent.rows(), tangent.cols()) = tangent;
+        basis.block(publicRow(blocks_[i].kind, blocks_[i].index), column, tangent.rows(), tangent.cols()) = tangent;
         column += (int)tangent.cols();
     }
     for (int c = 0; c < rig_.count(); c++)

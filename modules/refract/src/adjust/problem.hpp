@@ -67,8 +67,8 @@ What is free are blocks of parameters. Some stand by themselves (outer blocks: o
 the others follow from them, each from its own observations alone (inner blocks: the poses of targets, the clusters of a scene),
 so the fit eliminates them.
 
-The public parameters are, per camera, those of Camera::parameters(), then rvec and T of each camera but the first. What is
-free is said by GlassCalibrationFlags. */
+The public parameters are, per camera, those of Camera::parameters(), then rvec and T of each camera but the first, then the errors
+that all targets share, if the problem has them. What is free is said by GlassCalibrationFlags. */
 class Problem
 {
 public:
@@ -162,14 +162,15 @@ public:
     /** d public parameters / d free coordinates of the blocks before the poses, in their order. What the other cameras see of a shared
     window follows from its owner's. */
     Eigen::MatrixXd publicBasis() const;
-    int publicCount() const { return publicRow(ParameterBlock::EXTRINSICS, rig_.count()); }
+    int publicCount() const
+    { return publicRow(ParameterBlock::TARGETS, 0) + (targetBlock_ < 0 ? 0 : SharedTargetErrors::COUNT); }
 
 private:
     void addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
                    const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance);
     ParameterBlock& addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
                              const std::vector<String>& names, const std::vector<bool>& isFree);
-    void addTargetBlock(const std::vector<Pose>& poses, const Eigen::MatrixXd& covariance);
+    void addTargetBlock(const Eigen::MatrixXd& covariance);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
     uchar project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const;

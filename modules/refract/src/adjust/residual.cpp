@@ -112,7 +112,7 @@ void ImageResidual::writeTargetErrors(const Target& target, const Point& point, 
     if (!refracted_)
         return;
     const Vec3d direct = turned*targetErrors_.scale + target.t;
-    rows.middleCols<3>(1) = byCamera1*eigen(targetErrors_.rotation.derivativeOf(direct - targetErrors_.center));
+    rows.middleCols<3>(1) = byCamera1*eigen(targetErrors_.rotation.derivativeOf(direct));
     rows.rightCols<3>() = byCamera1;
 }
 

@@ -19,28 +19,25 @@ struct SimilarityTransform
 /** Systematic errors of the targets that all views share: the scale of their points (a printed square is not as large as its
 drawing), and one motion of all of them, or of the camera's mount, between the direct and the refracted images. In camera 1:
 
-    direct: X = (1 + e) R Xo + t,    refracted: X = c + M ((1 + e) R Xo + t - c) + d
+    direct: X = (1 + e) R Xo + t,    refracted: X = M ((1 + e) R Xo + t) + d
 
 Known by a prior: nuisance parameters of the problem. */
 struct SharedTargetErrors
 {
     static const int COUNT = 7;         //!< e, rotation vector of M, d
     SharedTargetErrors() : rotation(Vec3d().val) {}
-    SharedTargetErrors(const double* values, const Vec3d& about)
-        : scale(1 + values[0]), rotation(values + 1), translation(values + 4), center(about) {}
+    explicit SharedTargetErrors(const double* values) : scale(1 + values[0]), rotation(values + 1), translation(values + 4) {}
 
     //! Object -> camera 1 in an image, of a target whose pose (in the direct images) is this.
     SimilarityTransform place(const Matx33d& R, const Vec3d& t, bool refracted) const
     {
         const SimilarityTransform direct = { R*scale, t };
-        const Vec3d moved = t + (rotation.R - Matx33d::eye())*(t - center) + translation;       // no motion changes no bit
-        return refracted ? SimilarityTransform{ rotation.R*direct.A, moved } : direct;
+        return refracted ? SimilarityTransform{ rotation.R*direct.A, rotation.R*t + translation } : direct;
     }
 
     double scale = 1;
     Rotation rotation;                  //!< M
     Vec3d translation;                  //!< d
-    Vec3d center;                       //!< c: about where the targets are, so that rotation and translation hardly correlate
 };
 
 }} // namespace

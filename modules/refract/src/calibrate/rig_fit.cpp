@@ -103,13 +103,12 @@ int requiredOf(const RigTask& task)
     return task.isSealed() ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
-Mat targetErrorsOf(const Problem& problem, const Covariance& covariance)
+Mat targetErrorsOf(const Problem& problem)
 {
-    Mat values(SharedTargetErrors::COUNT, 1, CV_64F, Scalar(NaN)), both;
+    Mat values(SharedTargetErrors::COUNT, 1, CV_64F, Scalar(NaN));
     if (problem.targetBlock() >= 0)
         eigen2cv(Eigen::VectorXd(problem.blocks()[problem.targetBlock()].values), values);
-    hconcat(values, covariance.ofTargetErrors(), both);
-    return both;
+    return values;
 }
 
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task.
@@ -196,7 +195,7 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
         return determined.converged() ? outcome : determined;
     eigen2cv(covariance.ofParameters, fit.covariance);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
-    fit.targetErrors = targetErrorsOf(problem, covariance);
+    fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);
     markUnusable(given, fit);
     if (task.wantsJacobian)

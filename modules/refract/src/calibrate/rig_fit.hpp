@@ -19,7 +19,7 @@ struct RigFit
     Mat jacobian;                   //!< if wanted
     Mat imageStatus;                //!< GlassImageStatus, as perViewErrors
     std::vector<Mat> inliers;       //!< of each element of perViewErrors, row by row
-    Mat targetErrors;               //!< 7x2: SharedTargetErrors and their deviations; NaN: no prior was given
+    Mat targetErrors;               //!< 7x1: SharedTargetErrors; NaN: no prior was given
     Mat otherMinima;                //!< one row a camera: normal, excess, distance
 };
 

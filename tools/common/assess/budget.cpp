@@ -1,0 +1,163 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/budget.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "console/table.hpp"
+#include "measure/point_error.hpp"
+#include <cmath>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+//! What is known before the images, and which of the estimated parameters it is of.
+struct Source
+{
+    std::string name, given;
+    std::vector<int> columns;       //!< of the covariance with the targets' errors
+    Mat prior;                      //!< covariance of these
+};
+
+//! The part of a matrix.
+Mat part(const Mat& matrix, const std::vector<int>& rows, const std::vector<int>& columns)
+{
+    Mat result((int)rows.size(), (int)columns.size(), CV_64F);
+    for (int i = 0; i < result.rows; i++)
+        for (int j = 0; j < result.cols; j++)
+            result.at<double>(i, j) = matrix.at<double>(rows[i], columns[j]);
+    return result;
+}
+
+std::vector<int> rangeOf(int first, int count)
+{
+    std::vector<int> all;
+    for (int i = 0; i < count; i++)
+        all.push_back(first + i);
+    return all;
+}
+
+//! Those of a prior's rows that have a variance, shifted to where they are in the whole.
+Source sourceOf(const std::string& name, const std::string& given, const Mat& prior, const std::vector<int>& rows, int first)
+{
+    Source source{name, given, {}, Mat()};
+    std::vector<int> own;
+    for (int row : rows)
+        if (prior.at<double>(row, row) > 0)
+        {
+            own.push_back(row);
+            source.columns.push_back(first + row);
+        }
+    source.prior = part(prior, own, own);
+    return source;
+}
+
+std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
+{
+    const KnownCamera& known = c.fit.rig.known[k];
+    if (known.covariance.empty())
+        return {};
+    const std::string whose = c.data.cameraCount == 1 ? "" : format(", camera %d", k + 1);
+    const ParameterColumns own = columnsOf(*c.fit.rig.cameras[k]);
+    const int first = columnsOf(c.fit.rig, k).lens;
+    const GivenStd& std = c.options.std;
+    const auto length = [&c](double value) { return format("%.3g ", value) + c.unit; };
+    std::vector<Source> sources = {sourceOf("lens" + whose, "its file", known.covariance, rangeOf(0, own.lensCount), first)};
+    if (known.covariance.rows == own.lensCount || !c.fit.rig.ownsWindow(k))
+        return sources;
+    const auto add = [&](const std::string& name, const std::string& given, int column, int count) {
+        sources.push_back(sourceOf(name + whose, given, known.covariance, rangeOf(column, count), first));
+    };
+    add("thickness", length(std.thickness), own.thickness, own.layers);
+    add("index", format("%.2g", std.index), own.index, own.layers);
+    add("wedge", format("%.2g'", std.wedge*180./CV_PI*60.), own.wedge, own.end - own.wedge);
+    add("distance", length(std.distance), own.distance, 1);
+    add("index of the scene's medium", format("%.2g", std.outerIndex), own.outerIndex, 1);
+    return sources;
+}
+
+std::vector<Source> sourcesOf(const RigCalibration& c)
+{
+    std::vector<Source> sources;
+    for (int k = 0; k < c.data.cameraCount && !c.fit.rig.known.empty(); k++)
+        for (const Source& source : sourcesOfCamera(c, k))
+            sources.push_back(source);
+    const Mat& targets = c.fit.rig.targetCovariance;
+    if (!targets.empty())
+    {
+        const int first = columnCount(c.fit.rig);
+        sources.push_back(sourceOf(c.square > 0. ? "square of the board" : "scale of the targets",
+                                   c.square > 0. ? format("%.2g ", c.options.std.scale*c.square) + c.unit
+                                                 : format("%.2g %%", 100.*c.options.std.scale), targets, {0}, first));
+        sources.push_back(sourceOf("boards moved between direct and glass", format("%.2g ", c.options.std.placement) + c.unit, targets,
+                                   rangeOf(1, 6), first));
+    }
+    sources.erase(std::remove_if(sources.begin(), sources.end(), [](const Source& s) { return s.columns.empty(); }), sources.end());
+    return sources;
+}
+
+//! Mean squares of the errors of points in the working volume, and of their part that is pixel noise.
+class Volume
+{
+public:
+    explicit Volume(const RigCalibration& c) : c_(c), depth_(workingDepth(c, 0)) {}
+
+    //! With this covariance of the calibration; the noise of the point's own pixels apart.
+    double meanSquare(const Mat& covariance, double* pixelNoise = nullptr) const
+    {
+        Calibration calibration = calibrationOf(c_.fit.rig);
+        calibration.covariance = covariance;
+        double sum = 0., noise = 0.;
+        int count = 0;
+        for (double z : {depth_[0], depth_[1], depth_[2]})
+        {
+            const ErrorMap map = mapErrors(calibration, z, c_.fit.sigma, COLUMNS);
+            for (size_t i = 0; i < map.total.size(); i++)
+            {
+                if (!(map.total[i] == map.total[i]))
+                    continue;
+                noise += map.pixelNoise[i]*map.pixelNoise[i];
+                sum += map.total[i]*map.total[i] - map.pixelNoise[i]*map.pixelNoise[i];
+                count++;
+            }
+        }
+        if (pixelNoise)
+            *pixelNoise = noise/count;
+        return sum/count;
+    }
+
+private:
+    static const int COLUMNS = 9;
+    const RigCalibration& c_;
+    const Vec3d depth_;
+};
+
+} // namespace
+
+std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& c)
+{
+    const Volume volume(c);
+    const std::vector<int> cameras = rangeOf(0, columnCount(c.fit.rig));
+    double pixelNoise = 0.;
+    const double calibration = volume.meanSquare(c.fit.covariance, &pixelNoise), total = calibration + pixelNoise;
+    double left = calibration;
+    std::vector<BudgetRow> rows;
+    const auto add = [&](const std::string& source, const std::string& given, double square) {
+        rows.push_back({source, given, std::sqrt(std::max(square, 0.)), std::max(square, 0.)/total});
+    };
+    for (const Source& source : sourcesOf(c))
+    {
+        const Mat columns = part(c.fit.withTargets, cameras, source.columns);
+        const double square = volume.meanSquare(columns*source.prior.inv(DECOMP_SVD)*columns.t());
+        left -= square;
+        add(source.name, source.given, square);
+    }
+    add("noise of the calibration's images", "", left);
+    add("noise of the point's own pixels", "", pixelNoise);
+    add("total", "", total);
+    return rows;
+}
+
+} // namespace tools
