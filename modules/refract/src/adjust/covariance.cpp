@@ -182,8 +182,12 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         outcome = checkSigmas(parameters, half, variance);
     if (!outcome.converged())
         return outcome;
-    const MatrixXd all = problem.publicBasis()*half;
-    ofParameters = variance*all*all.transpose();
+    ofParameters = MatrixXd::Zero(problem.publicCount(), problem.publicCount());
+    if (half.size() > 0)            // else only poses or points are free; Eigen has no products of nothing
+    {
+        const MatrixXd all = problem.publicBasis()*half;
+        ofParameters = variance*all*all.transpose();
+    }
 
     // What the cameras' covariance says of a weak direction so holds for poses and points.
     const int count = (int)half.rows(), others = (int)poses.byOuter.rows();
