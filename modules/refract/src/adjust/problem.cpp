@@ -301,8 +301,6 @@ FitOutcome Problem::findPointWithoutImage() const
     {
         FitOutcome outcome(FitOutcome::NO_IMAGE);
         outcome.camera = image.camera;
-        outcome.view = image.view;
-        outcome.refracted = image.refracted;
         if (!cameras_[image.camera].camera(image.refracted))
         {
             const WindowTransfer* window = cameras_[image.camera].window.get();
@@ -312,6 +310,8 @@ FitOutcome Problem::findPointWithoutImage() const
             outcome.distance = window->distance;
             return outcome;
         }
+        outcome.view = image.view;
+        outcome.refracted = image.refracted;
         const Extrinsics toCamera1(pose(image.view));
         for (int row = 0; row < (int)image.points.object.size(); row++)
         {
@@ -319,6 +319,7 @@ FitOutcome Problem::findPointWithoutImage() const
                 continue;
             Point2d pixel;
             outcome.point = image.points.object[row];
+            outcome.pointIndex = image.points.index[row];
             outcome.imageStatus = project(image, toCamera1, row, pixel);
             if (outcome.imageStatus != REFRACT_OK)
                 return outcome;

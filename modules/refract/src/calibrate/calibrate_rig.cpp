@@ -5,6 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/calibration_error.hpp"
 #include "start/rig_task.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
@@ -57,8 +58,12 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
         bool isSeen = false;
         for (int c = owner; c < rig.count(); c++)
             isSeen = isSeen || (rig.owner[c] == owner && seesAnything(views.cameras[c].refracted));
-        if (!isSeen)
-            CV_Error_(Error::StsBadArg, ("%s has no point that was seen", names[owner].c_str()));
+        if (isSeen)
+            continue;
+        CalibrationError error(CalibrationError::WINDOW_NOT_SEEN, names[owner] + " has no point that was seen",
+                               "no point was seen through the window");
+        error.camera = owner;
+        raise(error);
     }
 }
 
