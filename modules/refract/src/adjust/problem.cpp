@@ -271,7 +271,7 @@ void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlie
 }
 
 //! @return its RefractiveStatus; the camera must be possible
-uchar Problem::project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const
+uchar Problem::project(const Image& image, const RigidTransform& toCamera1, int row, Point2d& pixel) const
 {
     const RigCamera& camera = cameras_[image.camera];
     const Vec3d X = camera.extrinsics.apply(toCamera1.apply(Vec3d(image.points.object[row])));
@@ -285,7 +285,7 @@ std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) c
     const int count = (int)image.points.pixel.size();
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> errors(count, infinity);
-    const Extrinsics toCamera1(pose);
+    const RigidTransform toCamera1 = transformOf(pose);
     for (int row = 0; row < count && cameras_[image.camera].camera(image.refracted); row++)
     {
         Point2d pixel;
@@ -312,7 +312,7 @@ FitOutcome Problem::findPointWithoutImage() const
         }
         outcome.view = image.view;
         outcome.refracted = image.refracted;
-        const Extrinsics toCamera1(pose(image.view));
+        const RigidTransform toCamera1 = transformOf(pose(image.view));
         for (int row = 0; row < (int)image.points.object.size(); row++)
         {
             if (image.rootWeights[row] == 0)

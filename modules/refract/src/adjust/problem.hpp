@@ -165,7 +165,7 @@ private:
                              const std::vector<String>& names, const std::vector<bool>& isFree);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
-    uchar project(const Image& image, const Extrinsics& toCamera1, int row, Point2d& pixel) const;
+    uchar project(const Image& image, const RigidTransform& toCamera1, int row, Point2d& pixel) const;
     bool isActive(int block) const;
     int blockOf(ParameterBlock::Kind kind, int camera) const;
     const double* valuesOf(ParameterBlock::Kind kind, int camera) const;    //!< null for the extrinsics of camera 1

@@ -137,7 +137,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
 void ImageResidual::placePoints(const Matx33d& R1, const Vec3d& t1, int begin, int n, double* x, double* y, double* z,
                                 uchar* status) const
 {
-    const Extrinsics& toCamera = camera_.extrinsics;
+    const TransformWithDerivatives& toCamera = camera_.extrinsics;
     const Matx33d R = toCamera.rotation.R*R1;
     const Vec3d t = toCamera.apply(t1);
     for (int k = 0; k < n; k++)

@@ -14,12 +14,13 @@ typedef Eigen::Map<const Eigen::Vector3d> Map3;
 static const double MAX_TRIAL_WEDGE = 1;        // radians: GlassWindow::check() refuses 90 degrees
 static const double NOWHERE_ELSE[6] = { 0, 0, 0, 0, 0, 0 };
 
-Extrinsics::Extrinsics(const double* six) : rotation(six ? six : NOWHERE_ELSE), T(six ? six + 3 : NOWHERE_ELSE) {}
+TransformWithDerivatives::TransformWithDerivatives(const double* six)
+    : rotation(six ? six : NOWHERE_ELSE), T(six ? six + 3 : NOWHERE_ELSE) {}
 
-Extrinsics::Extrinsics(const Pose& pose) : rotation(pose.rvec.val), T(pose.tvec) {}
+TransformWithDerivatives::TransformWithDerivatives(const Pose& pose) : rotation(pose.rvec.val), T(pose.tvec) {}
 
-WindowTransfer::WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const Extrinsics& owner,
-                               const Extrinsics& camera)
+WindowTransfer::WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const TransformWithDerivatives& owner,
+                               const TransformWithDerivatives& camera)
 {
     const Vec3d normal1 = owner.rotation.R.t()*ownerNormal;
     normal = camera.rotation.R*normal1;
@@ -54,11 +55,11 @@ RigCamera::RigCamera(const Camera& camera)
 
 void RigCamera::set(const Parameters& parameters)
 {
-    extrinsics = Extrinsics(parameters.extrinsics);
+    extrinsics = TransformWithDerivatives(parameters.extrinsics);
     window.reset();
     if (!parameters.ownsWindow)
         window.reset(new WindowTransfer(Vec3d(parameters.normal), parameters.media[at().distance - at().media],
-                                        Extrinsics(parameters.ownerExtrinsics), extrinsics));
+                                        TransformWithDerivatives(parameters.ownerExtrinsics), extrinsics));
     // A trial step may leave the domain of the focal lengths, or of the window.
     isLensPossible_ = parameters.lens[0] > 0 && parameters.lens[1] > 0;
     isWindowPossible_ = isLensPossible_ && setWindow(parameters);
@@ -98,7 +99,7 @@ bool RigCamera::setWindow(const Parameters& parameters)
 the centre of projection here. False where the faces meet before it. */
 bool RigCamera::turnWedge(const Parameters& parameters, double* p) const
 {
-    const Extrinsics owner(parameters.ownerExtrinsics);
+    const TransformWithDerivatives owner(parameters.ownerExtrinsics);
     const Matx33d R = extrinsics.rotation.R*owner.rotation.R.t();
     std::vector<double> given(p, p + at().count);
     std::copy(parameters.normal, parameters.normal + 3, given.begin() + at().normal);

@@ -108,15 +108,6 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
 }
 
-static Pose poseOf(const RigidTransform& extrinsics)
-{
-    Pose pose;
-    pose.rvec = rotationVector(extrinsics.R);
-    pose.tvec = extrinsics.T;
-    pose.found = true;
-    return pose;
-}
-
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
     std::vector<Pose> poses;
@@ -127,12 +118,9 @@ std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays T
 
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts)
 {
-    std::vector<RigidTransform> extrinsics(rig.extrinsics.size());
-    for (size_t c = 0; c < extrinsics.size(); c++)
-    {
-        extrinsics[c].R = rotationMatrix(rig.extrinsics[c].rvec);
-        extrinsics[c].T = rig.extrinsics[c].tvec;
-    }
+    std::vector<RigidTransform> extrinsics;
+    for (const Pose& pose : rig.extrinsics)
+        extrinsics.push_back(transformOf(pose));
     writeExtrinsics(extrinsics, Rs, Ts);
 }
 
