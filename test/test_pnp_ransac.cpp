@@ -102,15 +102,15 @@ TEST_CASE("Three points on three rays have the true pose among theirs", "[pnp][r
                 rays[i] = { origins.at<Vec3d>(i), directions.at<Vec3d>(i) };
                 object[i] = Vec3d(s.object[i]);
             }
-            RigidMotion motions[4];
+            RigidTransform motions[4];
             const int count = posesOfThreeRays(rays, object, motions);
-            const std::vector<RigidMotion> all = allPosesOfThreeRays(rays, object);
+            const std::vector<RigidTransform> all = allPosesOfThreeRays(rays, object);
             Matx33d R;
             Rodrigues(s.rvec, R);
-            const auto nearest = [&](const RigidMotion* begin, size_t number)
+            const auto nearest = [&](const RigidTransform* begin, size_t number)
             {
                 double least = INF;
-                for (const RigidMotion* motion = begin; motion < begin + number; motion++)
+                for (const RigidTransform* motion = begin; motion < begin + number; motion++)
                 {
                     for (int i = 0; i < 3; i++)     // exact, right or not: its points are on the rays
                     {
@@ -140,7 +140,7 @@ TEST_CASE("No poses of three points on a line or in one place", "[pnp][ransac]")
 {
     const SceneRay rays[3] = { { Vec3d(0, 0, 5), Vec3d(0, 0, 1) }, { Vec3d(0, 0, 6), normalize(Vec3d(0.1, 0, 1)) },
                                { Vec3d(0, 0, 6), normalize(Vec3d(0, 0.1, 1)) } };
-    RigidMotion motions[4];
+    RigidTransform motions[4];
     CHECK(posesOfThreeRays(rays, { Vec3d(0, 0, 0), Vec3d(1, 1, 0), Vec3d(3, 3, 0) }, motions) == 0);
     CHECK(posesOfThreeRays(rays, { Vec3d(2, 0, 0), Vec3d(2, 0, 0), Vec3d(2, 0, 0) }, motions) == 0);
     CHECK(posesOfThreeRays(rays, { Vec3d(2, 0, 0), Vec3d(2, 0, 0), Vec3d(0, 1, 0) }, motions) == 0);

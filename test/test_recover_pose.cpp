@@ -267,7 +267,7 @@ TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
     {
         const std::vector<PixelRay> rays1 = pixelRays(c1, m.perfect1), rays2 = pixelRays(c2, m.perfect2);
         PixelMatches perfect;
-        RigidMotion truth;
+        RigidTransform truth;
         std::vector<double> errors;
         for (size_t i = 0; i < moved.size(); i++)
             perfect.push_back({ m.perfect1[i], moved[i], rays1[i], rays2[i] });
@@ -284,7 +284,7 @@ TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
         matches.push_back({ m.perfect1[i], moved[i], rays1[i], rays2[i] });
     const auto at = [&](const Vec3d& rvec, const Vec3d& T, std::vector<Matx16d>* byPose)
     {
-        RigidMotion motion;
+        RigidTransform motion;
         Rodrigues(rvec, motion.R);
         motion.t = T;
         std::vector<double> errors;

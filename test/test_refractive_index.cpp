@@ -181,7 +181,7 @@ TEST_CASE("What is unknown or out of range is refused with name, value and range
         {"seawater:T=31", 550, "T of seawater must be from 0 to 30"}, {"seawater:S=nan", 550, "'nan'"},
         {"seawater:T=12;S=35", 550, "'12;S=35' is not a number"}, {"seawater:", 550, "''"}, {"seawater:T=12,", 550, "''"},
         {"seawater:T", 550, "'T' is no KEY=VALUE"}, {"seawater:T=", 550, "'' is not a number"}, {"air:P=0", 550, "from 10000 to 140000"},
-        {"N-BK7", 299, "wavelengthNm is 299; the index of N-BK7 is known from 300 to 2500 nm"}, {"water", 701, "from 400 to 700"},
+        {"N-BK7", 299, "the index of N-BK7 is known from 300 to 2500 nm; wavelengthNm is 299"}, {"water", 701, "from 400 to 700"},
         {"PMMA", 0.55, "wavelengthNm is 0.55"}, {"sapphire", scenes::NaN, "wavelengthNm is nan"}, {"sapphire", -550, "-550"},
         {"sapphire", scenes::INF, "inf"}};
     for (const Wrong& wrong : wrongs)

@@ -197,7 +197,7 @@ TEST_CASE("A window seen from another camera: the same points lie on it", "[resi
             a.push_back(random.uniform(-0.3, 0.3)*(i < 3 ? 1 : 300));
             b.push_back(random.uniform(-0.3, 0.3)*(i < 3 ? 1 : 300));
         }
-        const Extrinsics owner(a.data()), camera(b.data());
+        const TransformWithDerivatives owner(a.data()), camera(b.data());
         const Vec3d normal = randomNormal(random, 30);
         const double distance = random.uniform(10, 500);
         const WindowTransfer window(normal, distance, owner, camera);

@@ -60,7 +60,6 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include <iostream>
 #include <map>
 #include <memory>
-#include <regex>
 
 using namespace cv::refract;
 using namespace tools;
@@ -401,18 +400,6 @@ void fit(const Options& o, RigCalibration& c, Progress& progress)
     progress.step();
 }
 
-//! The module names its arguments; here they came from options.
-std::string inOptions(std::string text)
-{
-    const std::pair<const char*, const char*> words[] = {{R"(imagePointsDirect(\[\w+\])*)", "the --direct images"},
-                                                         {R"(imagePointsRefracted(\[\w+\])*)", "the --glass images"}};
-    for (const auto& word : words)
-        text = std::regex_replace(text, std::regex(word.first), word.second);
-    if (text.find("same target") != std::string::npos)
-        text += "; of a hand-held board say --unpaired";
-    return text;
-}
-
 //! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
 bool isSlowToStart(const CalibrationInput& input)
 {
@@ -458,9 +445,13 @@ RigCalibration calibrate(const Options& o, bool quiet)
     {
         fit(o, c, progress);
     }
+    catch (const CalibrationError& e)
+    {
+        throw Failure(explainError(e, input));
+    }
     catch (const cv::Exception& e)
     {
-        throw Failure(explainError(inOptions(e.err), input));
+        throw Failure(explainError(e.err, input));
     }
     catch (const Failure& e)
     {

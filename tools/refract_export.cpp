@@ -108,13 +108,12 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
-        const cv::Matx33d R = calibration.extrinsics[c].R;
-        const cv::Vec3d T = calibration.extrinsics[c].T;
+        const RigidTransform& pose = calibration.extrinsics[c];
         const std::string name = format("camera%d", (int)c + 1);
         if (camera->imageSize().empty())
             throw Failure("'" + options.calibration + "' does not say image_width and image_height of " + name + ": add them");
         const CentralCamera central = bestCentralCamera(options, camera, range, name);
-        rig.cameras.push_back({name, camera, R, T, central, central.R*R, central.R*T + central.T});
+        rig.cameras.push_back({name, camera, pose, central, central.pose*pose});
     }
     return rig;
 }
@@ -143,7 +142,7 @@ void printTable(const CentralRig& rig)
     {
         const CentralError& e = camera.central.error;
         table.add({camera.name, format("%.3g", e.rms), format("%.3g", e.max), format("%.3g", e.lengthRms), format("%.3g", e.lengthMax),
-                   format("%.4g", cv::norm(camera.central.T))});
+                   format("%.4g", cv::norm(camera.central.pose.T))});
     }
     table.print(std::cout);
 }

@@ -99,7 +99,7 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
 
 BoardPose poseOf(const Scene& scene, const Job& job)
 {
-    return inOtherCamera(job.pose, scene.cameras.extrinsics[job.camera].R, scene.cameras.extrinsics[job.camera].T);
+    return inOtherCamera(job.pose, scene.cameras.extrinsics[job.camera]);
 }
 
 //! The camera in the light of each channel; empty: all see the same.

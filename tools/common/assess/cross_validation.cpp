@@ -27,8 +27,7 @@ double rangeOf(const RigData& data, const Fit& fit, size_t k)
     Point3d middle;
     for (const Point3d& X : object)
         middle += X*(1./object.size());
-    const Matx33d R = rotationMatrix(fit.rvecs[k]);
-    return norm(R*Vec3d(middle) + fit.tvecs[k]);
+    return norm(transformOf(fit.rvecs[k], fit.tvecs[k])*Vec3d(middle));
 }
 
 //! Views with a glass image, nearest board first; the others, which are never held out.

@@ -102,9 +102,9 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
             continue;
         Vec3d rvec, tvec;
         poseInCamera(fit, k, camera, rvec, tvec);
-        const Matx33d R = rotationMatrix(rvec);
+        const RigidTransform cam_from_board = transformOf(rvec, tvec);
         for (const Point3d& X : view.objectPoints)
-            depths.push_back((R*Vec3d(X) + tvec)[2]);
+            depths.push_back((cam_from_board*Vec3d(X))[2]);
     }
     std::sort(depths.begin(), depths.end());
     return depths.empty() ? Vec3d(NONE, NONE, NONE) : Vec3d(depths.front(), depths[depths.size()/2], depths.back());

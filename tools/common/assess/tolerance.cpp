@@ -184,10 +184,10 @@ RigData bentData(const RigCalibration& c, const Cause& cause, const Vec3d& tilt)
     RigData data = c.data;
     for (size_t k = 0; k < c.fit.views.size(); k++)
     {
-        const Matx33d R = rotationMatrix(c.fit.rvecs[k]);
+        const RigidTransform cam1_from_board = transformOf(c.fit.rvecs[k], c.fit.tvecs[k]);
         std::vector<Point3d> points;
         for (const Point3d& X : data.views[c.fit.views[k]].objectPoints)
-            points.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
+            points.push_back(Point3d(cam1_from_board*Vec3d(X)));
         for (int camera = 0; camera < data.cameraCount; camera++)
             Volume::bend(c.fit.rig, cause, camera, points, tilt, data.views[c.fit.views[k]].glass[camera]);
     }

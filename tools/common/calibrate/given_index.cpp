@@ -29,14 +29,17 @@ double deviationOf(const std::string& name, const Light& light)
 
 GivenIndex named(const std::string& name, const Light& light, const std::string& option)
 {
+    bool isKnown = false;
     try
     {
+        refractiveIndexTolerance(name);
+        isKnown = true;
         return {refractiveIndex(name, light.wavelength), name, name, light, deviationOf(name, light)};
     }
     catch (const cv::Exception& e)
     {
-        if (e.code == Error::StsOutOfRange && e.err.find("wavelengthNm") == 0)
-            throw Failure(format("--wavelength=%g: ", light.wavelength) + e.err.substr(e.err.find("; ") + 2) + "; give nm, as 550");
+        if (isKnown)    // then it is the wavelength that is out of range
+            throw Failure(format("--wavelength=%g: ", light.wavelength) + e.err + "; give nm, as 550");
         throw Failure(option + "=" + name + ": " + e.err);
     }
 }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/image_fit.hpp"
+#include "calibrate/fit_error.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 using namespace cv;
 using namespace cv::refract;
@@ -72,16 +72,6 @@ std::vector<Mat> covariancesOf(const RigModel& rig)
     return covariances;
 }
 
-//! The library counts views from 0; whoever took them knows them by name.
-cv::Exception inNames(const cv::Exception& e, const RigData& data, const std::vector<int>& views)
-{
-    cv::Exception named = e;
-    std::smatch found;
-    if (std::regex_search(e.err, found, std::regex("^view ([0-9]{1,6})\\b")) && std::stoul(found[1]) < views.size())
-        named.err = "view '" + data.views[views[std::stoul(found[1])]].stem + "'" + found.suffix().str();
-    return named;
-}
-
 //! How many numbers are known with a covariance.
 int countPriors(const RigModel& rig)
 {
@@ -134,9 +124,9 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                                     data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
                                     covariancesOf(fit.rig), fit.rig.targetCovariance, targetErrors);
     }
-    catch (const cv::Exception& e)
+    catch (const CalibrationError& e)
     {
-        throw inNames(e, data, views);
+        throw inToolsWords(e, data, views);
     }
     for (int c = 1; c < data.cameraCount; c++)
     {

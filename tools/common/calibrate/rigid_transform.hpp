@@ -35,6 +35,15 @@ struct RigidTransform
     cv::Vec3d inverse(const cv::Vec3d& X) const { return R.t()*(X - T); }
 };
 
+inline RigidTransform transformOf(const cv::Vec3d& rvec, const cv::Vec3d& tvec) { return {rotationMatrix(rvec), tvec}; }
+
+//! a -> b, of two frames that are both known from a third.
+inline RigidTransform fromTo(const RigidTransform& a, const RigidTransform& b)
+{
+    const cv::Matx33d R = b.R*a.R.t();
+    return {R, b.T - R*a.T};
+}
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_RIGID_TRANSFORM_HPP

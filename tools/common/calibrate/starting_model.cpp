@@ -71,25 +71,24 @@ void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camer
 }
 
 //! Object -> camera of one image of a view; false if there is none.
-bool solveView(const View& view, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, Matx33d& R, Vec3d& t)
+bool solveView(const View& view, const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, RigidTransform& pose)
 {
     if (pixels.empty())
         return false;
-    Vec3d rvec;
-    if (!refractiveSolvePnP(view.objectPoints, pixels, camera, rvec, t))
+    Vec3d rvec, tvec;
+    if (!refractiveSolvePnP(view.objectPoints, pixels, camera, rvec, tvec))
         return false;
-    Rodrigues(rvec, R);
+    pose = transformOf(rvec, tvec);
     return true;
 }
 
 struct BoardInBoth
 {
     const std::vector<Point3d>* object;
-    Matx33d R1, R2;
-    Vec3d t1, t2;
+    RigidTransform cam1_from_object, cam2_from_object;
 };
 
-double relativePoseError(const std::vector<BoardInBoth>& boards, const Matx33d& R, const Vec3d& T)
+double relativePoseError(const std::vector<BoardInBoth>& boards, const RigidTransform& cam2_from_cam1)
 {
     // The median over the boards, as single-view poses of a flat board may be mirrored.
     std::vector<double> errors;
@@ -98,8 +97,7 @@ double relativePoseError(const std::vector<BoardInBoth>& boards, const Matx33d& 
         double sum = 0.;
         for (const Point3d& X : *b.object)
         {
-            const Vec3d p(X);
-            const Vec3d there = R*(b.R1*p + b.t1) + T, here = b.R2*p + b.t2;
+            const Vec3d there = cam2_from_cam1*(b.cam1_from_object*Vec3d(X)), here = b.cam2_from_object*Vec3d(X);
             sum += norm(there - here, NORM_L2SQR)/here.dot(here);
         }
         errors.push_back(sum);
@@ -108,22 +106,22 @@ double relativePoseError(const std::vector<BoardInBoth>& boards, const Matx33d& 
     return errors[errors.size()/2];
 }
 
-//! R, T of camera 2 from camera 1: of the boards, the one that fits the others best.
-void placeByBest(const std::vector<BoardInBoth>& boards, Matx33d& bestR, Vec3d& bestT)
+//! Camera 1 -> camera 2: of the boards, the one that fits the others best.
+RigidTransform placeByBest(const std::vector<BoardInBoth>& boards)
 {
-    double best = std::numeric_limits<double>::infinity();
+    RigidTransform best;
+    double least = std::numeric_limits<double>::infinity();
     for (const BoardInBoth& b : boards)
     {
-        const Matx33d R = b.R2*b.R1.t();
-        const Vec3d T = b.t2 - R*b.t1;
-        const double error = relativePoseError(boards, R, T);
-        if (error < best)
+        const RigidTransform cam2_from_cam1 = fromTo(b.cam1_from_object, b.cam2_from_object);
+        const double error = relativePoseError(boards, cam2_from_cam1);
+        if (error < least)
         {
-            best = error;
-            bestR = R;
-            bestT = T;
+            least = error;
+            best = cam2_from_cam1;
         }
     }
+    return best;
 }
 
 //! Without the windows, for direct images.
@@ -144,8 +142,8 @@ std::vector<BoardInBoth> boardsInBoth(const RigData& data, const RigModel& rig, 
         const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
         BoardInBoth b;
         b.object = &view.objectPoints;
-        if (solveView(view, rig.cameras[camera1], images[camera1], b.R1, b.t1) &&
-            solveView(view, rig.cameras[camera2], images[camera2], b.R2, b.t2))
+        if (solveView(view, rig.cameras[camera1], images[camera1], b.cam1_from_object) &&
+            solveView(view, rig.cameras[camera2], images[camera2], b.cam2_from_object))
             boards.push_back(b);
     }
     return boards;
@@ -159,15 +157,14 @@ std::vector<BoardInBoth> boardsAtKnownPoses(const RigData& data, const RigModel&
     {
         BoardInBoth b;
         b.object = &view.objectPoints;
-        Rodrigues(view.pose->rvec, b.R1);
-        b.t1 = view.pose->tvec;
-        if (solveView(view, rig.cameras[camera], (glass ? view.glass : view.direct)[camera], b.R2, b.t2))
+        b.cam1_from_object = transformOf(view.pose->rvec, view.pose->tvec);
+        if (solveView(view, rig.cameras[camera], (glass ? view.glass : view.direct)[camera], b.cam2_from_object))
             boards.push_back(b);
     }
     return boards;
 }
 
-//! R, T of each camera from single boards (direct images first, any lens).
+//! Where each camera is, from single boards (direct images first, any lens).
 void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
 {
     const RigModel bare = bareOf(rig);
@@ -189,10 +186,7 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
         if (boards.empty())
             throw Failure(format("no view of the target gives camera %d a pose: check the points, --size and --square",
                                  link.second + 1));
-        Matx33d R;
-        Vec3d T;
-        placeByBest(boards, R, T);
-        rig.extrinsics[link.second] = RigidTransform{R, T}*rig.extrinsics[link.first];
+        rig.extrinsics[link.second] = placeByBest(boards)*rig.extrinsics[link.first];
     }
 }
 

@@ -129,26 +129,45 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
     }
 }
 
+namespace {
+
+//! All reasons there may be; whether images explain some.
+std::vector<std::string> reasonsFor(const CalibrationInput& input, bool& explained)
+{
+    std::vector<std::string> reasons = diagnose(input);
+    explained = !reasons.empty();
+    reasons.insert(reasons.end(), input.notices.begin(), input.notices.end());
+    return reasons;
+}
+
+//! A fit does not converge along what is hardly determined.
+std::string undeterminedAdvice(int flags)
+{
+    // The distance is set free without being asked for where it is needed.
+    const bool asked = flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX | GLASS_FREE_INTRINSICS);
+    return std::string("the images hardly determine what is free. ") + (asked ? "Leave out --free=..., g" : "G")
+        + "ive what you know (--thickness, --index, --distance, --camera), or add images: pairs, more tilt, more depth";
+}
+
+} // namespace
+
 std::string explainError(const std::string& error, const CalibrationInput& input)
 {
-    // The library speaks of its own arguments.
-    const std::string theirs = "; raise criteria.maxCount, or fix what the views hardly determine";
-    const size_t at = error.find(theirs);
-    std::vector<std::string> reasons = diagnose(input);
-    const bool explained = !reasons.empty();
-    reasons.insert(reasons.end(), input.notices.begin(), input.notices.end());
-    if (at == std::string::npos)
-        return reasons.empty() ? error : error + ". However, " + joined(reasons);
-    // The distance is set free without being asked for where it is needed.
-    const bool asked = input.options.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX
-                                              | GLASS_FREE_INTRINSICS);
-    const std::string undetermined = std::string("the images hardly determine what is free. ") + (asked ? "Leave out "
-        "--free=..., g" : "G") + "ive what you know (--thickness, --index, --distance, --camera), or add images: pairs, more tilt, "
-        "more depth";
-    const std::string head = error.substr(0, at) + ": ", tail = error.substr(at + theirs.size());
+    bool explained;
+    const std::vector<std::string> reasons = reasonsFor(input, explained);
+    return reasons.empty() ? error : error + ". However, " + joined(reasons);
+}
+
+std::string explainError(const CalibrationError& error, const CalibrationInput& input)
+{
+    if (error.cause != CalibrationError::NOT_CONVERGED)
+        return explainError(error.err, input);
+    bool explained;
+    const std::vector<std::string> reasons = reasonsFor(input, explained);
+    const std::string advice = undeterminedAdvice(input.options.flags);
     if (explained)          // what fits is likelier than that nothing would
-        return head + joined(reasons) + ". If it is not that, " + undetermined + tail;
-    return head + undetermined + tail + (reasons.empty() ? "" : ". However, " + joined(reasons));
+        return error.reason + ": " + joined(reasons) + ". If it is not that, " + advice;
+    return error.reason + ": " + advice + (reasons.empty() ? "" : ". However, " + joined(reasons));
 }
 
 } // namespace tools

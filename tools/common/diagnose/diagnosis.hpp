@@ -21,8 +21,11 @@ std::vector<std::string> diagnose(const CalibrationInput& input);
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input);
 
-//! A message of the library in terms of the tool's options, with the explanations.
+//! An error of a calibration, with the explanations.
 std::string explainError(const std::string& error, const CalibrationInput& input);
+
+//! The same of what fitImages threw, with what to do where the fit did not converge.
+std::string explainError(const cv::refract::CalibrationError& error, const CalibrationInput& input);
 
 } // namespace tools
 

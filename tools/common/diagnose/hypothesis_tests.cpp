@@ -84,7 +84,7 @@ std::string sentenceOfLayers(const GivenValue& given, const std::string& where, 
         + plusMinus(estimate, std) + format(" and not %.5g, %.0f standard deviations away", before, std::abs(estimate - before)/std);
 }
 
-/** The thicknesses or indices of several layers, which images seldom tell apart: each free by a part of what it is, so that the prior
+/** The thicknesses or indices of several layers, which images hardly distinguish: each free by a part of what it is, so that the prior
 shares among them what the images say of their sum. */
 RigModel withLayersFree(const FittedRig& c, const GivenValue& given)
 {

@@ -5,7 +5,6 @@
 #include "console/failure.hpp"
 
 #include <ceres/ceres.h>
-#include <opencv2/calib3d.hpp>
 
 namespace tools {
 
@@ -84,10 +83,7 @@ void fit(const SeenPoints& sample, CentralCamera& central, const std::string& na
         throw Failure("no central camera comes near " + name + " over the whole image: its lens is too wide for this "
                       "lens model, or give a range farther from the window");
     central.camera->setLensParameters(lens);
-    Mat R;
-    cv::Rodrigues(rvec, R);
-    central.R = cv::Matx33d(R.ptr<double>());
-    central.T = tvec;
+    central.pose = transformOf(rvec, tvec);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CENTRAL_CAMERA_HPP
 #define REFRACT_TOOLS_CENTRAL_CAMERA_HPP
 
+#include "calibrate/rigid_transform.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
 #include <vector>
@@ -24,8 +25,7 @@ struct CentralError
 struct CentralCamera
 {
     cv::Ptr<cv::refract::RefractiveCamera> camera;  //!< without a window
-    cv::Matx33d R;                                  //!< frame of the true camera -> this one
-    cv::Vec3d T;
+    RigidTransform pose;                            //!< frame of the true camera -> this one
     CentralError error;
 };
 

@@ -13,11 +13,9 @@ struct ExportedCamera
 {
     std::string name;           //!< camera1, ...
     cv::Ptr<cv::refract::RefractiveCamera> trueCamera;
-    cv::Matx33d trueR;          //!< frame of camera 1 of the calibration -> true camera
-    cv::Vec3d trueT;
+    RigidTransform truePose;    //!< frame of camera 1 of the calibration -> true camera
     CentralCamera central;
-    cv::Matx33d R;              //!< frame of camera 1 of the calibration -> central camera
-    cv::Vec3d T;
+    RigidTransform pose;        //!< frame of camera 1 of the calibration -> central camera
 };
 
 //! The cameras to export, and the range for which they are valid.

@@ -89,8 +89,7 @@ public:
         intrinsics.insert(intrinsics.end(), unknowns_.data() + 3, unknowns_.data() + unknowns_.size());
         central.camera = RefractiveCamera::createMrcal(grid_.model(), intrinsics);
         central.camera->setImageSize(size_);
-        central.R = cv::Matx33d::eye();
-        central.T = Vec3d(unknowns_.data());
+        central.pose.T = Vec3d(unknowns_.data());
         return central;
     }
 
@@ -100,8 +99,8 @@ private:
         const CentralCamera now = result();
         std::vector<Point2d> pixels;
         Mat status, J, which, weights;
-        cv::refract::refractiveProjectPoints(seen_.points, now.R, now.T, now.camera, pixels, status, J);
-        cv::refract::refractiveSplineWeights(seen_.points, now.R, now.T, now.camera, which, weights);
+        cv::refract::refractiveProjectPoints(seen_.points, now.pose.R, now.pose.T, now.camera, pixels, status, J);
+        cv::refract::refractiveSplineWeights(seen_.points, now.pose.R, now.pose.T, now.camera, which, weights);
         for (int i = 0; i < (int)pixels.size(); i++)
         {
             if (status.at<uchar>(i) != cv::refract::REFRACT_OK)

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/export_files.hpp"
-#include "calibrate/rigid_transform.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <cmath>
@@ -50,8 +49,9 @@ struct CorrectedPixel
     CorrectedPixel(const ExportedCamera& camera, const cv::Point3d& X, const Point2d& raw)
     {
         std::vector<Point2d> central, refracted;
-        cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>{X}, camera.R, camera.T, camera.central.camera, central);
-        cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>{X}, camera.trueR, camera.trueT, camera.trueCamera, refracted);
+        const std::vector<cv::Point3d> point{X};
+        cv::refract::refractiveProjectPoints(point, camera.pose.R, camera.pose.T, camera.central.camera, central);
+        cv::refract::refractiveProjectPoints(point, camera.truePose.R, camera.truePose.T, camera.trueCamera, refracted);
         residual = raw - refracted[0];
         pixel = central[0] + residual;
     }
@@ -101,9 +101,9 @@ public:
         for (size_t i = 0; i < images_.size(); i++)
         {
             const ExportedCamera& camera = rig_.cameras[images_[i].camera];
-            const cv::Vec4d q = quaternionOf(camera.R);
-            text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.T[0],
-                               camera.T[1], camera.T[2], images_[i].camera + 1) + images_[i].name + "\n";
+            const cv::Vec4d q = quaternionOf(camera.pose.R);
+            text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.pose.T[0],
+                               camera.pose.T[1], camera.pose.T[2], images_[i].camera + 1) + images_[i].name + "\n";
             for (const auto& point : images_[i].points)
                 text += cv::format("%.10g %.10g %d ", point.first.x + CORNER, point.first.y + CORNER, point.second);
             text += "\n";

@@ -29,8 +29,8 @@ std::vector<ExportFile> mrcalFiles(const CentralRig& rig)
         const cv::Mat K = camera.central.camera->cameraMatrix();
         cv::Mat lens = (cv::Mat_<double>(4, 1) << K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2)), rt;
         lens.push_back(camera.central.camera->distCoeffs());
-        cv::Rodrigues(camera.R, rt);
-        rt.push_back(cv::Mat(camera.T));
+        cv::Rodrigues(camera.pose.R, rt);
+        rt.push_back(cv::Mat(camera.pose.T));
         const cv::Size size = camera.central.camera->imageSize();
         files.push_back({camera.name + ".cameramodel",
             "# " + headText(rig) + "\n# " + errorText(rig, camera) + "\n{\n"

@@ -35,15 +35,14 @@ void findRectification(const CentralRig& rig, std::vector<Mat>& R, std::vector<M
         return;
     const ExportedCamera &a = rig.cameras[0], &b = rig.cameras[1];
     const auto &first = a.central.camera, &second = b.central.camera;
-    const cv::Matx33d turn = b.R*a.R.t();
-    const cv::Vec3d shift = b.T - turn*a.T;
+    const RigidTransform place = fromTo(a.pose, b.pose);
     Mat Q;
     if (isFisheye(a))
         cv::fisheye::stereoRectify(first->cameraMatrix(), first->distCoeffs(), second->cameraMatrix(), second->distCoeffs(),
-                                   first->imageSize(), turn, shift, R[0], R[1], P[0], P[1], Q, cv::CALIB_ZERO_DISPARITY);
+                                   first->imageSize(), place.R, place.T, R[0], R[1], P[0], P[1], Q, cv::CALIB_ZERO_DISPARITY);
     else
         cv::stereoRectify(first->cameraMatrix(), first->distCoeffs(), second->cameraMatrix(), second->distCoeffs(),
-                          first->imageSize(), turn, shift, R[0], R[1], P[0], P[1], Q);
+                          first->imageSize(), place.R, place.T, R[0], R[1], P[0], P[1], Q);
 }
 
 } // namespace

@@ -76,15 +76,15 @@ CentralError errorOf(const SeenPoints& sample, const CentralCamera& central)
 {
     std::vector<Point2d> seen;
     std::vector<Vec3d> origins, directions;
-    cv::refract::refractiveProjectPoints(sample.points, central.R, central.T, central.camera, seen);
+    cv::refract::refractiveProjectPoints(sample.points, central.pose.R, central.pose.T, central.camera, seen);
     cv::refract::refractiveUnprojectPoints(sample.pixels, origins, directions, central.camera);
     CentralError e;
     const auto n = (double)sample.points.size();
-    const cv::Matx33d back = central.R.t();
+    const cv::Matx33d back = central.pose.R.t();
     for (size_t i = 0; i < sample.points.size(); i++)
     {
         // Where the ray that the central camera takes the pixel for passes the depth of the point.
-        const Vec3d centre = back*(origins[i] - central.T), along = back*directions[i], X = sample.points[i];
+        const Vec3d centre = central.pose.inverse(origins[i]), along = back*directions[i], X = sample.points[i];
         const double length = cv::norm(centre + along*((X[2] - centre[2])/along[2]) - X);
         const double px = cv::norm(seen[i] - sample.pixels[i]);
         // NaN counts as the worst there can be

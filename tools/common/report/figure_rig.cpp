@@ -63,10 +63,10 @@ public:
         for (size_t k = 0; k < c.fit.views.size(); k++)
         {
             const View& view = c.data.views[c.fit.views[k]];
-            const Matx33d R = rotationMatrix(c.fit.rvecs[k]);
+            const RigidTransform cam1_from_board = transformOf(c.fit.rvecs[k], c.fit.tvecs[k]);
             for (const Point3d& X : view.objectPoints)
                 if (view.hasGlass())
-                    points_.push_back(R*Vec3d(X) + c.fit.tvecs[k]);
+                    points_.push_back(cam1_from_board*Vec3d(X));
         }
         for (const Vec3d& X : points_)
             middle_ += X*(1./(double)points_.size());

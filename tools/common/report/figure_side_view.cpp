@@ -77,10 +77,10 @@ public:
                 continue;
             Vec3d rvec, tvec;
             poseInCamera(c_.fit, k, camera_, rvec, tvec);
-            const Matx33d R = rotationMatrix(rvec);
+            const RigidTransform cam_from_board = transformOf(rvec, tvec);
             std::vector<Vec3d> points;
             for (const Point3d& X : c_.data.views[c_.fit.views[k]].objectPoints)
-                points.push_back(R*Vec3d(X) + tvec);
+                points.push_back(cam_from_board*Vec3d(X));
             outlines.push_back(outlineOf(onPaper(points)));
         }
         return outlines;

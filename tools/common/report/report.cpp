@@ -259,7 +259,7 @@ void setSightings(data& page, const RigCalibration& c)
         if (pointsSeenBy[count])
             note += (note.empty() ? "Points seen through the windows by " : "; by ") + format("%d camera%s: %d", count,
                     count == 1 ? "" : "s", pointsSeenBy[count]);
-    page.set("sightings", rows);
+    page.set("observations", rows);
     page.set("sightings_note", note + ".");
 }
 

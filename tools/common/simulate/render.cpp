@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/render.hpp"
-#include "calibrate/rigid_transform.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <cmath>
@@ -143,13 +142,10 @@ Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Pt
     return expose(levels, exposure, seed);
 }
 
-BoardPose inOtherCamera(const BoardPose& pose, const Matx33d& R, const Vec3d& T)
+BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_cam1)
 {
-    const Matx33d board = rotationMatrix(pose.rvec);
-    BoardPose second;
-    cv::Rodrigues(R*board, second.rvec);
-    second.tvec = R*pose.tvec + T;
-    return second;
+    const RigidTransform board = cam2_from_cam1*transformOf(pose.rvec, pose.tvec);
+    return {rotationVector(board.R), board.T};
 }
 
 } // namespace tools

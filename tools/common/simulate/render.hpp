@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_RENDER_HPP
 #define REFRACT_TOOLS_RENDER_HPP
 
+#include "calibrate/rigid_transform.hpp"
 #include "simulate/exposure.hpp"
 #include "target/target.hpp"
 #include <opencv2/refract.hpp>
@@ -25,7 +26,7 @@ cv::Mat render(const Target& target, const BoardPose& pose, const std::vector<cv
                const Exposure& exposure, uint64_t seed);
 
 //! Camera 2's pose of a target whose pose in camera 1 is known.
-BoardPose inOtherCamera(const BoardPose& pose, const cv::Matx33d& R, const cv::Vec3d& T);
+BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_cam1);
 
 } // namespace tools
 

@@ -103,7 +103,7 @@ private:
     {
         int seeing = 0;
         for (size_t c = 0; c < rig_.cameras.size(); c++)
-            seeing += areSeenBy(rig_.cameras[c].camera, points, inOtherCamera(pose, rig_.extrinsics[c].R, rig_.extrinsics[c].T));
+            seeing += areSeenBy(rig_.cameras[c].camera, points, inOtherCamera(pose, rig_.extrinsics[c]));
         return seeing >= seenBy_;
     }
 

@@ -34,6 +34,7 @@ without a window.
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
   index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty input gives empty output.
+  Calibrations that have no answer for their data throw CalibrationError, which is a cv::Exception too.
 - **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust need Ceres. In a build
   without it they throw with the code Error::StsNotImplemented, and the text says what to install. All other functions work.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
@@ -157,7 +158,43 @@ enum GlassImageStatus {
     GLASS_IMAGE_MOVED = 2,          //!< rejected: its target was moved, compared with the view's other images
     GLASS_IMAGE_UNUSABLE = 3        //!< rejected: fewer than a third of its points, or fewer than 4, fit one pose
 };
+#ifndef OPENCV_BINDINGS_PARSER      // other languages have exceptions of their own
+/** @brief Why calibrateGlass, stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust or calibrateGlassNormal has no
+answer for these data. A program acts on `cause` and need not read the text.
 
+It is a cv::Exception with a code and a text as usual; in Python it is cv2.error. An argument of the wrong type, size or value
+throws a plain cv::Exception.
+*/
+class CV_EXPORTS CalibrationError : public Exception
+{
+public:
+    enum Cause {
+        NOT_CONVERGED = 0,      //!< the iterations of criteria were not enough: give more, or fix what is hardly determined
+        UNDETERMINED = 1,       //!< the data do not determine a free parameter: fix it, or take other views
+        POSE_UNDETERMINED = 2,  //!< the scene's points do not determine the pose of `view`: leave it out, or add points
+        TOO_FEW_INLIERS = 3,    //!< fewer than half of the points fit, or too few to go on
+        TOO_FEW_POINTS = 4,     //!< fewer equations than unknowns: take more points or views
+        NO_SCALE = 5,           //!< nothing tells the scale of the scene: give a length, or a pose
+        NO_POSE = 6,            //!< the target of `view` has no pose that fits its points
+        NO_IMAGE = 7,           //!< `point` of `view` has no image in `camera` with the initial values: these are wrong
+        WINDOW_NOT_SEEN = 8,    //!< no point was seen through the window of `camera`
+        LOOKS_AWAY = 9,         //!< `camera` looks away from the window that it shares
+        BEYOND_WINDOW = 10,     //!< `camera` is on the far side of the window that it shares
+        PAIRS_SWAPPED = 11,     //!< direct and refracted images are exchanged
+        PAIRS_CONTRADICT = 12   //!< the two images of a pair do not show the same unmoved target
+    };
+
+    //! The code follows from the cause.
+    CalibrationError(Cause cause, const String& err, const String& reason);
+    virtual ~CalibrationError();
+
+    Cause cause;
+    String reason;              //!< the part of err that says what was found, for a program that gives its own advice
+    int view;                   //!< index of the view to blame; -1: none
+    int camera;                 //!< index of the camera to blame; -1: none
+    int point;                  //!< index of the point in its view; -1: none
+};
+#endif
 //! @}
 
 //! @addtogroup refract_camera

@@ -9,7 +9,7 @@
 
 namespace cv { namespace refract {
 
-/** How a fit ended. Nothing below the public functions throws because of what the data say: they make a sentence of this
+/** How a fit ended. Nothing below the public functions throws because of what the data say: they make a CalibrationError of this
 (calibrate/failure.hpp). */
 struct FitOutcome
 {
@@ -35,7 +35,7 @@ struct FitOutcome
     };
 
     Status status = CONVERGED;
-    int view = -1, camera = -1;
+    int view = -1, camera = -1, pointIndex = -1;
     bool refracted = false;
     Point3d point;
     double distance = 0;

@@ -28,8 +28,8 @@ Pose ownPose(const Rig& rig, const Image& image)
     const Camera& behindWindow = rig.cameras[image.camera];
     const Camera camera = image.refracted ? behindWindow : withWindow(behindWindow);
     double rms;
-    const std::vector<Point2d> agreeing = pointsOfOnePose(camera, image.points.object, image.points.pixel);
-    const Pose pose = solvePose(camera, image.points.object, agreeing, Pose(), rms);
+    const std::vector<Point2d> inliers = pointsOfOnePose(camera, image.points.object, image.points.pixel);
+    const Pose pose = solvePose(camera, image.points.object, inliers, Pose(), rms);
     return pose.found ? inCamera1(pose, rig.extrinsics[image.camera]) : pose;
 }
 

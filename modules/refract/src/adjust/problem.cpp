@@ -319,8 +319,6 @@ FitOutcome Problem::findPointWithoutImage() const
     {
         FitOutcome outcome(FitOutcome::NO_IMAGE);
         outcome.camera = image.camera;
-        outcome.view = image.view;
-        outcome.refracted = image.refracted;
         if (!cameras_[image.camera].camera(image.refracted))
         {
             const SharedWindow* window = cameras_[image.camera].window.get();
@@ -332,6 +330,8 @@ FitOutcome Problem::findPointWithoutImage() const
             outcome.distance = window->parameters[at.distance];
             return outcome;
         }
+        outcome.view = image.view;
+        outcome.refracted = image.refracted;
         const Pose direct = pose(image.view);
         const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, image.refracted);
         for (int row = 0; row < (int)image.points.object.size(); row++)
@@ -340,6 +340,7 @@ FitOutcome Problem::findPointWithoutImage() const
                 continue;
             Point2d pixel;
             outcome.point = image.points.object[row];
+            outcome.pointIndex = image.points.index[row];
             outcome.imageStatus = project(image, placed, row, pixel);
             if (outcome.imageStatus != REFRACT_OK)
                 return outcome;

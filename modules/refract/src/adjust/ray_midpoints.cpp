@@ -41,20 +41,13 @@ struct RaySum
 };
 
 //! Scene -> camera of an image.
-struct ImagePlace
+RigidTransform placeOf(const Problem& problem, const Rig& cameras, const Image& image)
 {
-    ImagePlace(const Problem& problem, const Rig& cameras, const Image& image)
-    {
-        const Extrinsics toCamera(cameras.extrinsics[image.camera]), toCamera1(problem.pose(image.view));
-        R = toCamera.rotation.R*toCamera1.rotation.R;
-        t = toCamera.apply(toCamera1.T);
-    }
-    Matx33d R;
-    Vec3d t;
-};
+    return transformOf(cameras.extrinsics[image.camera])*transformOf(problem.pose(image.view));
+}
 
 //! @param isUsed per point of the image; empty: all
-void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& points, const std::vector<uchar>& isUsed,
+void addRays(const Camera& camera, const RigidTransform& place, const ImagePoints& points, const std::vector<uchar>& isUsed,
              std::vector<RaySum>& sums)
 {
     const Vec3d normal = camera.layers().normal();
@@ -73,14 +66,13 @@ void addRays(const Camera& camera, const ImagePlace& place, const ImagePoints& p
         camera.unproject(n, u, v, rays, status);
         for (int k = 0; k < n; k++)
             if (status[k] == REFRACT_OK && (isUsed.empty() || isUsed[begin + k]))
-                sums[points.index[begin + k]].add(place.R.t()*(rays.origin(k, normal) - place.t),
-                                                  place.R.t()*rays.direction(k));
+                sums[points.index[begin + k]].add(place.inverse(rays.origin(k, normal)), place.R.t()*rays.direction(k));
     }
 }
 
-bool hasImage(const Camera& camera, const ImagePlace& place, const Point3d& point)
+bool hasImage(const Camera& camera, const RigidTransform& place, const Point3d& point)
 {
-    const Vec3d X = place.R*Vec3d(point) + place.t;
+    const Vec3d X = place.apply(Vec3d(point));
     double u, v;
     uchar status = REFRACT_OK;
     camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
@@ -93,11 +85,11 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
 {
     const Rig rig = problem.rig();
     std::vector<RaySum> sums(given.size());
-    std::vector<ImagePlace> places;
+    std::vector<RigidTransform> places;
     std::vector<int> seen(given.size(), 0);
     for (const Image& image : problem.images())
     {
-        places.push_back(ImagePlace(problem, rig, image));
+        places.push_back(placeOf(problem, rig, image));
         addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), sums);
         for (int index : image.points.index)
             seen[index]++;
@@ -126,7 +118,7 @@ std::vector<Point3d> rayMidpoints(const Problem& problem, int pointCount, const 
     {
         const Image& image = problem.images()[i];
         if (std::any_of(isUsed[i].begin(), isUsed[i].end(), [](uchar used) { return used != 0; }))
-            addRays(rig.cameras[image.camera], ImagePlace(problem, rig, image), image.points, isUsed[i], sums);
+            addRays(rig.cameras[image.camera], placeOf(problem, rig, image), image.points, isUsed[i], sums);
     }
     std::vector<Point3d> points;
     for (const RaySum& sum : sums)

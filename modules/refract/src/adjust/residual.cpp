@@ -162,7 +162,7 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
 void ImageResidual::placePoints(const SimilarityTransform& placed, int begin, int n, double* x, double* y, double* z,
                                 uchar* status) const
 {
-    const Extrinsics& toCamera = camera_.extrinsics;
+    const TransformWithDerivatives& toCamera = camera_.extrinsics;
     const Matx33d R = toCamera.rotation.R*placed.A;
     const Vec3d t = toCamera.apply(placed.t);
     for (int k = 0; k < n; k++)

@@ -40,7 +40,7 @@ public:
     //! With its window, or the lens alone; null where the parameters are impossible.
     const Camera* camera(bool refracted) const;
 
-    Extrinsics extrinsics;
+    TransformWithDerivatives extrinsics;
     std::unique_ptr<SharedWindow> window;       //!< null if it is the camera's own
 
 private:

@@ -18,7 +18,7 @@ typedef Eigen::Matrix<Jet, 3, 3> Jet33;
 //! A camera of the rig; with one parameter of it that varies, or none (-1).
 struct JetCamera
 {
-    JetCamera(const Extrinsics& camera, int varied)
+    JetCamera(const TransformWithDerivatives& camera, int varied)
     {
         for (int r = 0; r < 3; r++)
         {
@@ -86,7 +86,8 @@ void transfer(const WindowLayout& at, const std::vector<Jet>& window, const JetC
 
 } // namespace
 
-SharedWindow::SharedWindow(const WindowLayout& at, const double* ofOwner, const Extrinsics& owner, const Extrinsics& camera)
+SharedWindow::SharedWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                           const TransformWithDerivatives& camera)
     : parameters(ofOwner, ofOwner + at.count), byWindow(Eigen::MatrixXd::Identity(at.count, at.count))
 {
     const WindowTransfer plane(Vec3d(ofOwner + at.normal), ofOwner[at.distance], owner, camera);
@@ -101,7 +102,8 @@ SharedWindow::SharedWindow(const WindowLayout& at, const double* ofOwner, const 
         addWedge(at, ofOwner, owner, camera);
 }
 
-void SharedWindow::addWedge(const WindowLayout& at, const double* ofOwner, const Extrinsics& owner, const Extrinsics& camera)
+void SharedWindow::addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                            const TransformWithDerivatives& camera)
 {
     for (int varied = 0; varied < at.count + 12; varied++)
     {

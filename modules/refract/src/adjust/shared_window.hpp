@@ -16,14 +16,16 @@ the wedge's axes do, too. */
 struct SharedWindow
 {
     //! @param ofOwner the window's parameters in the order of the layout
-    SharedWindow(const WindowLayout& at, const double* ofOwner, const Extrinsics& owner, const Extrinsics& camera);
+    SharedWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                 const TransformWithDerivatives& camera);
 
     std::vector<double> parameters;         //!< in the frame of the camera; what is impossible is not refused here
     Eigen::MatrixXd byWindow;               //!< by the owner's parameters
     Eigen::Matrix<double, Eigen::Dynamic, 6> byOwner, byCamera;     //!< by rvec and T of the two
 
 private:
-    void addWedge(const WindowLayout& at, const double* ofOwner, const Extrinsics& owner, const Extrinsics& camera);
+    void addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                  const TransformWithDerivatives& camera);
 };
 
 }} // namespace

@@ -11,12 +11,13 @@ typedef Eigen::Map<const Eigen::Vector3d> Map3;
 
 static const double NOWHERE_ELSE[6] = { 0, 0, 0, 0, 0, 0 };
 
-Extrinsics::Extrinsics(const double* six) : rotation(six ? six : NOWHERE_ELSE), T(six ? six + 3 : NOWHERE_ELSE) {}
+TransformWithDerivatives::TransformWithDerivatives(const double* six)
+    : rotation(six ? six : NOWHERE_ELSE), T(six ? six + 3 : NOWHERE_ELSE) {}
 
-Extrinsics::Extrinsics(const Pose& pose) : rotation(pose.rvec.val), T(pose.tvec) {}
+TransformWithDerivatives::TransformWithDerivatives(const Pose& pose) : rotation(pose.rvec.val), T(pose.tvec) {}
 
-WindowTransfer::WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const Extrinsics& owner,
-                               const Extrinsics& camera)
+WindowTransfer::WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const TransformWithDerivatives& owner,
+                               const TransformWithDerivatives& camera)
 {
     const Vec3d normal1 = owner.rotation.R.t()*ownerNormal;
     normal = camera.rotation.R*normal1;

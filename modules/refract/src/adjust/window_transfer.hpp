@@ -16,12 +16,12 @@ template<int Rows, int Columns>
 using PlainMatrix = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor | Eigen::DontAlign>;
 typedef PlainMatrix<6, 6> Matrix6;
 
-//! Where a camera of the rig is: X = R X1 + T.
-struct Extrinsics
+//! Where a camera of the rig is, X = R X1 + T, with the derivatives by rvec.
+struct TransformWithDerivatives
 {
     //! rvec and T; null: camera 1.
-    explicit Extrinsics(const double* six = nullptr);
-    explicit Extrinsics(const Pose& pose);
+    explicit TransformWithDerivatives(const double* six = nullptr);
+    explicit TransformWithDerivatives(const Pose& pose);
     Vec3d apply(const Vec3d& X) const { return rotation.R*X + T; }
     Rotation rotation;
     Vec3d T;
@@ -33,7 +33,8 @@ With n.X = d the first surface, X_owner = Ro X1 + To and X = R X1 + T:
     n1 = Ro^T n_owner,  d1 = d_owner - n_owner.To;    n = R n1,  d = d1 + n.T */
 struct WindowTransfer
 {
-    WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const Extrinsics& owner, const Extrinsics& camera);
+    WindowTransfer(const Vec3d& ownerNormal, double ownerDistance, const TransformWithDerivatives& owner,
+                   const TransformWithDerivatives& camera);
     Vec3d normal;
     double distance;
     // Rows: normal (3), distance.

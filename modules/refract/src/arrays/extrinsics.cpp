@@ -35,8 +35,8 @@ std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfAr
     {
         RigidTransform& camera = extrinsics[c];
         camera.R = readRotation(R[c], numbered("Rs", c).c_str());
-        camera.T = readVec3(T[c], numbered("Ts", c).c_str());
-        const double turned = norm(rotationVector(camera.R)), moved = norm(camera.T);
+        camera.t = readVec3(T[c], numbered("Ts", c).c_str());
+        const double turned = norm(rotationVector(camera.R)), moved = norm(camera.t);
         if (c == 0 && turned + moved/size > ROUNDING)
             CV_Error_(Error::StsBadArg, ("Rs[0] and Ts[0] rotate by %g and translate by %g; those of camera 1 must be the identity "
                                          "and 0", turned, moved));
@@ -57,7 +57,7 @@ void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayO
     std::vector<Vec3d> T;
     for (int c = 0; c < count; c++)
     {
-        T.push_back(extrinsics[c].T);
+        T.push_back(extrinsics[c].t);
         if (!Rs.needed())
             continue;
         if (isFixed)

@@ -6,22 +6,15 @@
 #define OPENCV_REFRACT_EXTRINSICS_HPP
 
 #include "arrays/arrays.hpp"
+#include "math/rigid_transform.hpp"
 
 namespace cv { namespace refract {
-
-//! Camera 1 -> camera: X = R X1 + T.
-struct RigidTransform
-{
-    Matx33d R = Matx33d::eye();
-    Vec3d T;
-    Vec3d apply(const Vec3d& X) const { return R*X + T; }
-};
 
 //! "name[i]"
 String numbered(const char* name, int i);
 
-/** Rs and Ts of a rig, one per camera; both may be left out for one camera. Throws unless the first is the identity within
-rounding; it is exact in the result. */
+/** Rs and Ts of a rig, camera 1 -> camera, one per camera; both may be left out for one camera. Throws unless the first is the
+identity within rounding; it is exact in the result. */
 std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 
 //! 3x3 and 3x1 CV_64F; whatever is not wanted is left out.

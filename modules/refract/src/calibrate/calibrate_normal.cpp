@@ -6,6 +6,7 @@
 
 #include "start/normal_from_pairs.hpp"
 #include "arrays/arrays.hpp"
+#include "calibrate/calibration_error.hpp"
 
 namespace cv { namespace refract {
 
@@ -26,7 +27,8 @@ static double calibrateNormal(InputArrayOfArrays imagePointsDirect, InputArrayOf
 
     const NormalEstimate estimate = normalFromPairs(camera, direct, refracted);
     if (!estimate.undetermined.empty())
-        CV_Error_(Error::StsNoConv, ("the normal is undetermined: %s", estimate.undetermined.c_str()));
+        raise(CalibrationError(CalibrationError::UNDETERMINED, "the normal is undetermined: " + estimate.undetermined,
+                               estimate.undetermined));
     const Vec3d& n = estimate.normal;
     Mat(n).copyTo(normal);
     if (distortionCenter.needed())

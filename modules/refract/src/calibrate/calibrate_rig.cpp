@@ -5,6 +5,7 @@
 /* Public functions of the joint fit for several cameras: arguments and results. */
 
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/calibration_error.hpp"
 #include "start/rig_task.hpp"
 #include "math/rotation.hpp"
 #include <Eigen/Cholesky>
@@ -57,8 +58,12 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
         bool isSeen = false;
         for (int c = owner; c < rig.count(); c++)
             isSeen = isSeen || (rig.owner[c] == owner && seesAnything(views.cameras[c].refracted));
-        if (!isSeen)
-            CV_Error_(Error::StsBadArg, ("%s has no point that was seen", names[owner].c_str()));
+        if (isSeen)
+            continue;
+        CalibrationError error(CalibrationError::WINDOW_NOT_SEEN, names[owner] + " has no point that was seen",
+                               "no point was seen through the window");
+        error.camera = owner;
+        raise(error);
     }
 }
 
@@ -103,15 +108,6 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
 }
 
-static Pose poseOf(const RigidTransform& extrinsics)
-{
-    Pose pose;
-    pose.rvec = rotationVector(extrinsics.R);
-    pose.tvec = extrinsics.T;
-    pose.found = true;
-    return pose;
-}
-
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
 {
     std::vector<Pose> poses;
@@ -122,12 +118,9 @@ std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays T
 
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts)
 {
-    std::vector<RigidTransform> extrinsics(rig.extrinsics.size());
-    for (size_t c = 0; c < extrinsics.size(); c++)
-    {
-        extrinsics[c].R = rotationMatrix(rig.extrinsics[c].rvec);
-        extrinsics[c].T = rig.extrinsics[c].tvec;
-    }
+    std::vector<RigidTransform> extrinsics;
+    for (const Pose& pose : rig.extrinsics)
+        extrinsics.push_back(transformOf(pose));
     writeExtrinsics(extrinsics, Rs, Ts);
 }
 

@@ -11,7 +11,7 @@ namespace cv { namespace refract {
 
 enum class FitKind { CALIBRATION, BUNDLE };
 
-//! Throws what the user is told, unless the fit has converged.
+//! Throws CalibrationError, with what the user is told, unless the fit has converged.
 void throwUnlessConverged(const FitOutcome& outcome, FitKind kind);
 
 }} // namespace

@@ -18,6 +18,7 @@ is: one with the images exchanged, and one with the window's constants free. If 
 a grossly wrong thickness or index is the caller's to see in the residuals. */
 
 #include "calibrate/pair_check.hpp"
+#include "calibrate/calibration_error.hpp"
 #include "calibrate/failure.hpp"
 #include "arrays/views.hpp"
 #include <numeric>
@@ -189,8 +190,17 @@ double otherWindowRms(Rig start, RigTask task)
 
 void throwSwapped(double rms, const char* given)
 {
-    CV_Error_(Error::StsBadArg, ("imagePointsDirect and imagePointsRefracted are swapped: exchanged they fit to %.3g px RMS, as "
-                                 "given %s; direct is what was seen without the window", rms, given));
+    const String reason = format("exchanged they fit to %.3g px RMS, as given %s", rms, given);
+    raise(CalibrationError(CalibrationError::PAIRS_SWAPPED, "imagePointsDirect and imagePointsRefracted are swapped: " + reason +
+                           "; direct is what was seen without the window", reason));
+}
+
+void throwContradicting(double residual, double apart)
+{
+    const String reason = format("the pairs contradict the window: %.3g px RMS, but %.3g px if each image has a pose of its own, "
+                                 "whatever the window's thickness or index", residual, apart);
+    raise(CalibrationError(CalibrationError::PAIRS_CONTRADICT, reason + ". imagePointsDirect[i] and imagePointsRefracted[i] must show "
+                           "the same target that was not moved in between, its points in the same order", reason));
 }
 
 void checkPairs(const Rig& start, const Rig& fitted, const RigTask& task, const RigFit& fit)
@@ -217,10 +227,7 @@ void checkPairs(const Rig& start, const Rig& fitted, const RigTask& task, const 
     if (swapped < CLEARLY_BETTER*fit.rms)
         throwSwapped(swapped, format("to %.3g px", fit.rms).c_str());
     if (residual > LARGEST_CONTRADICTION*displacement && !std::isfinite(otherWindowRms(start, task)))
-        CV_Error_(Error::StsBadArg, ("the pairs contradict the window: %.3g px RMS, but %.3g px if each image has a pose of its "
-                                     "own, whatever the window's thickness or index. imagePointsDirect[i] and imagePointsRefracted[i] "
-                                     "must show the same target that was not moved in between, its points in the same order",
-                                     residual, apart));
+        throwContradicting(residual, apart);
 }
 
 //! Pairs that are none may leave a fit without answer: says so if they do.

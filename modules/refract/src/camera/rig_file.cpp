@@ -73,7 +73,7 @@ RigidTransform readPlace(const FileNode& root, int number, const String& filenam
     const String R = placeKey("R", number), T = placeKey("T", number);
     place.R = inFile(filename, cameraKey(number), [&]
     { return readRotation(readNeeded(root, R, number, filename), R.c_str()); });
-    place.T = inFile(filename, cameraKey(number), [&]
+    place.t = inFile(filename, cameraKey(number), [&]
     { return readVec3(readNeeded(root, T, number, filename), T.c_str()); });
     return place;
 }
@@ -137,11 +137,11 @@ void readCameraModels(const String& filename, std::vector<Ptr<RefractiveCamera> 
         const CameraModel model = readCameraModel(file);
         RigidTransform place;
         place.R = rotationMatrix(model.rvec);
-        place.T = model.tvec;
+        place.t = model.tvec;
         if (cameras.empty())
             first = place;
         place.R = place.R*first.R.t();
-        place.T -= place.R*first.T;
+        place.t -= place.R*first.t;
         cameras.push_back(inFile(file, "lens", [&] { return cameraFrom(model); }));
         places.push_back(place);
     }
@@ -159,7 +159,7 @@ void writeCameraModels(const String& filename, const std::vector<Ptr<RefractiveC
     {
         models.push_back(cameraModelOf(*cameras[c], numberedFile(filename, (int)c)));
         models[c].rvec = rotationVector(places[c].R);
-        models[c].tvec = places[c].T;
+        models[c].tvec = places[c].t;
     }
     for (size_t c = 0; c < models.size(); c++)
         saveCameraModel(numberedFile(filename, (int)c), models[c]);
@@ -248,7 +248,7 @@ void writeRig(const String& filename, const std::vector<Ptr<RefractiveCamera> >&
             fs << "}";
         }
         for (int c = 1; c < count; c++)
-            fs << placeKey("R", c + 1) << Mat(places[c].R) << placeKey("T", c + 1) << Mat(places[c].T);
+            fs << placeKey("R", c + 1) << Mat(places[c].R) << placeKey("T", c + 1) << Mat(places[c].t);
         if (!windowOfCamera.empty())
             fs << "window_of_camera" << windowOfCamera;
         if (!C.empty())

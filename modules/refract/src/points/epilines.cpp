@@ -70,7 +70,7 @@ void placeNodes(const Projection& p, int samples, double tolerance, std::vector<
     for (int i = 1; i < SAMPLES; i++)
         share[i] = share[i - 1] + root[i - 1] + root[i];
     // The chord of neighbours is two steps long, so its distance is four times a single step's. A little more than the estimate,
-    // so that the check of the finished segments seldom has to split one.
+    // so that the check of the finished segments rarely has to split one.
     const double estimate = 0.5*share[SAMPLES - 1]/std::sqrt(4*tolerance);
     const int segments = std::max(1, (int)std::min(1e4, std::ceil(1.05*estimate)));
     const double first = p.t()[samples], step = p.t()[samples + 1] - first, part = share[SAMPLES - 1]/segments;

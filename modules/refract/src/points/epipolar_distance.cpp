@@ -17,7 +17,7 @@ namespace {
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 /* Pixels along the curve that leave the distance exact: of a curve that bends by kappa it is off by kappa/2 times the square, and
-kappa is seldom above 1e-3. Derivatives are off by kappa times them. */
+kappa is rarely above 1e-3. Derivatives are off by kappa times them. */
 double enoughFor(bool derivatives) { return derivatives ? 1e-4 : 0.02; }
 
 //! Of matches that are far off less is wanted.

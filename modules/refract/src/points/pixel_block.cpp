@@ -37,7 +37,7 @@ void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n)
         const RigidTransform& place = cameras[c].place;
         // The last surface in the frame of camera 1.
         const Vec3d last(layers.lastSurface().normal), normal = place.R.t()*last;
-        const double distance = layers.lastSurface().distance - last.dot(place.T);
+        const double distance = layers.lastSurface().distance - last.dot(place.t);
         for (int i = 0; i < n && layers.stack().refracts; i++)
         {
             const bool isBeyond = normal[0]*block.x[i] + normal[1]*block.y[i] + normal[2]*block.z[i] > distance;

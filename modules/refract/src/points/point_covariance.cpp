@@ -106,7 +106,7 @@ void PointCovariance::differentiate(const PixelBlock& block, int n, Block& work)
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
         std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
         if (c > 0)
-            pointKernels().transform(place.R.val, place.T.val, n, x, y, z);
+            pointKernels().transform(place.R.val, place.t.val, n, x, y, z);
         forSeen(block, c, n, work.status, [&](uchar* status)
         { camera.projectJacobian(n, x, y, z, u, v, byPoint, values, status); });
         if (isUncertain && c > 0)

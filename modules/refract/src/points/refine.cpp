@@ -130,7 +130,7 @@ private:
         if (c > 0)
         {
             std::copy(x_, x_ + n_, x); std::copy(y_, y_ + n_, y); std::copy(z_, z_ + n_, z);
-            pointKernels().transform(camera.place.R.val, camera.place.T.val, n_, x, y, z);
+            pointKernels().transform(camera.place.R.val, camera.place.t.val, n_, x, y, z);
             px = x; py = y; pz = z;
         }
         forSeen(block_, c, n_, status_, [&](uchar* status)
@@ -160,7 +160,7 @@ void reprojectionErrors(const PlacedCameras& cameras, const PixelBlock& block, i
         std::copy(block.x, block.x + n, x); std::copy(block.y, block.y + n, y); std::copy(block.z, block.z + n, z);
         for (int i = 0; i < n; i++)         // a point that the camera does not see counts as failed already
             status[i] = block.isSeen(c, i) ? block.status[i] : (uchar)REFRACT_TOO_FEW_VIEWS;
-        pointKernels().transform(cameras[c].place.R.val, cameras[c].place.T.val, n, x, y, z);
+        pointKernels().transform(cameras[c].place.R.val, cameras[c].place.t.val, n, x, y, z);
         cameras[c].camera->project(n, x, y, z, NULL, predictedU, predictedV, status);
         for (int i = 0; i < n; i++)
             errors[i*count + c] = status[i] == REFRACT_OK ? std::hypot(predictedU[i] - u[i], predictedV[i] - v[i])

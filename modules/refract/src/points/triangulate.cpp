@@ -19,7 +19,7 @@ CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n,
     { camera.unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r, status); });
     const RigidTransform& place = cameras[c].place;
     const Matx33d back = place.R.t();
-    const Vec3d axis = back*camera.layers().normal(), centre = -(back*place.T), none;
+    const Vec3d axis = back*camera.layers().normal(), centre = -(back*place.t), none;
     if (c > 0)
         pointKernels().transform(back.val, none.val, n, r.dx, r.dy, r.dz);
     if (c > 0 && r.hasOffset)

@@ -87,7 +87,7 @@ void posesOfPlane(const Points& n1, const Points& n2, double limit, double prob,
 
 } // namespace
 
-std::vector<RigidMotion> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob)
+std::vector<RigidTransform> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob)
 {
     Points n1, n2;
     for (size_t i = 0; i < b1.normalized.size(); i++)
@@ -102,7 +102,7 @@ std::vector<RigidMotion> centralPoses(const Bearings& b1, const Bearings& b2, do
         const int inliers = posesOfScene(n1, n2, limit, prob, found);
         posesOfPlane(n1, n2, limit, prob, std::max(6, inliers/2), found);
     }
-    std::vector<RigidMotion> poses;
+    std::vector<RigidTransform> poses;
     for (const PinholePose& p : found)
         poses.push_back({ b2.turn.t()*Matx33d(p.R)*b1.turn, b2.turn.t()*Vec3d(p.t.ptr<double>()) });
     return poses;

@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_CENTRAL_POSE_HPP
 
 #include "camera/camera.hpp"
-#include "pose/rigid_motion.hpp"
+#include "math/rigid_transform.hpp"
 
 /* Where a search for two cameras' pose begins. About their mean origins the rays are nearly central: OpenCV's methods for pinholes
 on the bearings, with limits from the caller's to many times that, give R and the baseline. */
@@ -26,7 +26,7 @@ Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels);
 /** Poses of length 1. Matches on a plane agree with two of them, which both are here.
 @param threshold least limit, of normalised coordinates
 @param prob chance of a sample without wrong matches */
-std::vector<RigidMotion> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob);
+std::vector<RigidTransform> centralPoses(const Bearings& b1, const Bearings& b2, double threshold, double prob);
 
 }} // namespace
 

@@ -5,14 +5,14 @@
 #ifndef OPENCV_REFRACT_CONSENSUS_HPP
 #define OPENCV_REFRACT_CONSENSUS_HPP
 
-#include "pose/rigid_motion.hpp"
+#include "math/rigid_transform.hpp"
 
 namespace cv { namespace refract {
 
 //! A pose and its inliers.
 struct Consensus
 {
-    RigidMotion motion;
+    RigidTransform motion;
     double cost = DBL_MAX;              //!< MSAC (@cite TorrZisserman2000): sum of squared errors, each cut off at the limit
     std::vector<int> inliers;
     std::vector<double> errors;         //!< of the inliers

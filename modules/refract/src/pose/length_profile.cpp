@@ -10,7 +10,7 @@ namespace {
 
 const double INFINITE = std::numeric_limits<double>::infinity();
 
-double costAt(const MatchedCameras& pair, const PixelMatches& matches, double length, RigidMotion& pose)
+double costAt(const MatchedCameras& pair, const PixelMatches& matches, double length, RigidTransform& pose)
 {
     setLength(pair, length, pose);
     return refineAtLength(pair, matches, pose, 30);
@@ -80,7 +80,7 @@ private:
 /** Where, from the most likely length on, lengths are ruled out; `open` if none is.
 @param pose in: the most likely one, out: at the last length that is not ruled out */
 template<typename Excess>
-double lastPossible(const MatchedCameras& pair, double factor, double open, const Excess& excess, RigidMotion& pose)
+double lastPossible(const MatchedCameras& pair, double factor, double open, const Excess& excess, RigidTransform& pose)
 {
     const double DIGITS = 1e-4;
     const std::vector<double> lengths = lengthsToTry(pair);
@@ -90,7 +90,7 @@ double lastPossible(const MatchedCameras& pair, double factor, double open, cons
     for (double next = length*factor; ; next *= factor)
     {
         const double clamped = next < lengths.front() || next > lengths.back() ? limit : next;
-        RigidMotion there = pose;
+        RigidTransform there = pose;
         double outer = excess(clamped, there);
         if (outer > 0)
         {
@@ -100,7 +100,7 @@ double lastPossible(const MatchedCameras& pair, double factor, double open, cons
             {
                 const double part = outer < INFINITE && k % 4 < 3 ? inner/(inner - outer) : 0.5;
                 const double middle = inside + part*(outside - inside);
-                RigidMotion between = pose;
+                RigidTransform between = pose;
                 const double value = excess(std::exp(middle), between);
                 if (value <= 0)
                 {
@@ -139,21 +139,21 @@ std::vector<double> lengthsToTry(const MatchedCameras& pair)
     return lengths;
 }
 
-RigidMotion mostLikelyLength(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& start)
+RigidTransform mostLikelyLength(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& start)
 {
     const std::vector<double> lengths = lengthsToTry(pair);
     const int count = (int)lengths.size();
     int first = 0;
     while (first < count - 1 && lengths[first] < norm(start.t))
         first++;
-    RigidMotion best = start;
+    RigidTransform best = start;
     double least = INFINITE;
     for (int direction : { 1, -1 })
     {
-        RigidMotion pose = start;
+        RigidTransform pose = start;
         for (int i = direction > 0 ? first : first - 1; i >= 0 && i < count; i += direction)
         {
-            RigidMotion next = pose;
+            RigidTransform next = pose;
             const double cost = costAt(pair, matches, lengths[i], next);
             if (cost < INFINITE)
                 pose = next;
@@ -174,7 +174,7 @@ LengthInterval lengthInterval(const MatchedCameras& pair, const PixelMatches& ma
         return interval;
     const ExcessQuantile quantile(evidence);
     const double variance = evidence.cost/evidence.freedom;
-    const auto excess = [&](double length, RigidMotion& pose)
+    const auto excess = [&](double length, RigidTransform& pose)
     {
         const double cost = costAt(pair, matches, length, pose);
         return cost - evidence.cost - quantile(pose.t)*variance;

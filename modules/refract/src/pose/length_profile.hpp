@@ -16,12 +16,12 @@ namespace cv { namespace refract {
 std::vector<double> lengthsToTry(const MatchedCameras& pair);
 
 //! The most likely pose of those at lengthsToTry, each found from its neighbour's.
-RigidMotion mostLikelyLength(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& start);
+RigidTransform mostLikelyLength(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& start);
 
 //! What the interval of a length takes besides the matches.
 struct LengthEvidence
 {
-    RigidMotion pose;           //!< the most likely one
+    RigidTransform pose;        //!< the most likely one
     double cost;                //!< its sum of squared errors
     double freedom;             //!< degrees of freedom of these
     Matx33d covariance;         //!< of T
@@ -31,7 +31,7 @@ struct LengthEvidence
 struct LengthInterval
 {
     Vec2d lengths;              //!< 0 and infinity: no shorter, no longer one can be ruled out
-    RigidMotion ends[2];
+    RigidTransform ends[2];
 };
 
 /** Lengths that hold the truth with 95 %: those whose least sum of squares is above the least of all by no more than it is, in 95 % of all

@@ -35,7 +35,7 @@ public:
 
     /** The cost of a pose, or some number above `enough` where it is.
     @param errors of the points; may be null */
-    double score(const RigidMotion& motion, double enough, double* errors = nullptr) const
+    double score(const RigidTransform& motion, double enough, double* errors = nullptr) const
     {
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK], cost = 0;
         uchar status[BLOCK];
@@ -60,7 +60,7 @@ public:
         return cost;
     }
 
-    Consensus consensus(const RigidMotion& motion) const
+    Consensus consensus(const RigidTransform& motion) const
     {
         std::vector<double> errors(points_.pixel.size());
         score(motion, DBL_MAX, errors.data());
@@ -91,17 +91,6 @@ ImagePoints select(const ImagePoints& points, const std::vector<int>& which)
     return some;
 }
 
-Pose poseOf(const RigidMotion& motion)
-{
-    Pose pose;
-    pose.rvec = rotationVector(motion.R);
-    pose.tvec = motion.t;
-    pose.found = true;
-    return pose;
-}
-
-RigidMotion motionOf(const Pose& pose) { return { rotationMatrix(pose.rvec), pose.tvec }; }
-
 //! A better pose from the inliers of this one, if there is one.
 bool localOptimize(const Camera& camera, const ImagePoints& points, const MsacScorer& scorer, int iterations, Consensus& best)
 {
@@ -111,7 +100,7 @@ bool localOptimize(const Camera& camera, const ImagePoints& points, const MsacSc
     Pose pose = poseOf(best.motion);
     if (std::isnan(refinePose(camera, inliers, pose, iterations)))
         return false;
-    const Consensus refined = scorer.consensus(motionOf(pose));
+    const Consensus refined = scorer.consensus(transformOf(pose));
     if (!(refined.cost < best.cost))
         return false;
     best = refined;
@@ -138,7 +127,7 @@ Consensus searchPose(const Camera& camera, const ImagePoints& points, const Msac
     const PointRays rays(camera, points);
     const int count = (int)rays.ray.size();
     Consensus best;
-    const auto consider = [&](const RigidMotion& motion)
+    const auto consider = [&](const RigidTransform& motion)
     {
         if (!(scorer.score(motion, best.cost) < best.cost))
             return;
@@ -146,7 +135,7 @@ Consensus searchPose(const Camera& camera, const ImagePoints& points, const Msac
         for (int k = 0; k < 3 && localOptimize(camera, points, scorer, QUICK, best); k++) {}
     };
     if (guess.found)
-        consider(motionOf(guess));
+        consider(transformOf(guess));
     RNG random(0x52414E53);
     for (int k = 0; k < effort.samples && count >= 3; k++)
     {
@@ -163,7 +152,7 @@ Consensus searchPose(const Camera& camera, const ImagePoints& points, const Msac
             three[i] = rays.ray[sample[i]];
             object[i] = Vec3d(points.object[rays.point[sample[i]]]);
         }
-        RigidMotion motions[4];
+        RigidTransform motions[4];
         const int found = posesOfThreeRays(three, object, motions);
         for (int i = 0; i < found; i++)
             consider(motions[i]);
@@ -213,7 +202,7 @@ static void refineOnInliers(const Camera& camera, const ImagePoints& points, con
         Pose pose = poseOf(best.motion);
         if (fitted == last || scatterRank(some.object) < 2 || std::isnan(refinePose(camera, some, pose)))
             return;
-        best = scorer.consensus(motionOf(pose));
+        best = scorer.consensus(transformOf(pose));
         last = fitted;
     }
 }
@@ -284,7 +273,7 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
     // Those of the points that the pose was fitted to.
     const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
     const MsacScorer scorer(seenBy, points, reprojectionError);
-    const Consensus consensus = scorer.consensus(motionOf(readPose(rvec, tvec)));
+    const Consensus consensus = scorer.consensus(transformOf(readPose(rvec, tvec)));
     Mat(poseCovariance(seenBy, select(points, withoutOutliers(consensus)), poseOf(consensus.motion), noise)).copyTo(covariance);
     return true;
 }

@@ -35,14 +35,16 @@ int scatterRank(const std::vector<Point3d>& points)
     return rank;
 }
 
-Pose makePose(const Matx33d& R, const Vec3d& t)
+Pose poseOf(const RigidTransform& transform)
 {
     Pose pose;
-    pose.rvec = rotationVector(R);
-    pose.tvec = t;
+    pose.rvec = rotationVector(transform.R);
+    pose.tvec = transform.t;
     pose.found = true;
     return pose;
 }
+
+RigidTransform transformOf(const Pose& pose) { return { rotationMatrix(pose.rvec), pose.tvec }; }
 
 namespace {
 
@@ -97,8 +99,8 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
     for (size_t i = 0; i < rvecs.size(); i++)
     {
         if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
-            poses.push_back(makePose(back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
-                                     back*(unit*Vec3d(tvecs[i].ptr<double>())) + view.bearings.centre));
+            poses.push_back(poseOf({ back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
+                                     back*(unit*Vec3d(tvecs[i].ptr<double>())) + view.bearings.centre }));
     }
     return poses;
 }
@@ -194,12 +196,8 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
 
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
 {
-    const Matx33d Rt = rotationMatrix(extrinsics.rvec).t();
-    Pose pose;
-    pose.rvec = rotationVector(Rt*rotationMatrix(inCamera.rvec));
-    pose.tvec = Rt*(inCamera.tvec - extrinsics.tvec);
-    pose.found = true;
-    return pose;
+    const RigidTransform object = transformOf(inCamera), camera = transformOf(extrinsics);
+    return poseOf({ camera.R.t()*object.R, camera.inverse(object.t) });
 }
 
 static bool isSame(const Pose& a, const Pose& b)
@@ -220,8 +218,8 @@ static void addPosesOfTriples(const Camera& camera, const ImagePoints& points, s
                 const SceneRay three[3] = { rays.ray[i], rays.ray[j], rays.ray[k] };
                 const Vec3d object[3] = { points.object[rays.point[i]], points.object[rays.point[j]],
                                           points.object[rays.point[k]] };
-                for (const RigidMotion& motion : allPosesOfThreeRays(three, object))
-                    poses.push_back(makePose(motion.R, motion.t));
+                for (const RigidTransform& motion : allPosesOfThreeRays(three, object))
+                    poses.push_back(poseOf(motion));
             }
 }
 

@@ -7,6 +7,7 @@
 
 #include "arrays/views.hpp"
 #include "camera/camera.hpp"
+#include "math/rigid_transform.hpp"
 
 namespace cv { namespace refract {
 
@@ -17,7 +18,8 @@ struct Pose
     bool found = false;
 };
 
-Pose makePose(const Matx33d& R, const Vec3d& t);
+Pose poseOf(const RigidTransform& transform);
+RigidTransform transformOf(const Pose& pose);
 
 //! Object -> camera, with camera 1 -> camera, gives object -> camera 1.
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);

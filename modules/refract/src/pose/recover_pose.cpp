@@ -33,7 +33,7 @@ const double INFINITE = std::numeric_limits<double>::infinity(), NaN = std::nume
 //! Pixels of camera 1 and of camera 2.
 typedef std::pair<std::vector<Point2d>, std::vector<Point2d> > MatchedPixels;
 
-Consensus score(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& motion, double limit)
+Consensus score(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& motion, double limit)
 {
     Consensus c;
     std::vector<double> errors;
@@ -54,13 +54,13 @@ Sampling samplingOf(const std::vector<Point2d>& pixels2, double limit)
     return { 5, POSES, strip/std::max(extent.area(), DBL_MIN) };
 }
 
-bool isInfinitelyFar(const MatchedCameras& pair, const RigidMotion& motion)
+bool isInfinitelyFar(const MatchedCameras& pair, const RigidTransform& motion)
 {
     return pair.refracts() && norm(motion.t) >= 0.99*lengthsToTry(pair).back();
 }
 
 //! The most likely pose near this one: over all lengths, if windows tell them and they are finite.
-double refineLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& motion, int iterations)
+double refineLength(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& motion, int iterations)
 {
     double cost = INFINITE;
     if (pair.refracts() && !isInfinitelyFar(pair, motion))
@@ -76,7 +76,7 @@ void localOptimize(const MatchedCameras& pair, const PixelMatches& matches, doub
 {
     for (int k = 0; k < 5 && best.inliers.size() > 6; k++)
     {
-        RigidMotion pose = best.motion;
+        RigidTransform pose = best.motion;
         if (!(refineLength(pair, select(matches, best.inliers), pose, 10) < INFINITE))
             return;
         Consensus refined = score(pair, matches, pose, limit);
@@ -87,7 +87,7 @@ void localOptimize(const MatchedCameras& pair, const PixelMatches& matches, doub
 }
 
 //! From a pinholes' pose, at the length that suits it, with limits that become narrower as the pose becomes exact.
-Consensus fromCentral(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pinholes, double limit)
+Consensus fromCentral(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pinholes, double limit)
 {
     const double WIDE = 16;
     Consensus best;
@@ -97,7 +97,7 @@ Consensus fromCentral(const MatchedCameras& pair, const PixelMatches& matches, c
         Consensus here;
         for (double length : lengthsToTry(pair))
         {
-            RigidMotion motion = best.motion;
+            RigidTransform motion = best.motion;
             if (!setLength(pair, length, motion))
                 continue;
             Consensus c = score(pair, matches, motion, wide);
@@ -115,10 +115,10 @@ Consensus fromCentral(const MatchedCameras& pair, const PixelMatches& matches, c
 //! What is estimated, and its worth.
 struct Estimate
 {
-    RigidMotion motion;
+    RigidTransform motion;
     Matx66d covariance;
     Vec2d interval;
-    RigidMotion likely;                 //!< of all lengths, though the most likely one be infinite
+    RigidTransform likely;              //!< of all lengths, though the most likely one be infinite
     Matx66d ofNoise;                    //!< covariance of that, all lengths
     std::vector<int> fitted, inliers;
     double variance;                    //!< of an error
@@ -137,7 +137,7 @@ Matx66d covarianceOf(const std::vector<Matx16d>& byPose, const Matx<double, 6, N
 }
 
 //! How the errors move with rotation vector and T, and their covariance if the errors' variance is 1.
-Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose, bool atLength,
+Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose, bool atLength,
                      std::vector<Matx16d>& byPose)
 {
     std::vector<double> errors;
@@ -162,7 +162,7 @@ std::vector<int> withoutOutliers(const Consensus& consensus)
 
 /** Without matches that alone tell something of the pose, of whatever many others: none of these would show that one is wrong, and a
 pose gains by turning until it agrees with a wrong one. So before a plane a single match off it is not believed. */
-std::vector<int> withoutHighLeverage(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+std::vector<int> withoutHighLeverage(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose,
                                      const std::vector<int>& chosen)
 {
     const double MOST = 0.5;
@@ -216,7 +216,7 @@ void widen(Matx66d& covariance, const Vec3d& toEnd)
 }
 
 //! The most likely pose over all lengths, from a good one; false if there are too few inliers.
-bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double limit, const RigidMotion& start, Estimate& e)
+bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double limit, const RigidTransform& start, Estimate& e)
 {
     std::vector<int> fitted;
     PixelMatches some;
@@ -227,7 +227,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
         std::vector<int> next = withoutHighLeverage(pair, matches, best.motion, withoutOutliers(best));
         if (next.size() <= 6 || next == fitted)
             break;
-        RigidMotion motion = best.motion;
+        RigidTransform motion = best.motion;
         fitted = std::move(next);
         some = select(matches, fitted);
         if (k == 0)
@@ -256,7 +256,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
             return false;
     }
     e.covariance = e.variance*covarianceOf(pair, some, e.motion, e.interval[1] == INFINITE, byPose);
-    for (const RigidMotion& end : lengths.ends)
+    for (const RigidTransform& end : lengths.ends)
         widen(e.covariance, difference(rotationVector(e.motion.R), rotationVector(end.R)));
     e.fitted = fitted;
     e.inliers = best.inliers;
@@ -268,14 +268,14 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
 
 //! Where the search from pinholes' poses ends, each place once.
 std::vector<Consensus> placesOf(const MatchedCameras& pair, const PixelMatches& matches, double limit,
-                                const std::vector<RigidMotion>& starts)
+                                const std::vector<RigidTransform>& starts)
 {
     const double NEAR = 0.01;               // radians
     const double SAME = 1e-6;               // of several limits the same matches may be inliers
     std::vector<Consensus> places;
     for (auto start = starts.begin(); start != starts.end(); start++)
     {
-        if (std::any_of(starts.begin(), start, [&](const RigidMotion& other)
+        if (std::any_of(starts.begin(), start, [&](const RigidTransform& other)
                         { return norm(other.R - start->R) < SAME && norm(other.t - start->t) < SAME; }))
             continue;
         const Consensus c = fromCentral(pair, matches, *start, limit);
@@ -307,7 +307,7 @@ bool isAmbiguous(const MatchedCameras& pair, const PixelMatches& matches, const 
     }
     if ((double)other.inliers.size() < AS_MANY*(double)e.inliers.size() || sum > LEFT + CERTAIN*std::sqrt(squares))
         return false;
-    RigidMotion motion = other.motion;
+    RigidTransform motion = other.motion;
     setLength(pair, norm(e.motion.t), motion);
     refineAtLength(pair, select(matches, other.inliers), motion, 30);
     const Vec3d off = difference(rotationVector(e.motion.R), rotationVector(motion.R));
@@ -335,7 +335,7 @@ double leastValue(const Camera& camera, int parameter)
 
 /** How the estimate moves with one camera's parameters, those that vary: by differences of the errors.
 @param which camera, 1 or 2 */
-Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, const RigidMotion& motion,
+Mat motionByCamera(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels, const RigidTransform& motion,
                    int which, const Mat& covariance)
 {
     const double STEP = 0.1;                    // standard deviations

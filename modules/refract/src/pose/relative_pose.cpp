@@ -54,7 +54,7 @@ Vec3d directionOf(const Vec4d& ray) { return Vec3d(ray[1], ray[2], ray[3]); }
 //! What all matches share at a pose.
 struct PoseTerms
 {
-    PoseTerms(const MatchedCameras& pair, const RigidMotion& pose)
+    PoseTerms(const MatchedCameras& pair, const RigidTransform& pose)
         : R(pose.R), t(pose.t), normal1(pose.R*pair.camera1.layers().normal()), normal2(pair.camera2.layers().normal()),
           hasOffsets(pair.camera1.layers().isTilted() || pair.camera2.layers().isTilted())
     {
@@ -133,7 +133,7 @@ double sampsonError(const Match& m, const PoseTerms& pose, double* byPose, bool&
 
 /* Rays that do not meet in front agree best at an end of the curve, infinitely far or at a window: the distance from there, also
 over the length of its gradient. */
-void errorsAtEnds(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose, const std::vector<int>& which,
+void errorsAtEnds(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose, const std::vector<int>& which,
                   std::vector<double>& errors, std::vector<Matx16d>* byPose)
 {
     const EpipolarDistance distance(pair.camera1, pair.camera2, pose.R, pose.t, 1, DepthRange{ 0, DBL_MAX });
@@ -168,7 +168,7 @@ Matx<double, 3, 2> tangents(const Vec3d& u)
 
 //! The most likely pose of those that N parameters reach.
 template<int N, typename Move>
-double minimizeErrors(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations, const Move& move)
+double minimizeErrors(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations, const Move& move)
 {
     const LeastSquaresEnd end = { iterations, 1e-7, 1e-12 };        // square pixels
     std::vector<double> errors;
@@ -226,7 +226,7 @@ double MatchedCameras::depth() const
     return std::max(camera1.layers().stack().total, camera2.layers().stack().total) + norm(centre1) + norm(centre2);
 }
 
-bool setLength(const MatchedCameras& pair, double length, RigidMotion& pose)
+bool setLength(const MatchedCameras& pair, double length, RigidTransform& pose)
 {
     const Vec3d offset = pair.centre2 - pose.R*pair.centre1, between = pose.t - offset;
     const double now = norm(between), along = offset.dot(between)/now;
@@ -238,7 +238,7 @@ bool setLength(const MatchedCameras& pair, double length, RigidMotion& pose)
     return isReached;
 }
 
-Matx<double, 6, 5> motionAtLength(const RigidMotion& pose)
+Matx<double, 6, 5> motionAtLength(const RigidTransform& pose)
 {
     const Matx<double, 3, 2> across = norm(pose.t)*tangents(normalize(pose.t));
     Matx<double, 6, 5> motion = Matx<double, 6, 5>::eye();
@@ -248,7 +248,7 @@ Matx<double, 6, 5> motionAtLength(const RigidMotion& pose)
     return motion;
 }
 
-void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose,
                    std::vector<double>& errors, std::vector<Matx16d>* byPose, double limit)
 {
     const PoseTerms terms(pair, pose);
@@ -272,19 +272,19 @@ void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, cons
     errorsAtEnds(pair, matches, pose, which, errors, byPose);
 }
 
-double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations)
+double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations)
 {
-    const RigidMotion start = pose;
+    const RigidTransform start = pose;
     return minimizeErrors<6>(pair, matches, pose, iterations, [&](const Vec6d& six, Matx66d& motion)
     {
         motion = Matx66d::eye();
-        return RigidMotion{ rotationMatrix(rotationVector(start.R) + Vec3d(six.val)), start.t + Vec3d(six.val + 3) };
+        return RigidTransform{ rotationMatrix(rotationVector(start.R) + Vec3d(six.val)), start.t + Vec3d(six.val + 3) };
     });
 }
 
-double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations)
+double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations)
 {
-    const RigidMotion start = pose;
+    const RigidTransform start = pose;
     const double length = norm(start.t);
     const Vec3d direction = normalize(start.t);
     const Matx<double, 3, 2> across = tangents(direction);
@@ -296,7 +296,7 @@ double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, R
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 2; c++)
                 motion(3 + r, 3 + c) = byDirection(r, c);
-        return RigidMotion{ rotationMatrix(rotationVector(start.R) + Vec3d(five.val)), length*u };
+        return RigidTransform{ rotationMatrix(rotationVector(start.R) + Vec3d(five.val)), length*u };
     });
 }
 

@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_RELATIVE_POSE_HPP
 
 #include "camera/camera.hpp"
-#include "pose/rigid_motion.hpp"
+#include "math/rigid_transform.hpp"
 
 /* Two cameras' pose and what matches say of it. Two rays o + s d meet if
 
@@ -51,22 +51,22 @@ struct MatchedCameras
 
 /** The pose at another length of T. T = centre2 - R centre1 + q baseline: the baseline is what pinholes at the centres know, and
 hardly depends on the length. False where no q gives this length; T then keeps its direction. */
-bool setLength(const MatchedCameras& pair, double length, RigidMotion& pose);
+bool setLength(const MatchedCameras& pair, double length, RigidTransform& pose);
 
 /** Of each match, NaN where it has no ray.
 @param byPose if it is wanted, by the rotation vector (3) and by T (3)
 @param limit errors beyond it need no exact value */
-void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidMotion& pose,
+void sampsonErrors(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose,
                    std::vector<double>& errors, std::vector<Matx16d>* byPose, double limit = DBL_MAX);
 
 //! The most likely pose near this one: the sum of squared errors, infinite if there is none.
-double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations);
+double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations);
 
 //! The same for the length that T has.
-double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidMotion& pose, int iterations);
+double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations);
 
 //! Columns: how the rotation vector and T move by the five parameters that refineAtLength estimates.
-Matx<double, 6, 5> motionAtLength(const RigidMotion& pose);
+Matx<double, 6, 5> motionAtLength(const RigidTransform& pose);
 
 }} // namespace
 

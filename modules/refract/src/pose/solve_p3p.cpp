@@ -12,12 +12,12 @@ namespace cv { namespace refract {
 
 //! Those of the poses that give all points an image.
 static std::vector<PoseMinimum> visiblePoses(const Camera& camera, const ImagePoints& points,
-                                             const std::vector<RigidMotion>& motions)
+                                             const std::vector<RigidTransform>& motions)
 {
     std::vector<PoseMinimum> poses;
-    for (const RigidMotion& motion : motions)
+    for (const RigidTransform& motion : motions)
     {
-        PoseMinimum p = { makePose(motion.R, motion.t), 0 };
+        PoseMinimum p = { poseOf(motion), 0 };
         p.rms = refinePose(camera, points, p.pose, 1);          // no step: the error alone
         if (!std::isnan(p.rms))
             poses.push_back(p);

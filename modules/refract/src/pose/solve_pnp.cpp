@@ -29,7 +29,7 @@ ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, in
 
 Pose readPose(InputArray rvec, InputArray tvec)
 {
-    return makePose(readRotation(rvec, "rvec"), readVec3(tvec, "tvec"));
+    return poseOf({ readRotation(rvec, "rvec"), readVec3(tvec, "tvec") });
 }
 
 static std::vector<PoseMinimum> solvePnP(InputArray objectPoints, InputArray imagePoints, const Camera& camera,

@@ -142,13 +142,13 @@ Vec3d squaredSides(const Vec3d (&object)[3])
                  squaredDistance(object[2], object[0]));
 }
 
-RigidMotion motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3])
+RigidTransform motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3])
 {
     const Matx33d R = axesOf(X)*axesOf(object).t();
     return { R, X[0] - R*object[0] };
 }
 
-int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4])
+int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidTransform (&motions)[4])
 {
     if (!isTriangle(object))
         return 0;

@@ -7,7 +7,7 @@
 
 #include "arrays/views.hpp"
 #include "camera/camera.hpp"
-#include "pose/rigid_motion.hpp"
+#include "math/rigid_transform.hpp"
 
 namespace cv { namespace refract {
 
@@ -26,10 +26,10 @@ in s. Newton's method begins at the solutions for rays from the mean origin: Gru
 (@cite Haralick1994). What is found is exact; where the
 rays are far from central a solution may be missed (one in fifty behind 100 mm of tilted glass).
 @return how many of `motions` were found */
-int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidMotion (&motions)[4]);
+int posesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3], RigidTransform (&motions)[4]);
 
 //! All of them, at most eight: for callers with few samples, in ten times the time.
-std::vector<RigidMotion> allPosesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3]);
+std::vector<RigidTransform> allPosesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3]);
 
 //! False for three points on a line or in one place.
 bool isTriangle(const Vec3d (&object)[3]);
@@ -42,7 +42,7 @@ Vec3d squaredSides(const Vec3d (&object)[3]);
 bool solveDistances(const SceneRay (&rays)[3], const Vec3d& squaredSides, Vec3d& s, Vec3d (&X)[3]);
 
 //! The motion of a triangle to where its points are.
-RigidMotion motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3]);
+RigidTransform motionOfTriangle(const Vec3d (&object)[3], const Vec3d (&X)[3]);
 
 //! The rays of an image's points that have one.
 struct PointRays

@@ -82,10 +82,10 @@ void intersectReach(const SceneRay& ray, const SceneRay& other, double squaredDi
 
 } // namespace
 
-std::vector<RigidMotion> allPosesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3])
+std::vector<RigidTransform> allPosesOfThreeRays(const SceneRay (&rays)[3], const Vec3d (&object)[3])
 {
     const double SAME = 1e-7;           // of the distances
-    std::vector<RigidMotion> motions;
+    std::vector<RigidTransform> motions;
     const Vec3d D2 = squaredSides(object);
     Vec2d reach(0, DBL_MAX);
     intersectReach(rays[0], rays[1], D2[0], reach);

@@ -100,7 +100,7 @@ std::vector<Alone> lookAllAlone(const Rig& given, const RigViews& views, int fla
 //! first -> second of a target's poses.
 Pose between(const Pose& first, const Pose& second)
 {
-    const Extrinsics a(first), b(second);
+    const TransformWithDerivatives a(first), b(second);
     const Matx33d R = b.rotation.R*a.rotation.R.t();
     Pose pose;
     pose.rvec = rotationVector(R);
@@ -112,7 +112,7 @@ Pose between(const Pose& first, const Pose& second)
 //! The pose in the frame of a camera at these extrinsics.
 Pose inCamera(const Pose& inCamera1, const Pose& extrinsics)
 {
-    const Extrinsics E(extrinsics), X(inCamera1);
+    const TransformWithDerivatives E(extrinsics), X(inCamera1);
     Pose pose;
     pose.rvec = rotationVector(E.rotation.R*X.rotation.R);
     pose.tvec = E.apply(X.T);
@@ -130,7 +130,7 @@ double costAt(const Seer& seer, const Pose& extrinsics, const std::vector<Pose>&
     {
         if (!places[view].found || !seer.poses[view].found)
             continue;
-        const Extrinsics toCamera(inCamera(places[view], extrinsics));
+        const TransformWithDerivatives toCamera(inCamera(places[view], extrinsics));
         for (size_t i = 0; i < object[view].size(); i++)
         {
             const Point2d& pixel = seen.refracted[view][i];

@@ -190,12 +190,12 @@ PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std
     PixelViews direct = views.cameras[c].direct;
     if (c > 0 && (flags & GLASS_FREE_EXTRINSICS) && !seesAnything(direct))
         return direct;
-    const Extrinsics toCamera(rig.extrinsics[c]);
+    const TransformWithDerivatives toCamera(rig.extrinsics[c]);
     for (int view = 0; view < views.count(); view++)
     {
         if (!poses[view].found || !direct[view].empty())
             continue;
-        const Extrinsics toCamera1(poses[view]);
+        const TransformWithDerivatives toCamera1(poses[view]);
         for (const Point3d& point : views.object[view])
         {
             const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(point)));
@@ -212,7 +212,7 @@ PixelViews withPredicted(const Rig& rig, int c, const RigViews& views, const std
 //! Turns a direction from one camera's frame to another's.
 Matx33d rotationBetween(const Rig& rig, int from, int to)
 {
-    return Extrinsics(rig.extrinsics[to]).rotation.R*Extrinsics(rig.extrinsics[from]).rotation.R.t();
+    return TransformWithDerivatives(rig.extrinsics[to]).rotation.R*TransformWithDerivatives(rig.extrinsics[from]).rotation.R.t();
 }
 
 //! The normal that the pairs of all cameras behind the window tell best, in the owner's frame; false if none does.
@@ -288,8 +288,8 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
 WindowTransfer seenFrom(const Rig& rig, int c)
 {
     const GlassWindow window = rig.cameras[rig.owner[c]].window();
-    return WindowTransfer(window.normal, window.distance, Extrinsics(rig.extrinsics[rig.owner[c]]),
-                          Extrinsics(rig.extrinsics[c]));
+    return WindowTransfer(window.normal, window.distance, TransformWithDerivatives(rig.extrinsics[rig.owner[c]]),
+                          TransformWithDerivatives(rig.extrinsics[c]));
 }
 
 double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
@@ -305,7 +305,7 @@ double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.c
 
 GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
 {
-    const Extrinsics a(from), b(to);
+    const TransformWithDerivatives a(from), b(to);
     const WindowTransfer transfer(window.normal, window.distance, a, b);
     if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
     {
@@ -395,11 +395,11 @@ bool setNormal(Rig& rig, int owner, const Vec3d& normal)
 
 static bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses)
 {
-    const Extrinsics toCamera(rig.extrinsics[c]);
+    const TransformWithDerivatives toCamera(rig.extrinsics[c]);
     for (int view = 0; view < views.count(); view++)
     {
         const std::vector<Point2d>& pixels = views.cameras[c].refracted[view];
-        const Extrinsics toCamera1(poses[view]);
+        const TransformWithDerivatives toCamera1(poses[view]);
         for (size_t i = 0; i < pixels.size() && poses[view].found; i++)
         {
             const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(views.object[view][i])));

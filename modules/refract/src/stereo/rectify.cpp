@@ -12,7 +12,7 @@ namespace cv { namespace refract {
 namespace {
 
 //! What the caller of refractiveStereoRectify wants of the new images.
-struct Wishes
+struct RectifyOptions
 {
     Size imageSize, newImageSize;
     int flags;
@@ -131,11 +131,11 @@ double scaleTo(const Rect2d& r, double focal, const Point2d& principal, Size siz
     return covers ? *std::max_element(ratios, ratios + 4) : *std::min_element(ratios, ratios + 4);
 }
 
-NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders& borders, const Wishes& wishes)
+NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders& borders, const RectifyOptions& options)
 {
     const int row = 1 - v.axis;
-    const Size size = wishes.newImageSize;
-    const double ratio = row == 1 ? (double)size.height/wishes.imageSize.height : (double)size.width/wishes.imageSize.width;
+    const Size size = options.newImageSize;
+    const double ratio = row == 1 ? (double)size.height/options.imageSize.height : (double)size.width/options.imageSize.width;
     NewCameras result = { 0, { Point2d(), Point2d() } };
     for (const Camera* camera : { &pair.camera1, &pair.camera2 })   // straight ahead as large as in the raw images
         result.focal += 0.5*ratio*camera->cameraMatrix().at<double>(row, row)*camera->window().outerIndex/camera->window().innerIndex;
@@ -144,9 +144,9 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
         p[c] = Point2d((size.width - 1)/2., (size.height - 1)/2.) - result.focal*borders.middle[c];     // stays in the middle
     const Point2d mean = 0.5*(p[0] + p[1]);
     for (int c = 0; c < 2; c++)
-        p[c] = Point2d(v.axis == 0 && !(wishes.flags & RECTIFY_ZERO_DISPARITY) ? p[c].x : mean.x,
-                       v.axis == 1 && !(wishes.flags & RECTIFY_ZERO_DISPARITY) ? p[c].y : mean.y);
-    if (wishes.alpha >= 0)
+        p[c] = Point2d(v.axis == 0 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].x : mean.x,
+                       v.axis == 1 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].y : mean.y);
+    if (options.alpha >= 0)
     {
         double covers = 0, fits = DBL_MAX;
         for (int c = 0; c < 2; c++)
@@ -154,14 +154,14 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
             if (!borders.isComplete(c))
                 CV_Error_(Error::StsBadArg, ("alpha is %g: no point on a border of the image of camera%d can be shown by a pinhole "
                                              "camera; its lens is too wide, or imageSize %dx%d is wrong. Use a negative alpha",
-                                             wishes.alpha, c + 1, wishes.imageSize.width, wishes.imageSize.height));
+                                             options.alpha, c + 1, options.imageSize.width, options.imageSize.height));
             covers = std::max(covers, scaleTo(borders.inner(c), result.focal, p[c], size, true));
             fits = std::min(fits, scaleTo(borders.outer(c), result.focal, p[c], size, false));
         }
-        const double alpha = std::min(wishes.alpha, 1.), scale = covers*(1 - alpha) + fits*alpha;
+        const double alpha = std::min(options.alpha, 1.), scale = covers*(1 - alpha) + fits*alpha;
         if (!(scale > 0 && std::isfinite(scale)))
             CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits, as a principal point, (%g, %g) or (%g, %g), is outside "
-                                         "the images; with flags 0 each image has its own", wishes.alpha, p[0].x, p[0].y,
+                                         "the images; with flags 0 each image has its own", options.alpha, p[0].x, p[0].y,
                                          p[1].x, p[1].y));
         result.focal *= scale;
     }
@@ -238,7 +238,8 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
         CV_Error_(Error::StsBadFlag, ("flags is %d; it must be RECTIFY_ZERO_DISPARITY or 0", flags));
     if (std::isnan(alpha))
         CV_Error(Error::StsBadArg, "alpha is nan; it must be a number");
-    const Wishes wishes = { imageSize, newImageSize == Size() ? imageSize : checkedSize(newImageSize, "newImageSize"), flags, alpha };
+    const RectifyOptions options = { imageSize, newImageSize == Size() ? imageSize : checkedSize(newImageSize, "newImageSize"), flags,
+                                     alpha };
     const RowSamples samples(pair, imageSize, range);
     const double depth = 2/(1/range[0] + 1/range[1]);     // the middle of the disparities
     const VirtualPair v(pair, bestVirtualCentres(pair, samples, depth));
@@ -254,7 +255,7 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
     else
     {
         const NewBorders borders(pair, v, imageSize, depth);
-        const NewCameras cameras = place(pair, v, borders, wishes);
+        const NewCameras cameras = place(pair, v, borders, options);
         focal = cameras.focal;
         Mat(v.R1).copyTo(R1);
         Mat(v.R2).copyTo(R2);
@@ -265,7 +266,7 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
         Rect* const rois[] = { validPixROI1, validPixROI2 };
         for (int c = 0; c < 2; c++)
             if (rois[c])
-                *rois[c] = borders.isComplete(c) ? validPixels(borders.inner(c), focal, cameras.principal[c], wishes.newImageSize)
+                *rois[c] = borders.isComplete(c) ? validPixels(borders.inner(c), focal, cameras.principal[c], options.newImageSize)
                                                  : Rect();
     }
     return sizeOf(samples.differences(v, depth), focal);

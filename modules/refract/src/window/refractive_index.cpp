@@ -136,8 +136,8 @@ double refractiveIndex(const String& material, double wavelengthNm)
     const NamedMaterial named = readMaterial(material);
     const Material& m = *named.material;
     if (!(wavelengthNm >= m.shortest && wavelengthNm <= m.longest))
-        CV_Error_(Error::StsOutOfRange, ("wavelengthNm is %g; the index of %s is known from %g to %g nm", wavelengthNm, m.name,
-                                         m.shortest, m.longest));
+        CV_Error_(Error::StsOutOfRange, ("the index of %s is known from %g to %g nm; wavelengthNm is %g", m.name, m.shortest,
+                                         m.longest, wavelengthNm));
     return m.index(wavelengthNm/1000., named.values);
 }
 
