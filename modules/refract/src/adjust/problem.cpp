@@ -321,7 +321,7 @@ FitOutcome Problem::findPointWithoutImage() const
         outcome.camera = image.camera;
         if (!cameras_[image.camera].camera(image.refracted))
         {
-            const SharedWindow* window = cameras_[image.camera].window.get();
+            const TransferredWindow* window = cameras_[image.camera].window.get();
             CV_Assert(window);
             const WindowLayout& at = cameras_[image.camera].at();
             const double* const normal = &window->parameters[at.normal];
@@ -486,7 +486,7 @@ void Problem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
 {
     const int owner = rig_.owner[camera], row = publicRow(ParameterBlock::NORMAL, camera);
     const int ownerRow = publicRow(ParameterBlock::NORMAL, owner);
-    const SharedWindow& window = *cameras_[camera].window;
+    const TransferredWindow& window = *cameras_[camera].window;
     const int count = rig_.cameras[camera].layers().at().count;
     Eigen::MatrixXd rows = window.byWindow*basis.middleRows(ownerRow, count);
     if (camera > 0)

@@ -24,7 +24,8 @@ void RigCamera::set(const Parameters& parameters)
     extrinsics = TransformWithDerivatives(parameters.extrinsics);
     window.reset();
     if (!parameters.ownsWindow)
-        window.reset(new SharedWindow(at(), ofOwner(parameters).data(), TransformWithDerivatives(parameters.ownerExtrinsics), extrinsics));
+        window.reset(new TransferredWindow(at(), ofOwner(parameters).data(),
+                                           TransformWithDerivatives(parameters.ownerExtrinsics), extrinsics));
     // A trial step may leave the domain of the focal lengths, or of the window.
     isLensPossible_ = parameters.lens[0] > 0 && parameters.lens[1] > 0;
     isWindowPossible_ = isLensPossible_ && setWindow(parameters);

@@ -5,7 +5,7 @@
 #ifndef OPENCV_REFRACT_RIG_CAMERA_HPP
 #define OPENCV_REFRACT_RIG_CAMERA_HPP
 
-#include "adjust/shared_window.hpp"
+#include "adjust/transferred_window.hpp"
 #include "camera/camera.hpp"
 
 namespace cv { namespace refract {
@@ -41,7 +41,7 @@ public:
     const Camera* camera(bool refracted) const;
 
     TransformWithDerivatives extrinsics;
-    std::unique_ptr<SharedWindow> window;       //!< null if it is the camera's own
+    std::unique_ptr<TransferredWindow> window;       //!< null if it is the camera's own
 
 private:
     std::vector<double> ofOwner(const Parameters& parameters) const;

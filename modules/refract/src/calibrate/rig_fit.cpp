@@ -6,9 +6,10 @@
 #include "adjust/covariance.hpp"
 #include "adjust/robust_fit.hpp"
 #include "arrays/arrays.hpp"
+#include "start/incremental_start.hpp"
 #include "start/pose_start.hpp"
 #include "start/sealed_start.hpp"
-#include "start/staged_start.hpp"
+#include "start/window_start.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
@@ -117,7 +118,7 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
     if (task.isIncremental())
     {
         minima.assign(rig.count(), OtherMinimum());
-        start = stagedStart(rig, task.views, task.flags, minima);
+        start = incrementalStart(rig, task.views, task.flags, minima);
         return checkPoses(task.views, start.poses);
     }
     const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;

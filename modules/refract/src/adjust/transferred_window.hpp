@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_SHARED_WINDOW_HPP
-#define OPENCV_REFRACT_SHARED_WINDOW_HPP
+#ifndef OPENCV_REFRACT_TRANSFERRED_WINDOW_HPP
+#define OPENCV_REFRACT_TRANSFERRED_WINDOW_HPP
 
 #include "adjust/window_transfer.hpp"
 #include "window/layout.hpp"
@@ -13,10 +13,10 @@ namespace cv { namespace refract {
 /** A window that is described in the frame of its owner, as another camera sees it, with derivatives. Between parallel faces only
 the normal and the distance depend on the frame; with a wedge the thickness (along the normal through the centre of projection) and
 the wedge's axes do, too. */
-struct SharedWindow
+struct TransferredWindow
 {
     //! @param ofOwner the window's parameters in the order of the layout
-    SharedWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+    TransferredWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
                  const TransformWithDerivatives& camera);
 
     std::vector<double> parameters;         //!< in the frame of the camera; what is impossible is not refused here
@@ -30,4 +30,4 @@ private:
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_SHARED_WINDOW_HPP
+#endif // OPENCV_REFRACT_TRANSFERRED_WINDOW_HPP

@@ -4,7 +4,7 @@
 
 /* With a wedge the transfer is differentiated automatically, one parameter at a time: it happens once a camera and step. */
 
-#include "adjust/shared_window.hpp"
+#include "adjust/transferred_window.hpp"
 #include <ceres/jet.h>
 
 namespace cv { namespace refract {
@@ -86,7 +86,7 @@ void transfer(const WindowLayout& at, const std::vector<Jet>& window, const JetC
 
 } // namespace
 
-SharedWindow::SharedWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+TransferredWindow::TransferredWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
                            const TransformWithDerivatives& camera)
     : parameters(ofOwner, ofOwner + at.count), byWindow(Eigen::MatrixXd::Identity(at.count, at.count))
 {
@@ -102,7 +102,7 @@ SharedWindow::SharedWindow(const WindowLayout& at, const double* ofOwner, const 
         addWedge(at, ofOwner, owner, camera);
 }
 
-void SharedWindow::addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+void TransferredWindow::addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
                             const TransformWithDerivatives& camera)
 {
     for (int varied = 0; varied < at.count + 12; varied++)

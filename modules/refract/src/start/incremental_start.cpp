@@ -1,0 +1,233 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Each camera alone, pairs, all: a camera alone has few parameters, of which many starts can be tried, and with a window of its
+own and one view it is all that there is to find, as the places of the cameras follow from its pose. */
+
+#include "start/incremental_start.hpp"
+#include "adjust/covariance.hpp"
+#include "start/rig_assembly.hpp"
+#include "start/sealed_start.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+const Stage ANY_PLAUSIBLE = { ALL_VIEWS, COARSE, SIZE_MAX, SAME_ANGLE, PLAUSIBLE }, LAST = { ALL_VIEWS, FINE };
+const size_t MAX_SOURCES = 3;       // of so many cameras behind a window theirs is tried for all
+
+//! What a camera tells alone.
+struct CameraMinima
+{
+    std::vector<CameraHypothesis> minima;   //!< the best first; at least one
+    double distanceSigma;                   //!< of the best, relative, for a pixel's of 1; infinite if it has none
+};
+
+//! What one camera saw well enough to have a pose, or what some did.
+RigViews viewsOf(const RigViews& views, const std::vector<int>& cameras)
+{
+    RigViews picked;
+    picked.object = views.object;
+    for (int c : cameras)
+    {
+        picked.cameras.push_back(views.cameras[c]);
+        for (std::vector<Point2d>& pixels : picked.cameras.back().refracted)
+            if (countSeen(pixels) < 4)
+                pixels.clear();
+    }
+    return picked;
+}
+
+bool refracts(const Camera& camera) { return camera.window().innerIndex != camera.window().outerIndex; }
+
+double relativeDistanceSigma(const CameraHypothesis& hypothesis, const RigViews& views, int flags)
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    const Rig rig = { { hypothesis.camera }, { 0 }, { Pose() } };
+    const Problem problem(rig, views, hypothesis.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
+    Covariance covariance;
+    if (!problem.findPointWithoutImage().converged() || !covariance.compute(problem, 1, 0).converged())
+        return infinity;        // nothing else is known of it
+    const int row = hypothesis.camera.lensCount() + hypothesis.camera.layers().at().distance;
+    return std::sqrt(covariance.ofParameters(row, row))/std::max(hypothesis.camera.window().distance, DBL_MIN);
+}
+
+CameraHypothesis placedCamera(const Camera& camera, const RigViews& views)
+{
+    const Rig rig = { { camera }, { 0 }, { Pose() } };
+    CameraHypothesis hypothesis = { camera, std::vector<Pose>(views.count()) };
+    addPosesThroughWindow(rig, views, hypothesis.poses);
+    return hypothesis;
+}
+
+CameraMinima fitSingleCamera(const Rig& given, int c, const RigViews& all, int flags)
+{
+    const RigViews views = viewsOf(all, { c });
+    const CameraHypothesis start = placedCamera(given.cameras[c], views);
+    const Rig rig = { { start.camera }, { 0 }, { Pose() } };
+    RigStart from = { rig, start.poses };
+    addPosesIgnoringWindow(rig, views, from.poses);
+    if (!given.owns(c) && refracts(given.cameras[c]))
+        flags |= GLASS_FREE_DISTANCE;       // what is given is that of another camera
+    CameraMinima alone = { std::vector<CameraHypothesis>(), std::numeric_limits<double>::infinity() };
+    const std::vector<Minimum> minima = keptMinima(sealedMinima(from, views, flags), ANY_PLAUSIBLE);
+    for (const Minimum& minimum : minima)
+        alone.minima.push_back(placedCamera(minimum.rig.cameras[0], views));
+    if (minima.empty())
+        alone.minima.push_back(start);
+    else
+        alone.distanceSigma = relativeDistanceSigma(alone.minima[0], views, flags);
+    return alone;
+}
+
+std::vector<CameraMinima> fitSingleCameras(const Rig& given, const RigViews& views, int flags)
+{
+    std::vector<CameraMinima> alone(given.count());
+    parallel_for_(Range(0, given.count()), [&](const Range& range)
+    {
+        for (int c = range.start; c < range.end; c++)
+            alone[c] = fitSingleCamera(given, c, views, flags);
+    });
+    return alone;
+}
+
+std::vector<CameraHypothesis> bestOfEach(const std::vector<CameraMinima>& alone)
+{
+    std::vector<CameraHypothesis> best;
+    for (const CameraMinima& camera : alone)
+        best.push_back(camera.minima[0]);
+    return best;
+}
+
+//! Nothing where some camera would look away from its window.
+void addAssembled(const Rig& given, const std::vector<CameraHypothesis>& cameras, const std::vector<int>& windowFrom,
+                  const RigViews& views, int flags, std::vector<RigStart>& starts)
+{
+    RigStart start;
+    if (assemble(given, cameras, windowFrom, views, flags, start))
+        starts.push_back(start);
+}
+
+//! The second of two cameras, fitted behind the window of the first.
+CameraHypothesis fitPairBehindWindow(const Rig& given, const std::vector<CameraHypothesis>& cameras, int first, int second,
+                                     const RigViews& all, int flags)
+{
+    const Rig pair = { { given.cameras[first], given.cameras[second] }, { 0, 0 }, { Pose(), given.extrinsics[second] } };
+    const std::vector<CameraHypothesis> both = { cameras[first], cameras[second] };
+    const RigViews views = viewsOf(all, { first, second });
+    flags |= refracts(given.cameras[first]) ? GLASS_FREE_DISTANCE : 0;
+    std::vector<RigStart> starts;
+    for (int from : { 0, 1 })
+        addAssembled(pair, both, { from, from }, views, flags, starts);
+    const std::vector<Minimum> minima = multiStart(starts, { ANY_PLAUSIBLE }, views, flags);
+    return minima.empty() ? cameras[second] : camerasOf(minima[0], both)[1];
+}
+
+//! Cameras behind the window of one of them.
+struct SharedWindow
+{
+    std::vector<int> members;       //!< the one that tells most of it first
+};
+
+std::vector<SharedWindow> sharedWindowsOf(const Rig& given, const std::vector<CameraMinima>& alone)
+{
+    std::vector<SharedWindow> windows;
+    for (int owner = 0; owner < given.count(); owner++)
+    {
+        if (!given.owns(owner))
+            continue;
+        SharedWindow window;
+        for (int c = owner; c < given.count(); c++)
+            if (given.owner[c] == owner)
+                window.members.push_back(c);
+        std::stable_sort(window.members.begin(), window.members.end(), [&](int a, int b)
+                         { return alone[a].distanceSigma < alone[b].distanceSigma; });
+        windows.push_back(window);
+    }
+    return windows;
+}
+
+//! All cameras behind the windows of those that tell so much of them: 0, the most.
+void addBehind(size_t rank, const Rig& given, const std::vector<SharedWindow>& windows, const std::vector<CameraHypothesis>& alone,
+               const RigViews& views, int flags, std::vector<RigStart>& starts)
+{
+    std::vector<CameraHypothesis> cameras = alone;
+    std::vector<int> windowFrom = given.owner;
+    for (const SharedWindow& window : windows)
+        for (int c : window.members)
+            windowFrom[c] = window.members[std::min(rank, window.members.size() - 1)];
+    parallel_for_(Range(0, given.count()), [&](const Range& range)
+    {
+        for (int c = range.start; c < range.end; c++)
+            if (windowFrom[c] != c)
+                cameras[c] = fitPairBehindWindow(given, alone, windowFrom[c], c, views, flags);
+    });
+    addAssembled(given, cameras, windowFrom, views, flags, starts);
+}
+
+//! All cameras as they are alone, behind the window of one of those that tell most of it.
+std::vector<RigStart> assembledStarts(const Rig& given, const std::vector<CameraMinima>& alone, const RigViews& views, int flags)
+{
+    const std::vector<SharedWindow> windows = sharedWindowsOf(given, alone);
+    size_t sources = 1;
+    for (const SharedWindow& window : windows)
+        sources = std::max(sources, std::min(window.members.size(), MAX_SOURCES));
+    std::vector<RigStart> starts;
+    for (size_t rank = 0; rank < sources; rank++)
+        addBehind(rank, given, windows, bestOfEach(alone), views, flags, starts);
+    return starts;
+}
+
+//! Another camera that looks through the same window; -1: there is none.
+int otherBehind(const Rig& given, int camera)
+{
+    for (int c = 0; c < given.count(); c++)
+        if (c != camera && given.owner[c] == given.owner[camera])
+            return c;
+    return -1;
+}
+
+//! The rig with one camera after the other in its other minima.
+std::vector<RigStart> swapped(const Minimum& best, const Rig& given, const std::vector<CameraMinima>& alone, const RigViews& views,
+                              int flags)
+{
+    const std::vector<CameraHypothesis> cameras = camerasOf(best, bestOfEach(alone));
+    std::vector<RigStart> starts;
+    for (int c = 0; c < given.count(); c++)
+        for (size_t i = 1; i < alone[c].minima.size(); i++)
+        {
+            std::vector<CameraHypothesis> others = cameras;
+            others[c] = alone[c].minima[i];
+            std::vector<int> windowFrom = given.owner;
+            const int other = otherBehind(given, c);
+            if (other >= 0)
+            {
+                others[c] = fitPairBehindWindow(given, others, other, c, views, flags);
+                windowFrom[given.owner[c]] = other;
+            }
+            addAssembled(given, others, windowFrom, views, flags, starts);
+        }
+    return starts;
+}
+
+} // namespace
+
+RigStart incrementalStart(const Rig& given, const RigViews& views, int flags, std::vector<OtherMinimum>& others)
+{
+    const std::vector<CameraMinima> alone = fitSingleCameras(given, views, flags);
+    std::vector<Minimum> minima = multiStart(assembledStarts(given, alone, views, flags), { ANY_PLAUSIBLE, LAST }, views, flags);
+    if (minima.empty() || !std::isfinite(minima[0].cost))
+    {
+        RigStart start;
+        assemble(given, bestOfEach(alone), given.owner, views, flags, start);
+        return start;
+    }
+    minima = hillClimb(minima, [&](const Minimum& best) { return swapped(best, given, alone, views, flags); }, views, flags);
+    if (given.count() == 2)
+        minima = hillClimb(minima, [&](const Minimum& best) { return mirrored(best.rig, given, flags); }, views, flags);
+    describeOther(minima, others);
+    return minima[0];
+}
+
+}} // namespace

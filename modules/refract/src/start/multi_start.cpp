@@ -1,0 +1,172 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* The search for the minimum of a calibration that has several. */
+
+#include "start/multi_start.hpp"
+#include "adjust/minimize.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! So many of the views, evenly.
+RigViews someViews(const RigViews& views, int atMost)
+{
+    const int count = std::min(atMost, views.count());
+    std::vector<int> some;
+    for (int i = 0; i < count; i++)
+        some.push_back(i*views.count()/count);
+    return pick(views, some);
+}
+
+//! Whether every view of which something was seen has a pose.
+bool isPlaced(const RigViews& views, const std::vector<Pose>& poses)
+{
+    for (int view = 0; view < views.count(); view++)
+        for (const CameraViews& camera : views.cameras)
+            if (!poses[view].found && countSeen(camera.direct[view]) + countSeen(camera.refracted[view]) > 0)
+                return false;
+    return true;
+}
+
+Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria& criteria, int flags)
+{
+    Minimum minimum;
+    minimum.rig = start.rig;
+    minimum.start = start;
+    minimum.poses = start.poses;
+    if ((int)start.poses.size() != views.count())
+    {
+        minimum.poses.assign(views.count(), Pose());
+        addPosesThroughWindow(start.rig, views, minimum.poses);
+    }
+    if (!isPlaced(views, minimum.poses))
+        return minimum;
+    Problem problem(start.rig, views, minimum.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
+    const FitOutcome outcome = minimize(problem, criteria);
+    const double cost = outcome.isUsable() ? problem.squaredError() : minimum.cost;
+    if (!std::isfinite(cost))       // it is sorted by
+        return minimum;
+    minimum.rig = problem.rig();
+    for (int view = 0; view < views.count(); view++)
+        minimum.poses[view] = problem.pose(view);
+    minimum.cost = cost;
+    minimum.freedom = problem.freedom();
+    minimum.converged = outcome.converged();
+    return minimum;
+}
+
+void addFits(const std::vector<RigStart>& starts, const RigViews& views, const TermCriteria& criteria, int flags,
+             std::vector<Minimum>& minima)
+{
+    for (const RigStart& start : starts)
+        minima.push_back(fitFrom(start, views, criteria, flags));
+    std::stable_sort(minima.begin(), minima.end());
+}
+
+double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
+
+bool isSameWindow(const Rig& a, const Rig& b, int c, double angle)
+{
+    const double SAME_DISTANCE = 0.05;      // part of it
+    const double distance = a.cameras[c].window().distance;
+    return angleBetween(a.cameras[c].layers().normal(), b.cameras[c].layers().normal()) <= angle &&
+           std::abs(distance - b.cameras[c].window().distance) <= SAME_DISTANCE*distance;
+}
+
+bool isSameMinimum(const Minimum& a, const Minimum& b, double angle)
+{
+    for (int c = 0; c < a.rig.count(); c++)
+        if (!isSameWindow(a.rig, b.rig, c, angle))
+            return false;
+    return true;
+}
+
+//! In standard deviations of a pixel.
+double excessOver(const Minimum& best, const Minimum& other)
+{
+    return std::sqrt((other.cost - best.cost)*best.freedom/std::max(best.cost, DBL_MIN));
+}
+
+bool isFirstBehind(const Rig& rig, int c)
+{
+    return std::find(rig.owner.begin(), rig.owner.end(), rig.owner[c]) == rig.owner.begin() + c;
+}
+
+} // namespace
+
+RigViews pick(const RigViews& views, const std::vector<int>& which)
+{
+    RigViews picked;
+    picked.cameras.resize(views.cameras.size());
+    for (int view : which)
+    {
+        picked.object.push_back(views.object[view]);
+        for (size_t c = 0; c < views.cameras.size(); c++)
+        {
+            picked.cameras[c].direct.push_back(views.cameras[c].direct[view]);
+            picked.cameras[c].refracted.push_back(views.cameras[c].refracted[view]);
+        }
+    }
+    return picked;
+}
+
+std::vector<Minimum> keptMinima(const std::vector<Minimum>& sorted, const Stage& stage)
+{
+    std::vector<Minimum> kept;
+    for (const Minimum& minimum : sorted)
+    {
+        const auto isSame = [&](const Minimum& other) { return isSameMinimum(other, minimum, stage.sameAngle); };
+        const bool isPlausible = std::isinf(stage.maxExcess) || excessOver(sorted[0], minimum) < stage.maxExcess;
+        if (kept.size() < stage.keep && isPlausible && std::none_of(kept.begin(), kept.end(), isSame))
+            kept.push_back(minimum);
+    }
+    return kept;
+}
+
+std::vector<Minimum> multiStart(std::vector<RigStart> hypotheses, const std::vector<Stage>& stages, const RigViews& views, int flags)
+{
+    std::vector<Minimum> minima;
+    for (const Stage& stage : stages)
+    {
+        minima.clear();
+        addFits(hypotheses, someViews(views, stage.views), stage.criteria, flags, minima);
+        minima = keptMinima(minima, stage);
+        hypotheses.assign(minima.begin(), minima.end());
+    }
+    return minima;
+}
+
+std::vector<Minimum> hillClimb(std::vector<Minimum> minima, const Neighbours& neighbours, const RigViews& views, int flags)
+{
+    const double BETTER = 1e-6;
+    const int ROUNDS = 10;      // perfect data have ever smaller rounding errors
+    double before = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < ROUNDS && minima[0].cost < (1 - BETTER)*before; round++)
+    {
+        before = minima[0].cost;
+        addFits(neighbours(minima[0]), views, FINE, flags, minima);
+    }
+    return minima;
+}
+
+void describeOther(const std::vector<Minimum>& sorted, std::vector<OtherMinimum>& others)
+{
+    for (const Minimum& minimum : sorted)
+    {
+        if (!minimum.converged || minimum.freedom <= 0 || isSameMinimum(sorted[0], minimum, SAME_ANGLE))
+            continue;
+        for (int c = 0; c < minimum.rig.count(); c++)
+            if (isFirstBehind(minimum.rig, c) && !isSameWindow(sorted[0].rig, minimum.rig, c, SAME_ANGLE))
+            {
+                others[c].normal = minimum.rig.cameras[c].layers().normal();
+                others[c].distance = minimum.rig.cameras[c].window().distance;
+                others[c].excess = excessOver(sorted[0], minimum);
+            }
+        return;
+    }
+}
+
+}} // namespace

@@ -1,0 +1,146 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Cameras that each know where the targets are in their own frame become a rig: views in common tell where they are. */
+
+#include "start/rig_assembly.hpp"
+#include "start/shared_window.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! first -> second of a target's poses.
+Pose between(const Pose& first, const Pose& second)
+{
+    const TransformWithDerivatives a(first), b(second);
+    const Matx33d R = b.rotation.R*a.rotation.R.t();
+    Pose pose;
+    pose.rvec = rotationVector(R);
+    pose.tvec = b.T - R*a.T;
+    pose.found = true;
+    return pose;
+}
+
+//! The pose in the frame of a camera at these extrinsics.
+Pose inCamera(const Pose& inCamera1, const Pose& extrinsics)
+{
+    const TransformWithDerivatives E(extrinsics), X(inCamera1);
+    Pose pose;
+    pose.rvec = rotationVector(E.rotation.R*X.rotation.R);
+    pose.tvec = E.apply(X.T);
+    pose.found = inCamera1.found;
+    return pose;
+}
+
+//! Sum of squared pixels of all views that the camera saw and that have a place, with the camera at these extrinsics.
+double costAt(const CameraHypothesis& hypothesis, const Pose& extrinsics, const std::vector<Pose>& places, const CameraViews& seen,
+              const std::vector<std::vector<Point3d> >& object)
+{
+    const double OUT_OF_SIGHT = 1e6;
+    double cost = 0;
+    for (size_t view = 0; view < places.size(); view++)
+    {
+        if (!places[view].found || !hypothesis.poses[view].found)
+            continue;
+        const TransformWithDerivatives toCamera(inCamera(places[view], extrinsics));
+        for (size_t i = 0; i < object[view].size(); i++)
+        {
+            const Point2d& pixel = seen.refracted[view][i];
+            if (std::isnan(pixel.x))
+                continue;
+            const Vec3d X = toCamera.apply(Vec3d(object[view][i]));
+            double u = 0, v = 0;
+            uchar status = REFRACT_OK;
+            hypothesis.camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+            cost += status == REFRACT_OK ? std::min(norm(Point2d(u, v) - pixel), OUT_OF_SIGHT) : OUT_OF_SIGHT;
+        }
+    }
+    return cost;
+}
+
+//! Where a camera is, by the view that tells it best for all that have a place; not found if it saw none of them.
+Pose placeOf(const CameraHypothesis& hypothesis, const std::vector<Pose>& places, const CameraViews& seen,
+             const std::vector<std::vector<Point3d> >& object)
+{
+    Pose best;
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t view = 0; view < places.size(); view++)
+    {
+        if (!places[view].found || !hypothesis.poses[view].found)
+            continue;
+        const Pose extrinsics = between(places[view], hypothesis.poses[view]);
+        const double cost = costAt(hypothesis, extrinsics, places, seen, object);
+        if (cost < least)
+        {
+            least = cost;
+            best = extrinsics;
+        }
+    }
+    return best;
+}
+
+//! Places the cameras one after the other, by views in common with those before; those without stay where they are.
+void placeCameras(const std::vector<CameraHypothesis>& cameras, const RigViews& views, RigStart& start)
+{
+    std::vector<bool> isPlaced(cameras.size(), false);
+    start.poses = cameras[0].poses;
+    isPlaced[0] = true;
+    for (bool changed = true; changed; )
+    {
+        changed = false;
+        for (size_t c = 1; c < cameras.size(); c++)
+        {
+            const Pose place = isPlaced[c] ? Pose() : placeOf(cameras[c], start.poses, views.cameras[c], views.object);
+            if (!place.found)
+                continue;
+            start.rig.extrinsics[c] = place;
+            isPlaced[c] = changed = true;
+            for (int view = 0; view < views.count(); view++)
+                if (!start.poses[view].found && cameras[c].poses[view].found)
+                    start.poses[view] = inCamera1(cameras[c].poses[view], place);
+        }
+    }
+}
+
+} // namespace
+
+std::vector<CameraHypothesis> camerasOf(const Minimum& minimum, const std::vector<CameraHypothesis>& before)
+{
+    std::vector<CameraHypothesis> cameras = before;
+    for (int c = 0; c < minimum.rig.count(); c++)
+    {
+        cameras[c].camera = minimum.rig.cameras[c];
+        for (size_t view = 0; view < cameras[c].poses.size(); view++)
+            if (cameras[c].poses[view].found)
+                cameras[c].poses[view] = inCamera(minimum.poses[view], minimum.rig.extrinsics[c]);
+    }
+    return cameras;
+}
+
+bool assemble(const Rig& given, const std::vector<CameraHypothesis>& cameras, const std::vector<int>& windowFrom,
+              const RigViews& views, int flags, RigStart& start)
+{
+    start = { given, std::vector<Pose>() };
+    placeCameras(cameras, views, start);
+    for (int c = 0; c < given.count(); c++)
+        start.rig.cameras[c] = cameras[c].camera;
+    for (int c = 0; c < given.count(); c++)
+    {
+        const int from = windowFrom[c];
+        if (!given.owns(c))
+            continue;
+        GlassWindow window = transferred(cameras[from].camera.window(), start.rig.extrinsics[from], start.rig.extrinsics[c]);
+        if (!(window.normal[2] > 0))
+            return false;
+        if (!(flags & GLASS_FREE_DISTANCE))
+            window.distance = given.cameras[c].window().distance;
+        start.rig.cameras[c].setWindow(window);
+    }
+    if (flags & GLASS_FREE_DISTANCE)
+        giveToNearest(start.rig);
+    return transferToOthers(start.rig).converged();
+}
+
+}} // namespace

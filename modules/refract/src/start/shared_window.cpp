@@ -1,0 +1,117 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Windows of a rig: one camera owns each, the others see it from where they are. */
+
+#include "start/shared_window.hpp"
+#include "window/wedge.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! The window of an owner as another camera sees it; the distance is negative beyond it.
+WindowTransfer seenFrom(const Rig& rig, int c)
+{
+    const GlassWindow window = rig.cameras[rig.owner[c]].window();
+    return WindowTransfer(window.normal, window.distance, TransformWithDerivatives(rig.extrinsics[rig.owner[c]]),
+                          TransformWithDerivatives(rig.extrinsics[c]));
+}
+
+double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
+
+} // namespace
+
+GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
+{
+    const TransformWithDerivatives a(from), b(to);
+    const WindowTransfer transfer(window.normal, window.distance, a, b);
+    if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
+    {
+        const Matx33d R = b.rotation.R*a.rotation.R.t();
+        const std::vector<double> given = window.thickness;
+        window = windowInFrame(window, R, b.T - R*a.T);
+        for (size_t i = 0; i < given.size(); i++)       // the fit refuses faces that meet before the camera
+            window.thickness[i] = std::max(window.thickness[i], 1e-3*given[i]);
+    }
+    window.normal = transfer.normal;
+    window.distance = std::max(transfer.distance, 0.);      // the fit refuses a window that is behind the camera
+    return window;
+}
+
+FitOutcome transferToOthers(Rig& rig)
+{
+    for (int c = 0; c < rig.count(); c++)
+    {
+        if (rig.owns(c))
+            continue;
+        const GlassWindow window = transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]], rig.extrinsics[c]);
+        if (!(window.normal[2] > 0))
+        {
+            FitOutcome outcome(FitOutcome::LOOKS_AWAY);
+            outcome.camera = c;
+            outcome.point = Point3d(window.normal);
+            return outcome;
+        }
+        rig.cameras[c].setWindow(window);
+    }
+    return FitOutcome();
+}
+
+void giveToNearest(Rig& rig)
+{
+    const std::vector<int> given = rig.owner;
+    for (int owner = 0; owner < rig.count(); owner++)
+    {
+        if (given[owner] != owner)
+            continue;
+        int nearest = owner;
+        for (int c = owner + 1; c < rig.count(); c++)
+            if (given[c] == owner && seenFrom(rig, c).normal[2] > 0 && distanceFrom(rig, c) < distanceFrom(rig, nearest))
+                nearest = c;
+        if (nearest == owner)
+            continue;
+        const double least = distanceFrom(rig, nearest);
+        GlassWindow window = rig.cameras[owner].window();
+        if (least < 0)
+            window.distance += window.distance - least;     // the nearest is where the first was thought to be
+        rig.cameras[nearest].setWindow(transferred(window, rig.extrinsics[owner], rig.extrinsics[nearest]));
+        for (int c = 0; c < rig.count(); c++)
+            if (given[c] == owner)
+                rig.owner[c] = nearest;
+    }
+}
+
+bool setDistances(Rig& rig, double distance)
+{
+    for (int c = 0; c < rig.count(); c++)
+        if (rig.owns(c))
+        {
+            GlassWindow window = rig.cameras[c].window();
+            window.distance = distance;
+            rig.cameras[c].setWindow(window);
+        }
+    return transferToOthers(rig).converged();
+}
+
+bool setNormal(Rig& rig, int owner, const Vec3d& normal)
+{
+    GlassWindow window = rig.cameras[owner].window();
+    window.normal = normal;
+    rig.cameras[owner].setWindow(window);
+    return transferToOthers(rig).converged();
+}
+
+std::vector<Vec3d> ringOfNormals(double tilt, int count, double first)
+{
+    std::vector<Vec3d> normals;
+    for (int i = 0; i < count; i++)
+    {
+        const double azimuth = (i + first)*2*CV_PI/count;
+        normals.push_back(Vec3d(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt)));
+    }
+    return normals;
+}
+
+}} // namespace
