@@ -68,18 +68,20 @@ void addFits(const std::vector<RigStart>& starts, const RigViews& views, const T
 
 double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
 
-bool isSameWindow(const Rig& a, const Rig& b, int c, double angle)
+bool isSameWindow(const Minimum& a, const Minimum& b, int c, double angle)
 {
-    const double SAME_DISTANCE = 0.05;      // part of it
-    const double distance = a.cameras[c].window().distance;
-    return angleBetween(a.cameras[c].layers().normal(), b.cameras[c].layers().normal()) <= angle &&
-           std::abs(distance - b.cameras[c].window().distance) <= SAME_DISTANCE*distance;
+    const double SAME_DISTANCE = 0.05;      // part of the distance
+    const double NEAREST = 0.02;            // part of the range: of a window that ends on the camera, 5 % are nothing
+    const Camera &first = a.rig.cameras[c], &second = b.rig.cameras[c];
+    const double distance = first.window().distance;
+    return angleBetween(first.layers().normal(), second.layers().normal()) <= angle &&
+           std::abs(distance - second.window().distance) <= SAME_DISTANCE*std::max(distance, NEAREST*meanRange(a.poses));
 }
 
 bool isSameMinimum(const Minimum& a, const Minimum& b, double angle)
 {
     for (int c = 0; c < a.rig.count(); c++)
-        if (!isSameWindow(a.rig, b.rig, c, angle))
+        if (!isSameWindow(a, b, c, angle))
             return false;
     return true;
 }
@@ -159,7 +161,7 @@ void describeOther(const std::vector<Minimum>& sorted, std::vector<OtherMinimum>
         if (!minimum.converged || minimum.freedom <= 0 || isSameMinimum(sorted[0], minimum, SAME_ANGLE))
             continue;
         for (int c = 0; c < minimum.rig.count(); c++)
-            if (isFirstBehind(minimum.rig, c) && !isSameWindow(sorted[0].rig, minimum.rig, c, SAME_ANGLE))
+            if (isFirstBehind(minimum.rig, c) && !isSameWindow(sorted[0], minimum, c, SAME_ANGLE))
             {
                 others[c].normal = minimum.rig.cameras[c].layers().normal();
                 others[c].distance = minimum.rig.cameras[c].window().distance;

@@ -81,6 +81,19 @@ void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<P
             poses[view] = poseOfView(bare, rig, views, view, false);
 }
 
+double meanRange(const std::vector<Pose>& poses)
+{
+    double sum = 0;
+    int count = 0;
+    for (const Pose& pose : poses)
+        if (pose.found)
+        {
+            sum += norm(pose.tvec);
+            count++;
+        }
+    return sum/count;
+}
+
 FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses)
 {
     FitOutcome outcome;

@@ -26,6 +26,9 @@ void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Po
 //! The poses that are left, as if there were no window: to know roughly how far a target is where a window's start hides it.
 void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses);
 
+//! Mean distance of the targets; NaN if no pose was found.
+double meanRange(const std::vector<Pose>& poses);
+
 //! NO_POSE if a view that has points has none.
 FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses);
 

@@ -18,20 +18,6 @@ const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
 const double TILT = 0.25;       // radians
 const int AZIMUTHS = 4;
 
-//! Mean distance of the targets.
-double rangeOf(const RigStart& start)
-{
-    double sum = 0;
-    int count = 0;
-    for (const Pose& pose : start.poses)
-        if (pose.found)
-        {
-            sum += norm(pose.tvec);
-            count++;
-        }
-    return sum/count;
-}
-
 /** A lens that was calibrated through the window as if there were none has taken up the medium beyond: its focal length is
 longer by the ratio of the indices, its distortion and principal point say more of the window than of the lens. */
 Rig withoutMedium(Rig rig, int flags)
@@ -65,7 +51,7 @@ std::vector<RigStart> untilted(const RigStart& given, int flags)
         for (double part : PARTS_OF_RANGE)
         {
             RigStart start = starts[lens];
-            if (setDistances(start.rig, part*rangeOf(given)))
+            if (setDistances(start.rig, part*meanRange(given.poses)))
                 starts.push_back(start);
         }
     return starts;
