@@ -243,13 +243,13 @@ static double targetRadius(const RigData& data)
 static Vec3d meanPosition(const RigData& data, const RigModel& rig)
 {
     const Ptr<RefractiveCamera> bare = copyWithWindow(rig.cameras[0], GlassWindow());
-    Vec3d sum, t;
+    Vec3d sum;
     int count = 0;
-    Matx33d R;
+    RigidTransform pose;
     for (const View& view : data.views)
-        if (solveView(view, bare, view.direct[0], R, t))
+        if (solveView(view, bare, view.direct[0], pose))
         {
-            sum += t;
+            sum += pose.T;
             count++;
         }
     return count ? sum*(1./count) : Vec3d();
