@@ -16,8 +16,8 @@ Mat run(RigCall& call, const Mat& covariance, int flags)
 {
     Mat errors;
     calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima, flags,
-                      noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12), noArray(), covariance, errors);
+                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima, covariance,
+                      errors, flags, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12));
     return errors;
 }
 
@@ -115,7 +115,8 @@ TEST_CASE("Boards that moved between direct and glass images: ignored, the norma
                 considered += normalErrorOverStated(with, truth, c, NORMAL + c*CAMERA)/(2*TRIALS);
             }
             for (int i = 0; i < 3; i++)
-                ofMotion += std::pow((errors.at<double>(1 + i) - targets.rvec[i])/with.deviations.at<double>(with.deviations.rows - 6 + i), 2)/(3*TRIALS);
+                ofMotion += std::pow((errors.at<double>(1 + i) - targets.rvec[i])/
+                                     with.deviations.at<double>(with.deviations.rows - 6 + i), 2)/(3*TRIALS);
         }
         std::cout << "[numbers] boards 0.1 mm and 2 mrad aside in all of 6 pairs, outer index " << outerIndex
                   << ": error of the normal over stated, ignored " << std::sqrt(ignored) << ", as a nuisance "

@@ -103,8 +103,8 @@ Trial runTrial(const Flow& flow, const Given& given, int seedOfTrial)
     Mat errors;
     calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
                       call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima,
-                      flow.flags, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12), covariances,
-                      targetCovariance(given.scale, given.rotation, given.translation), errors);
+                      targetCovariance(given.scale, given.rotation, given.translation), errors, flow.flags, noArray(),
+                      TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12), covariances);
 
     const Camera& inner = static_cast<const Camera&>(*call.cameras[0]);
     const WindowLayout& at = inner.layers().at();

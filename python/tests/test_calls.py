@@ -253,6 +253,13 @@ def test_calibrate_rig(rig, board):
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
     np.testing.assert_allclose(np.squeeze(call(refract.GLASS_FREE_EXTRINSICS)[2][1]), rig.T, atol=1e-4)
 
+    cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
+    moved = refract.calibrateGlassRigTargets(
+        board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [0, 1],
+        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], [], [], np.diag([1e-3] + 3*[1e-3] + 3*[1.])**2)
+    assert len(moved) == 12 and moved[6].shape == (2*17 + 6 + 7, 2*17 + 6 + 7)
+    assert moved[-1].shape == (7, 1) and np.abs(moved[-1]).max() < 1e-3
+
     known = dict(rvecs=board.rvecs, tvecs=board.tvecs, flags=refract.GLASS_USE_POSES)
     np.testing.assert_array_equal(np.squeeze(call(**known)[4]), board.tvecs)
     call(**known, poseCovariances=[1e-6*np.eye(6)]*8)

@@ -117,6 +117,15 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
                                      Rs, Ts, rvecs, tvecs, GLASS_FREE_EXTRINSICS), 1e-6);
     EXPECT_NEAR(590, tvecs[0].at<double>(2), 1e-3);
 
+    Mat targetErrors;
+    calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance, perView, status,
+                      inliers, others, 1e-6*Mat::eye(7, 7, CV_64F), targetErrors, GLASS_ROBUST);
+    EXPECT_EQ(Size(1, 7), targetErrors.size());
+    EXPECT_NEAR(0, cv::norm(targetErrors, cv::NORM_INF), 1e-6);
+    EXPECT_GT(1.001e-3, deviations.at<double>(deviations.rows - 7));
+    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance, perView,
+                                     status, inliers, others, Mat::eye(6, 6, CV_64F), targetErrors), "targetCovariance is 6x6");
+
     windows.resize(1);
     EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                      covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");

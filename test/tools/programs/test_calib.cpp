@@ -457,7 +457,19 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
             CHECK_FALSE(mentions(r.out, "Good"));
             CHECK_FALSE(mentions(r.out, "take pairs"));
         }
+    // Known to 0.05, it would have to be sixteen of these away.
+    const ToolResult known = runTool(inputs(f, " --thickness=19 --thickness-std=0.05 --index=1.5437 --lens=opencv4"));
+    INFO(known.out << known.err);
+    CHECK(known.code == 2);
+    CHECK(mentions(known.err, "contradict --thickness-std=0.05: thickness[0] would be 19."));
+    const ToolResult within = runTool(inputs(f, " --thickness=19.9 --thickness-std=0.1 --wedge-std=1 --placement-std=0.01 --index=1.5437 "
+                                                "--lens=opencv4"));
+    INFO(within.out << within.err);
+    CHECK(within.code == 0);
+    CHECK_FALSE(mentions(within.out, "contradict"));
+    CHECK(mentions(within.out, "boards moved between direct and glass  0.01 mm"));
     // Whoever uses what came of it is told.
+    runTool(inputs(f, " --thickness=26 --index=1.5437 --no-robust"));
     const std::string use = "refract_export " + f / "calib.yml" + " --to=opencv --range=400,900 --out=" + f / "central.yml";
     const ToolResult user = runTool(use);
     INFO(user.out << user.err);

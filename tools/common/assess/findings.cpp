@@ -365,7 +365,7 @@ Findings findingsOf(const RigCalibration& calibration, const Assessment& assessm
     checkCorrelations(calibration, findings);
     checkHeldOut(calibration, findings);
     for (const Contradiction& contradiction : assessment.contradictions)
-        findings.contradictions.push_back(contradiction.sentence);
+        (contradiction.isSure ? findings.contradictions : findings.weak).push_back(contradiction.sentence);
     checkAssumptions(calibration, findings);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
         mergeCameras(calibration, *list);

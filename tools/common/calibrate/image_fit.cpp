@@ -120,9 +120,9 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     {
         fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras,
                                     fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
-                                    fit.imageStatus, fit.inliers, fit.otherMinima,
+                                    fit.imageStatus, fit.inliers, fit.otherMinima, fit.rig.targetCovariance, targetErrors,
                                     data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                                    covariancesOf(fit.rig), fit.rig.targetCovariance, targetErrors);
+                                    covariancesOf(fit.rig));
     }
     catch (const CalibrationError& e)
     {

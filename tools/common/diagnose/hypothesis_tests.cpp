@@ -127,6 +127,63 @@ std::vector<Contradiction> contradictedBy(const FittedRig& c, const GivenValue& 
     return contradictions;
 }
 
+//! A window's parameters in the order of their columns.
+Values parametersOf(const GlassWindow& window)
+{
+    Values all(window.normal.val, window.normal.val + 3);
+    all.push_back(window.distance);
+    all.insert(all.end(), window.thickness.begin(), window.thickness.end());
+    all.insert(all.end(), window.index.begin(), window.index.end());
+    all.insert(all.end(), {window.innerIndex, window.outerIndex});
+    for (const Vec2d& wedge : window.wedge)
+        all.insert(all.end(), {wedge[0], wedge[1]});
+    return all;
+}
+
+//! The option that says how well a parameter is known, and the factor from radians to its unit.
+std::pair<const char*, double> deviationOption(const ParameterColumns& at, int column)
+{
+    if (column >= at.wedge)
+        return {"--wedge-std", 60.*180./CV_PI};
+    return {column == at.outerIndex ? "--outer-index-std" : column >= at.index ? "--index-std" : column >= at.thickness
+            ? "--thickness-std" : "--distance-std", 1.};
+}
+
+/** What is known to a standard deviation p, and estimated within it with the deviation s: the estimate is off the given value by a
+random number of variance p^2 - s^2 if the latter is right. */
+std::vector<Contradiction> contradictedPriors(const FittedRig& c)
+{
+    const double TOLD = 3.;             // standard deviations
+    const double TELLING = 1e-3;        // part of p^2: the images tell less
+    std::vector<Contradiction> contradictions;
+    for (int k = 0; k < (int)c.fit.rig.known.size(); k++)
+    {
+        const KnownCamera& known = c.fit.rig.known[k];
+        const ParameterColumns own = columnsOf(*c.fit.rig.cameras[k]);
+        if (known.covariance.rows <= own.lensCount || !c.fit.rig.ownsWindow(k))
+            continue;
+        const int first = columnsOf(c.fit.rig, k).lens;
+        const Values given = parametersOf(known.window), found = parametersOf(c.fit.rig.cameras[k]->window());
+        for (int i = own.distance; i < own.end; i++)
+        {
+            const double prior = known.covariance.at<double>(i, i), left = c.fit.covariance.at<double>(first + i, first + i);
+            if (!(prior > 0.) || !(prior - left > TELLING*prior))
+                continue;
+            const double before = given[i - own.normal], estimate = found[i - own.normal];
+            const double deviations = std::abs(estimate - before)/std::sqrt(prior - left);
+            const auto option = deviationOption(own, i);
+            if (deviations > TOLD)
+                contradictions.push_back({format("the images contradict %s=%.3g: %s%s would be ", option.first,
+                                                 option.second*std::sqrt(prior), own.names[i].c_str(),
+                                                 c.data.cameraCount == 1 ? "" : format(" of camera %d", k + 1).c_str())
+                                          + plusMinus(option.second*estimate, option.second*std::sqrt(left))
+                                          + format(" and not %.5g, %.1f standard deviations away", option.second*before, deviations),
+                                          c.fit.sigma, deviations > SURE});
+        }
+    }
+    return contradictions;
+}
+
 //! Poses that are taken as exact.
 std::vector<Contradiction> contradictedPoses(const FittedRig& c)
 {
@@ -172,6 +229,7 @@ std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions
     for (const GivenValue& given : givenValues(c.options))
         if (given.isGiven && !(c.options.flags & given.flag))
             add([&] { return contradictedBy(c, given); });
+    add([&] { return contradictedPriors(c); });
     if (hasExactPoses(c))
         add([&] { return contradictedPoses(c); });
     keepTheBest(contradictions);

@@ -7,9 +7,10 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 
-/* Tests of the hypothesis that a given value is right (thickness, index, distance, index of the scene's medium, exact poses). Each is set
-free in turn, all else as in the calibration. If the estimate is many standard deviations away, the images contradict the given value,
-and the stated +- of everything that depends on it is too small. */
+/* Tests of the hypothesis that a given value is right (thickness, index, distance, index of the scene's medium, exact poses). Each that
+is exact is set free in turn, all else as in the calibration; what is known to a standard deviation has been estimated within it. If
+the estimate is many standard deviations away, the images contradict the given value, and the stated +- of everything that depends on
+it is too small. */
 namespace tools {
 
 //! A given value that the images contradict.
@@ -17,6 +18,7 @@ struct Contradiction
 {
     std::string sentence;       //!< which value, and its estimate
     double sigma;               //!< of a pixel coordinate, of the fit with the value free
+    bool isSure = true;         //!< false: three standard deviations or more, too few to decide
 };
 
 //! The one with the best fit first; others only if they fit about as well.

@@ -1337,11 +1337,11 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
 /** @overload
 With systematic errors of the targets.
 @param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance: relative
-error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the rigid motion by which all
-targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame of camera 1. (A rotation about
-a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no such error. These errors are estimated within the prior, so that all uncertainties
-contain them: in air a common motion of the targets resembles a tilt of the window. Empty: there are none.
-With it, stdDeviations and covariance have seven more rows at their end.
+error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the rigid motion by which
+all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame of camera 1. (A
+rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no such error.
+These errors are estimated within the prior, so that all uncertainties contain them: in air a common motion of the targets
+resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance have seven more rows at their end.
 @param targetErrors 7x1 CV_64F: the estimates; NaN without targetCovariance.
 */
 CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArrays objectPoints,
@@ -1352,8 +1352,9 @@ CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArr
         InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
         OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
         OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
-        int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-        InputArrayOfArrays cameraCovariances, InputArray targetCovariance, OutputArray targetErrors);
+        InputArray targetCovariance, OutputArray targetErrors, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
+        InputArrayOfArrays cameraCovariances = noArray());
 
 /** @overload
 The short form: the results are lenses and windows in cameras and (with GLASS_FREE_EXTRINSICS) Rs and Ts.

@@ -313,8 +313,8 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          InputArrayOfArrays cameraCovariances)
 {
     return calibrateGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
-                             stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, flags, poseCovariances,
-                             criteria, cameraCovariances, noArray(), noArray());
+                             stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, noArray(), noArray(), flags,
+                             poseCovariances, criteria, cameraCovariances);
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints,
@@ -324,8 +324,8 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
                          InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
                          OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
-                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                         InputArrayOfArrays cameraCovariances, InputArray targetCovariance, OutputArray targetErrors)
+                         OutputArray otherMinima, InputArray targetCovariance, OutputArray targetErrors, int flags,
+                         InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances)
 {
     CV_INSTRUMENT_REGION();
 

@@ -62,8 +62,8 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
 double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
-                         OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, int, InputArrayOfArrays, TermCriteria,
-                         InputArrayOfArrays, InputArray, OutputArray)
+                         OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
+                         TermCriteria, InputArrayOfArrays)
 {
     throwWithoutCeres("calibrateGlassRig");
 }

@@ -358,6 +358,11 @@ class refract_test(NewOpenCVTests):
             [make_views(self.camera1), make_views(self.camera2, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
             [], [], flags=cv.refract.GLASS_ROBUST)
         self.assertEqual(11, len(result))
+        moved = cv.refract.calibrateGlassRigTargets(
+            [make_board()]*5, [make_views(bare), make_views(bare, True)],
+            [make_views(self.camera1), make_views(self.camera2, True)], [camera.clone() for camera in cameras], [0, 1],
+            [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [], [], 1e-6*np.eye(7))
+        self.assertEqual((12, (7, 1)), (len(moved), moved[-1].shape))
         rms, Rs, Ts, rvecs, tvecs = cv.refract.calibrateGlassRig(
             [make_board()]*5, [make_views(bare), make_views(bare, True)],
             [make_views(self.camera1), make_views(self.camera2, True)], [camera.clone() for camera in cameras], [],

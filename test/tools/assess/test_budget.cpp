@@ -1,0 +1,89 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// The uncertainty budget: its rows against what each source does by itself.
+#include "assess/budget.hpp"
+#include "calibrate/image_fit.hpp"
+#include "paper_rig.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+const double SQUARE = 39.;
+
+//! Two cameras, eight pairs; what is known of the given values.
+RigCalibration calibrated(const GivenStd& std)
+{
+    scenes::Random random(1210);
+    RigModel rig = paperRig(2);
+    RigCalibration c;
+    c.square = SQUARE;
+    c.data.cameraCount = 2;
+    c.data.imageSize[0] = c.data.imageSize[1] = Size(1280, 1024);
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
+        c.data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, 0.1, random));
+    }
+    c.options.window = rig.cameras[0]->window();
+    c.options.std = std;
+    for (int k = 0; k < 2; k++)
+    {
+        c.options.known[k] = rig.cameras[k];
+        rig.known.push_back(knownOf(*rig.cameras[k], c.options, k));
+        rig.known[k].window = rig.cameras[k]->window();
+    }
+    rig.targetCovariance = targetCovarianceOf(c.data, rig, std);
+    c.start = rig;
+    c.lensSources.resize(2);
+    c.fit = fitImages(c.data, rig, allViews(c.data), 0);
+    c.residuals = residualsOf(c.data, c.fit);
+    return c;
+}
+
+const BudgetRow& rowOf(const std::vector<BudgetRow>& rows, const std::string& source)
+{
+    for (const BudgetRow& row : rows)
+        if (row.source == source)
+            return row;
+    FAIL("no row " << source);
+    return rows[0];
+}
+
+} // namespace
+
+TEST_CASE("The budget of a point adds up, and each source is worth what it does by itself", "[budget]")
+{
+    GivenStd std;
+    std.thickness = 0.02;
+    std.scale = 1e-3;
+    const RigCalibration c = calibrated(std), exact = calibrated(GivenStd());
+    const std::vector<BudgetRow> rows = uncertaintyBudget(c), ofExact = uncertaintyBudget(exact);
+    REQUIRE(rows.back().source == "total");
+    double squares = 0., shares = 0.;
+    for (const BudgetRow& row : rows)
+        if (row.source != "total")
+        {
+            squares += row.effect*row.effect;
+            shares += row.share;
+        }
+    CHECK(std::sqrt(squares) == Approx(rows.back().effect).epsilon(1e-9));
+    CHECK(shares == Approx(1.).epsilon(1e-9));
+
+    // All lengths are in proportion to the square: points at 500 to 750 mm.
+    const BudgetRow& square = rowOf(rows, "square of the board");
+    CHECK(square.given == "0.039 mm");
+    CHECK(square.effect > 0.5);
+    CHECK(square.effect < 0.8);
+    // What is not given exactly leaves the images' own part as it was.
+    CHECK(rowOf(ofExact, "total").effect < rows.back().effect);
+    CHECK(rowOf(rows, "noise of the calibration's images").effect
+          == Approx(rowOf(ofExact, "noise of the calibration's images").effect).epsilon(0.2));
+    CHECK(rowOf(rows, "noise of the point's own pixels").effect
+          == Approx(rowOf(ofExact, "noise of the point's own pixels").effect).epsilon(0.1));
+    CHECK(rowOf(rows, "thickness, camera 1").effect > 0.);
+    CHECK(ofExact.size() == 3);
+}
