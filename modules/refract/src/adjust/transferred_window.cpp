@@ -5,6 +5,7 @@
 /* With a wedge the transfer is differentiated automatically, one parameter at a time: it happens once a camera and step. */
 
 #include "adjust/transferred_window.hpp"
+#include <Eigen/Geometry>
 #include <ceres/jet.h>
 
 namespace cv { namespace refract {
