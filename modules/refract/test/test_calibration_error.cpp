@@ -194,7 +194,7 @@ struct Scene
 
 TEST(Refract_CalibrationError, of_a_bundle_adjustment)
 {
-    const std::vector<Vec4d> none, one(1, Vec4d(0, 1, norm(scenePoints()[0] - scenePoints()[1]), 0.01));
+    const std::vector<Vec4d> none, one(1, Vec4d(0, 1, cv::norm(scenePoints()[0] - scenePoints()[1]), 0.01));
     Scene unscaled;
     for (int view = 0; view < 2; view++)
         unscaled.hide(view, 0);

@@ -557,7 +557,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, lens(f) + " --thickness=20 --index=diamond"), "'diamond', which is not known; those that are: N-BK7, K9, B270, "
             "soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate, water, seawater, air; of any other give the index"},
         {inputs(f, lens(f) + " --thickness=20 --index=N-BK7 --wavelength=200"), "--wavelength=200: the index of N-BK7 is known "
-            "from 300 to 2500 nm; give nm"},
+            "from 300 to 2500 nm; wavelengthNm is 200; give nm"},
         {inputs(f, lens(f) + " --thickness=20 --index=1,5"), "--thickness has 1, --index 2"},
         {inputs(f, lens(f) + " --thickness=20 --index=water:T=12"), "without parameters"},
         {inputs(f, lens(f) + PANE + " --outer-index=seawater:T=99"), "T of seawater must be from 0 to 30"},
