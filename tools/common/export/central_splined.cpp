@@ -155,7 +155,7 @@ private:
 //! A camera without a window is its own central camera.
 CentralCamera itself(const Ptr<RefractiveCamera>& camera, const SeenPoints& tested)
 {
-    CentralCamera central = { camera->clone(), cv::Matx33d::eye(), Vec3d(), CentralError() };
+    CentralCamera central = { camera->clone(), RigidTransform(), CentralError() };
     central.error = errorOf(tested, central);
     return central;
 }
