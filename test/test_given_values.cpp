@@ -141,7 +141,7 @@ Trial runTrial(const Flow& flow, const Given& given, int seedOfTrial)
 
 } // namespace
 
-TEST_CASE("Given values drawn from their priors: in every flow errors are what is stated", "[given]")
+TEST_CASE("Given values drawn from their priors: in every flow errors are what is stated", "[given][slow]")
 {
     CAPTURE(seed());
     const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
