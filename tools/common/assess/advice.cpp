@@ -51,21 +51,15 @@ public:
         Calibration calibration = calibrationOf(c_.fit.rig);
         calibration.covariance = toMat(covariance);
         const Vec3d depth = workingDepth(c_, 0);
-        double squares = 0.;
-        int count = 0;
+        ErrorSquares squares;
         for (double z : {depth[0], depth[2]})
         {
             const ErrorMap map = mapErrors(calibration, z, sigma_, columns);
             if (map.seen())
                 quality.worstPoint = std::fmax(quality.worstPoint, map.worst());
-            for (size_t i = 0; i < map.total.size(); i++)
-                if (map.total[i] == map.total[i])
-                {
-                    squares += map.total[i]*map.total[i] - map.pixelNoise[i]*map.pixelNoise[i];
-                    count++;
-                }
+            squares.add(map);
         }
-        quality.calibrationPart = count ? std::sqrt(std::max(0., squares)/count) : NONE;
+        quality.calibrationPart = squares.count ? std::sqrt(std::max(0., squares.calibration)/squares.count) : NONE;
         return quality;
     }
 

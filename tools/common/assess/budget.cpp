@@ -109,23 +109,12 @@ public:
     {
         Calibration calibration = calibrationOf(c_.fit.rig);
         calibration.covariance = covariance;
-        double sum = 0., noise = 0.;
-        int count = 0;
+        ErrorSquares squares;
         for (double z : {depth_[0], depth_[1], depth_[2]})
-        {
-            const ErrorMap map = mapErrors(calibration, z, c_.fit.sigma, COLUMNS);
-            for (size_t i = 0; i < map.total.size(); i++)
-            {
-                if (!(map.total[i] == map.total[i]))
-                    continue;
-                noise += map.pixelNoise[i]*map.pixelNoise[i];
-                sum += map.total[i]*map.total[i] - map.pixelNoise[i]*map.pixelNoise[i];
-                count++;
-            }
-        }
+            squares.add(mapErrors(calibration, z, c_.fit.sigma, COLUMNS));
         if (pixelNoise)
-            *pixelNoise = noise/count;
-        return sum/count;
+            *pixelNoise = squares.pixelNoise/squares.count;
+        return squares.calibration/squares.count;
     }
 
 private:

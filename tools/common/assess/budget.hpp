@@ -11,7 +11,7 @@ namespace tools {
 
 struct BudgetRow
 {
-    std::string source;             //!< "thickness of camera 1's window"
+    std::string source;             //!< "thickness, camera 1"
     std::string given;              //!< its standard uncertainty, as given; empty: the images themselves
     double effect = NONE;           //!< on points of the working volume, RMS of the 3-D standard deviations, in the unit of length
     double share = NONE;            //!< of the sum of the squares

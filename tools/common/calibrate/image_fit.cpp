@@ -54,10 +54,17 @@ void startAtKnown(RigModel& rig)
         GlassWindow window = rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(*rig.cameras[c]);
         const auto isKnown = [&](int column) { return known.covariance.at<double>(column, column) > 0; };
-        window.thickness = known.window.thickness;
-        window.index = known.window.index;
-        window.wedge = known.window.wedge;
-        window.outerIndex = known.window.outerIndex;
+        for (int i = 0; i < at.layers; i++)
+        {
+            if (isKnown(at.thickness + i))
+                window.thickness[i] = known.window.thickness[i];
+            if (isKnown(at.index + i))
+                window.index[i] = known.window.index[i];
+            if (at.wedge < at.end && isKnown(at.wedge + 2*i))
+                window.wedge[i] = known.window.wedge[i];
+        }
+        if (isKnown(at.outerIndex))
+            window.outerIndex = known.window.outerIndex;
         if (isKnown(at.distance))
             window.distance = known.window.distance;
         rig.cameras[c]->setWindow(window);

@@ -66,6 +66,19 @@ double ErrorMap::median() const { return quantile(total, 0.5); }
 
 double ErrorMap::seenShare() const { return total.empty() ? 0. : (double)sortedAnswers(total).size()/total.size(); }
 
+void ErrorSquares::add(const ErrorMap& map)
+{
+    for (size_t i = 0; i < map.total.size(); i++)
+    {
+        if (!(map.total[i] == map.total[i]))
+            continue;
+        const double noise = map.pixelNoise[i]*map.pixelNoise[i];
+        calibration += map.total[i]*map.total[i] - noise;
+        pixelNoise += noise;
+        count++;
+    }
+}
+
 std::vector<Point2d> gridOver(Size image, int columns, Size& grid)
 {
     grid = Size(columns, std::max(2, cvRound((double)columns*image.height/image.width)));

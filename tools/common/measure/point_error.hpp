@@ -29,6 +29,15 @@ struct ErrorMap
     double worstPixelNoise() const;
 };
 
+//! Sums over the points of maps that are seen: squared errors, in the two parts that add up to the total.
+struct ErrorSquares
+{
+    double calibration = 0., pixelNoise = 0.;
+    int count = 0;
+
+    void add(const ErrorMap& map);
+};
+
 const int ERROR_MAP_COLUMNS = 25;       //!< of all maps whose worst point is reported, as it depends on the grid
 
 /** @param columns of the grid. */

@@ -29,8 +29,10 @@ std::vector<SummaryRow> pointErrorRows(const RigCalibration& calibration, const 
 //! How to read them.
 std::string pointErrorNote(const RigCalibration& calibration, const Assessment& assessment);
 
-//! Cells: points RMS, worst point, lengths in parts of a thousand.
+//! Cells: to what the source is known, its effect, its share in per cent.
 std::vector<SummaryRow> budgetRows(const Assessment& assessment);
+
+//! Cells: points RMS, worst point, lengths in parts of a thousand.
 std::vector<SummaryRow> toleranceRows(const Assessment& assessment);
 
 //! Cells: std of the normals, worst point, the calibration's part.
