@@ -107,6 +107,8 @@ FitOutcome RobustFit::reweightGradually()
         if (sum > 0.99*last)
             break;
         last = sum;
+        if (problem_.hasPriors())   // weighed as the errors are now: too strong, they would make what contradicts them an outlier
+            problem_.setPixelSigma(std::max(median(scales), LEAST_PIXEL_SIGMA));
         const Masks candidates = outliers_.candidates();
         for (int i = 0; i < (int)images().size(); i++)
         {
