@@ -75,8 +75,8 @@ struct Options
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
     std::string innerIndex = "1", outerIndex = "1";
     std::string channel;
-    double wavelength = 0., distance = 0., wedgeStdMinutes = 0., squareStd = 0.;
-    GivenStd std;
+    double wavelength = 0., distance = 0.;
+    GivenStdOptions std;
     std::vector<std::string> free;
     bool distanceGiven = false, unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
@@ -131,16 +131,7 @@ Options parseOptions(Command& command)
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
         "or N-BK7,PMMA,N-BK7");
-    app.add_option("--thickness-std", o.std.thickness, "how well the thickness of each layer is known, one standard deviation; "
-        "it is then estimated within it, and is in every +-")->check(moreThanZero());
-    app.add_option("--index-std", o.std.index, "the same of each index")->check(moreThanZero());
-    app.add_option("--outer-index-std", o.std.outerIndex, "the same of --outer-index")->check(moreThanZero());
-    app.add_option("--distance-std", o.std.distance, "the same of --distance")->check(moreThanZero());
-    app.add_option("--wedge-std", o.wedgeStdMinutes, "the same of the angle between the faces of each layer, about 0, in arc minutes "
-        "(polished optics 0.2, plate glass 1 to 3)")->check(moreThanZero());
-    app.add_option("--square-std", o.squareStd, "the same of --square")->check(moreThanZero());
-    app.add_option("--placement-std", o.std.placement, "by how much all boards, or the camera's mount, moved between the direct and "
-        "the glass images, along each axis, one standard deviation")->check(moreThanZero());
+    o.std.addTo(app);
     app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera, or its name")
         ->capture_default_str();
     app.add_option("--outer-index", o.outerIndex, "index of the scene's medium, or its name: 1.333, water, "
@@ -310,22 +301,22 @@ void takeIndices(const Options& o, RigOptions& rig)
     rig.window.materials.push_back(rig.outer.material);
 }
 
-//! Standard deviations of what is given; each needs what it is of.
+//! Standard deviations of what is given.
 void takeStd(const Options& o, const Target* target, RigOptions& rig)
 {
-    const bool layers = !rig.window.thickness.empty(), equalMedia = rig.window.innerIndex == rig.window.outerIndex;
-    rig.std = o.std;
-    rig.std.wedge = o.wedgeStdMinutes/60.*CV_PI/180.;
-    if (!layers && (rig.std.thickness > 0. || rig.std.index > 0. || rig.std.wedge > 0.))
-        throw Failure("--thickness-std, --index-std and --wedge-std are of layers: give --thickness and --index");
-    if (equalMedia && (rig.std.distance > 0. || rig.std.outerIndex > 0.))
-        throw Failure("--distance-std and --outer-index-std: with the same medium on both sides of the window the distance has no effect "
-                      "on the image, and that medium is what indices are relative to; leave them out");
-    if (rig.std.distance > 0. && !o.distanceGiven)
-        throw Failure("--distance-std is of a distance that is given: add --distance");
-    if (o.squareStd > 0. && !(target && target->square() > 0.))
-        throw Failure("--square-std is of the square of a board: add --square");
-    rig.std.scale = o.squareStd > 0. ? o.squareStd/target->square() : 0.;
+    GivenValues given;
+    given.layers = rig.layers;
+    given.outer = rig.outer;
+    given.equalMedia = rig.window.innerIndex == rig.window.outerIndex;
+    given.distance = o.distanceGiven;
+    given.square = target ? target->square() : 0.;
+    given.millimetre = 1./millimetresIn(o.unit);
+    given.freeThickness = rig.flags & GLASS_FREE_THICKNESS;
+    given.freeIndex = rig.flags & GLASS_FREE_INDEX;
+    given.freeOuterIndex = rig.flags & GLASS_FREE_OUTER_INDEX;
+    given.freeDistance = rig.flags & GLASS_FREE_DISTANCE;
+    given.freeWedge = rig.flags & GLASS_FREE_WEDGE;
+    rig.std = o.std.of(given);
     if (rig.std.wedge > 0. || rig.flags & GLASS_FREE_WEDGE)
         rig.window.wedge.assign(rig.window.thickness.size(), cv::Vec2d());
 }

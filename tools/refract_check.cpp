@@ -12,13 +12,16 @@ One image each of --direct and --glass are a pair; among several, those with the
 between them, not even by a tenth of a pixel, as such a shift looks like a tilt of the window. The test compares the tilt
 since the calibration with its uncertainty, which comes from the noise of the calibration's residuals, from the covariance
 in calib.yml and from where the target is in the new images.
+A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
 If nothing moved, it says "moved" with the probability --false-alarm.
 
 Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
 not show a tilt of --detect degrees with a probability of 95 %.)";
 
 #include "measure/measurement.hpp"
-#include "assess/window_check.hpp"
+#include "assess/new_pane.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "calibrate/starting_model.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/colour.hpp"
@@ -44,6 +47,9 @@ struct Options
     RigSources images;
     TargetOptions target;
     double falseAlarm = 0.01, detect = 0.1, sigma = 0.;
+    bool newPane = false;
+    PaneStd pane = {0., 0.001, 0.};
+    double wedgeMinutes = 1., placement = 0.;
 };
 
 void addOptions(CLI::App& app, Options& o)
@@ -59,6 +65,14 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
     app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
         "residuals)")->check(moreThanZero());
+    app.add_option("--placement-std", o.placement, "by how much all targets, or the camera's mount, moved between the direct and the glass "
+        "images, along each axis, one standard deviation: in air, that looks like a tilt")->check(notNegative())->capture_default_str();
+    CLI::Option* newPane = app.add_flag("--new-pane", o.newPane, "the panes are not those of the calibration, but others of their kind");
+    app.add_option("--wedge-std", o.wedgeMinutes, "with --new-pane: the angle between the faces of a pane, one standard deviation, arc "
+        "minutes")->check(notNegative())->capture_default_str()->needs(newPane);
+    app.add_option("--thickness-std", o.pane.thickness, "with --new-pane: how much panes differ in thickness, one standard deviation")
+        ->check(notNegative())->capture_default_str()->needs(newPane);
+    app.add_option("--index-std", o.pane.index, "the same of their index")->check(notNegative())->capture_default_str()->needs(newPane);
     app.add_option("--summary", o.summary, "JSON file with the result");
 }
 
@@ -75,7 +89,30 @@ CheckInput checkInputOf(const Options& o, const Calibration& calibration)
     if (input.covariance.empty() && !(o.sigma > 0))
         throw Failure("'" + o.calibration + "' has no covariance: calibrate with refract_calib, or give --pixel-sigma to take "
                       "the file as exact");
-    return input;
+    if (!o.newPane)
+        return input;
+    PaneStd pane = o.pane;
+    pane.wedge = o.wedgeMinutes/60.*CV_PI/180.;
+    return withNewPanes(input, pane);
+}
+
+//! The targets may have moved between the new images of pairs, independently of what happened when the calibration was made.
+void addPlacement(const Options& o, const std::vector<View>& views, CheckInput& input)
+{
+    RigData data;
+    data.cameraCount = (int)input.rig.cameras.size();
+    data.views = views;
+    GivenStd std;
+    std.placement = o.placement;
+    input.rig.targetCovariance = targetCovarianceOf(data, input.rig, std);
+    if (input.rig.targetCovariance.empty())
+        return;
+    const int count = columnCount(input.rig);
+    cv::Mat covariance = cv::Mat::zeros(count + TARGET_ERRORS, count + TARGET_ERRORS, CV_64F);
+    if (!input.covariance.empty())
+        input.covariance.copyTo(covariance(cv::Rect(0, 0, count, count)));
+    input.rig.targetCovariance.copyTo(covariance(cv::Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));
+    input.covariance = covariance;
 }
 
 //! If there is one image for each camera, they are one view, whatever their names.
@@ -157,8 +194,8 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
 {
     if (result.residualProbability < NO_TILT_EXPLAINS)
         return format("the new images do not fit the calibration with any tilt of the window: noise %.3f px per coordinate, the "
-                      "calibration had %.3f px; did the target move between the images of a pair, or did lens, focus, glass or "
-                      "target change?", result.sigmaSeen, input.sigma);
+                      "calibration had %.3f px; did the target move between the images of a pair (--placement-std), or did lens, "
+                      "focus, glass or target change?", result.sigmaSeen, input.sigma);
     if (anyMoved(result))
         return "";
     for (const WindowCheck& window : result.windows)
@@ -167,8 +204,8 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
         if (power >= CERTAIN)
             continue;
         const int times = imagesNeeded(window, result.windows.size(), o, input.dof);
-        const bool pairs = o.images.anyDirect();
-        const std::string more = !times ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
+        const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
+        const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times, pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
                       "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
@@ -225,8 +262,9 @@ int main(int argc, char** argv)
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
-        const CheckInput input = checkInputOf(options, calibration);
+        CheckInput input = checkInputOf(options, calibration);
         const std::vector<View> views = readViews(options, calibration, target, command);
+        addPlacement(options, views, input);
         const CheckResult result = checkTilts(input, views, options.falseAlarm);
         const bool moved = anyMoved(result);
         const std::string why = whyNot(result, options, input), verdict = verdictOf(moved, why);

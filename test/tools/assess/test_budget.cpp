@@ -93,7 +93,7 @@ TEST_CASE("The budget of a point adds up, and each source is worth what it does 
 TEST_CASE("A wrong thickness is tried, though the index beside it is known to a standard deviation", "[budget][tolerance]")
 {
     GivenStd std;
-    std.index = 1e-4;
+    std.index = {1e-4};
     for (const RigCalibration& c : {calibrated(GivenStd()), calibrated(std)})
     {
         const std::vector<Tolerance> tolerances = analyseTolerances(c, 1., true);

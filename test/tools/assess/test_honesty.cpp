@@ -100,7 +100,7 @@ GlassWindow drawn(GlassWindow window, const Setup& setup, scenes::Random& random
     for (double& thickness : window.thickness)
         thickness += random.normal(setup.std.thickness);
     for (double& index : window.index)
-        index += random.normal(setup.std.index);
+        index += random.normal(setup.std.indexOf(0));
     if (setup.inWater())
         window.outerIndex += random.normal(setup.std.outerIndex);
     for (size_t i = 0; i < window.thickness.size() && setup.std.wedge > 0.; i++)
@@ -494,7 +494,7 @@ static GivenStd dataSheet()
 {
     GivenStd std;
     std.thickness = 0.05;
-    std.index = 0.003;
+    std.index = {0.003};
     std.outerIndex = 0.001;
     std.wedge = CV_PI/180./60.;
     std.scale = 2e-4;

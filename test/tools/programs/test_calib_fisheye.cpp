@@ -102,7 +102,7 @@ TEST_CASE("refract_calib finds a fisheye lens and its window, and how well", "[t
             const TemporaryFolder folder;
             const WideCamera camera(focal, outerIndex);
             writeViews(camera, folder, 16, 4, random);
-            const ToolResult result = runTool("refract_calib --lens=fisheye --image-size=1280x1024 --thickness=15 --index=1.52"
+            const ToolResult result = runTool("refract_calib --lens=fisheye --image-size=1280x1024 --thickness=15 --index=1.52 --exact"
                 + format(" --outer-index=%g", outerIndex) + " --direct=" + (folder / "direct.csv") + " --glass=" + (folder / "glass.csv")
                 + " --summary=" + (folder / "s.json") + " --out=" + (folder / "calib.yml"));
             CAPTURE(outerIndex, focal, result.out, result.err);

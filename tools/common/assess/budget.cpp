@@ -63,18 +63,22 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     const ParameterColumns own = columnsOf(*c.fit.rig.cameras[k]);
     const int first = columnsOf(c.fit.rig, k).lens;
     const GivenStd& std = c.options.std;
-    const auto length = [&c](double value) { return format("%.3g ", value) + c.unit; };
+    const std::string length = " " + c.unit;
+    std::string indices;                // of layers, one where all are equal
+    for (size_t i = 0; i < std.index.size(); i++)
+        if (i == 0 || std.index[i].text("") != std.index[i - 1].text(""))
+            indices += (i ? ", " : "") + std.index[i].text("");
     std::vector<Source> sources = {sourceOf("lens" + whose, "its file", known.covariance, rangeOf(0, own.lensCount), first)};
     if (known.covariance.rows == own.lensCount || !c.fit.rig.ownsWindow(k))
         return sources;
     const auto add = [&](const std::string& name, const std::string& given, int column, int count) {
         sources.push_back(sourceOf(name + whose, given, known.covariance, rangeOf(column, count), first));
     };
-    add("thickness", length(std.thickness), own.thickness, own.layers);
-    add("index", format("%.2g", std.index), own.index, own.layers);
-    add("wedge", format("%.2g'", std.wedge*180./CV_PI*60.), own.wedge, own.end - own.wedge);
-    add("distance", length(std.distance), own.distance, 1);
-    add("index of the scene's medium", format("%.2g", std.outerIndex), own.outerIndex, 1);
+    add("thickness", std.thickness.text(length), own.thickness, own.layers);
+    add("index", indices, own.index, own.layers);
+    add("wedge", std.wedge.text("'", 180./CV_PI*60.), own.wedge, own.end - own.wedge);
+    add("distance", std.distance.text(length), own.distance, 1);
+    add("index of the scene's medium", std.outerIndex.text(""), own.outerIndex, 1);
     return sources;
 }
 
@@ -89,9 +93,9 @@ std::vector<Source> sourcesOf(const RigCalibration& c)
     {
         const int first = columnCount(c.fit.rig);
         sources.push_back(sourceOf(c.square > 0. ? "square of the board" : "scale of the targets",
-                                   c.square > 0. ? format("%.2g ", c.options.std.scale*c.square) + c.unit
-                                                 : format("%.2g %%", 100.*c.options.std.scale), targets, {0}, first));
-        sources.push_back(sourceOf("boards moved between direct and glass", format("%.2g ", c.options.std.placement) + c.unit, targets,
+                                   c.square > 0. ? c.options.std.scale.text(" " + c.unit, c.square)
+                                                 : c.options.std.scale.text(" %", 100.), targets, {0}, first));
+        sources.push_back(sourceOf("boards moved between direct and glass", c.options.std.placement.text(" " + c.unit), targets,
                                    rangeOf(1, 6), first));
     }
     sources.erase(std::remove_if(sources.begin(), sources.end(), [](const Source& s) { return s.columns.empty(); }), sources.end());

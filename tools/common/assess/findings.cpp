@@ -20,6 +20,7 @@ namespace {
 const double WEAK_NORMAL_DEG = 0.1;
 const double WEAK_RELATIVE = 0.1;           // of thickness or distance
 const double WEAK_INDEX = 0.01;
+const double TELLING_RATIO = 1.5;           // of the normal's deviation to that of the noise alone
 const double TIED = 0.95;                   // correlation
 const double MISFIT_RATIO = 1.5;            // RMS through the window / RMS direct
 const double OUTLYING_VIEW = 2.5;           // times the median RMS of the views
@@ -54,25 +55,67 @@ void checkLimits(const RigCalibration& c, const Assessment& a, Findings& f)
     }
 }
 
+//! The covariance of all parameters, were some of them (and the targets' errors) known.
+Mat conditional(const Fit& fit, const std::vector<int>& known)
+{
+    const int count = (int)known.size();
+    Mat of(fit.withTargets.rows, count, CV_64F), among(count, count, CV_64F);
+    for (int i = 0; i < count; i++)
+        fit.withTargets.col(known[i]).copyTo(of.col(i));
+    for (int i = 0; i < count; i++)
+        of.row(known[i]).copyTo(among.row(i));
+    const Mat covariance = count ? Mat(fit.withTargets - of*among.inv(DECOMP_SVD)*of.t()) : fit.withTargets;
+    return covariance(Rect(0, 0, fit.covariance.cols, fit.covariance.rows));
+}
+
+/** The larger principal deviation of the normal, were it known how wedge-shaped the pane is and how the boards moved: a wedge or a motion
+of all boards looks like a tilt, and more images help little against them. */
+double normalStdOfNoise(const RigCalibration& c, int camera)
+{
+    const ParameterColumns at = columnsOf(c.fit.rig, camera);
+    std::vector<int> known;
+    for (int i = at.wedge; i < at.end; i++)
+        known.push_back(i);
+    for (int i = c.fit.covariance.rows + 1; i < c.fit.withTargets.rows; i++)
+        known.push_back(i);
+    return normalStdDeg(conditional(c.fit, known), c.fit.rig, camera)[0];
+}
+
+void checkTilt(const RigCalibration& c, int camera, Findings& f)
+{
+    const double std = windowStd(c.fit, camera).normalDeg[0], ofNoise = normalStdOfNoise(c, camera);
+    const bool pairs = c.data.countPairs(camera) > 0;
+    if (ofNoise > WEAK_NORMAL_DEG)
+        f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std)
+                         + (pairs ? "take more pairs, with the board all over the image"
+                            : "take pairs (the board not moved between an image without and one with the window)"));
+    else if (std > TELLING_RATIO*ofNoise)
+        f.cannotTell.push_back(of(c, camera) + format("the window's tilt better than to %.2g deg: a wedge between its faces%s looks like "
+                               "a tilt (were it known, %.2g deg). Points hardly suffer from that", std,
+                               pairs && c.options.std.placement > 0. ? ", or a motion of all boards between direct and glass," : "",
+                               ofNoise));
+    if (!pairs && ofNoise > WEAK_NORMAL_DEG)
+        f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
+                               "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
+                               "such glass-only views");
+}
+
 void checkWindow(const RigCalibration& c, int camera, Findings& f)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const WindowStd std = windowStd(c.fit, camera);
-    if (std.normalDeg[0] > WEAK_NORMAL_DEG)
-        f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std.normalDeg[0])
-                         + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
-                            : "take pairs (the board not moved between an image without and one with the window)"));
+    checkTilt(c, camera, f);
     if (std.distance > WEAK_RELATIVE*window.distance)
         f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
                                                 window.distance, std.distance, c.unit.c_str()));
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
-        if (std.thickness[i] > WEAK_RELATIVE*window.thickness[i])
+        if (c.options.flags & GLASS_FREE_THICKNESS && std.thickness[i] > WEAK_RELATIVE*window.thickness[i])
             f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
                                                     "a caliper and give it by --thickness", window.thickness[i],
                                                     std.thickness[i], c.unit.c_str()));
-        if (std.index[i] > WEAK_INDEX)
+        if (c.options.flags & GLASS_FREE_INDEX && std.index[i] > WEAK_INDEX)
             f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
     }
@@ -82,10 +125,6 @@ void checkWindow(const RigCalibration& c, int camera, Findings& f)
     if (equalMedia(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");
-    if (c.data.countPairs(camera) == 0 && std.normalDeg[0] > WEAK_NORMAL_DEG)
-        f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
-                               "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
-                               "such glass-only views");
 }
 
 //! Thickness and index of a single layer: what shows at small angles, and how well it is known.
@@ -104,6 +143,17 @@ std::string opticalPath(const RigCalibration& c, int camera)
                  std::sqrt(cov(at.thickness, at.thickness)), std::sqrt(cov(at.index, at.index)));
 }
 
+bool isWedge(const RigCalibration& c, const EstimatedParameter& p)
+{
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const ParameterColumns at = columnsOf(c.fit.rig, k);
+        if (p.column >= at.wedge && p.column < at.end)
+            return true;
+    }
+    return false;
+}
+
 bool isOneOf(const EstimatedParameter& p, int first, int second) { return p.column == first || p.column == second; }
 
 void checkCorrelations(const RigCalibration& c, Findings& f)
@@ -112,8 +162,9 @@ void checkCorrelations(const RigCalibration& c, Findings& f)
     for (size_t i = 0; i < free.size(); i++)
         for (size_t j = i + 1; j < free.size(); j++)
         {
-            if (free[i].isNormal && free[j].isNormal)       // told by the two principal deviations
-                continue;
+            const auto isTold = [&](const EstimatedParameter& p) { return p.isNormal || isWedge(c, p); };
+            if (isTold(free[i]) && isTold(free[j]))
+                continue;       // by the two principal deviations, with the tilt
             const double covariance = c.fit.covariance.at<double>(free[i].column, free[j].column);
             const double r = covariance/(free[i].std*free[j].std);
             if (std::abs(r) <= TIED)
@@ -272,7 +323,7 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.std.thickness == 0.)
         f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
                             "the distance, as the media on its two sides differ)"));
-    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && c.options.std.index == 0.)
+    if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && !c.options.std.ofIndices())
         f.assumed.push_back("the index");
     std::vector<GivenIndex> indices = c.options.layers;
     indices.insert(indices.end(), {c.options.inner, c.options.outer});

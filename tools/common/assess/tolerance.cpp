@@ -307,7 +307,7 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
             causes.push_back({"thickness" + which + " wrong by 0.1 mm" + whose, k, true, [=](GlassWindow& w) {
                 w.thickness[layer] += THICKNESS_MM*millimetre;
             }, {Vec3d()}});
-        if (!(c.options.flags & GLASS_FREE_INDEX) && c.options.std.index == 0.)
+        if (!(c.options.flags & GLASS_FREE_INDEX) && c.options.std.indexOf(layer) == 0.)
         {
             const GivenIndex given = layer < c.options.layers.size() ? c.options.layers[layer] : GivenIndex();
             causes.push_back({"index" + which + wrongIndexBy(given) + whose, k, true, [=](GlassWindow& w) {

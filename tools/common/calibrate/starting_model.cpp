@@ -215,7 +215,8 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
             covariance.at<double>(i, i) = std*std;
     };
     set(at.thickness, at.layers, options.std.thickness);
-    set(at.index, at.layers, options.std.index);
+    for (int i = 0; i < at.layers; i++)
+        set(at.index + i, 1, options.std.indexOf(i));
     set(at.wedge, at.end - at.wedge, options.std.wedge);
     const bool equalMedia = options.window.innerIndex == options.window.outerIndex;
     set(at.distance, equalMedia ? 0 : 1, options.std.distance);

@@ -4,23 +4,12 @@
 #ifndef REFRACT_TOOLS_STARTING_MODEL_HPP
 #define REFRACT_TOOLS_STARTING_MODEL_HPP
 
-#include "calibrate/given_index.hpp"
+#include "calibrate/given_std.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
 
 /* Initial values of a fit: the lens from a file or from the direct images, the windows as given, R and T from single views. */
 namespace tools {
-
-//! Standard deviations of given values; 0: exact.
-struct GivenStd
-{
-    double thickness = 0., index = 0., outerIndex = 0., distance = 0.;
-    double wedge = 0.;                                      //!< of each of its two angles, radians
-    double scale = 0.;                                      //!< of the targets (a board's square), relative
-    double placement = 0.;                                  //!< by how much all boards moved between direct and glass, per axis
-
-    bool ofWindow() const { return thickness > 0. || index > 0. || outerIndex > 0. || distance > 0. || wedge > 0.; }
-};
 
 struct RigOptions
 {

@@ -81,6 +81,11 @@ inline CLI::Validator moreThanZero()
     return numberThat([](double number) { return number > 0 && std::isfinite(number); }, "more than 0", "> 0");
 }
 
+inline CLI::Validator notNegative()
+{
+    return numberThat([](double number) { return number >= 0 && std::isfinite(number); }, "from 0 on", ">= 0");
+}
+
 inline CLI::Validator between(double least, double most)
 {
     const std::string range = cv::format("%g to %g", least, most);

@@ -18,7 +18,8 @@ namespace tools {
 
 namespace {
 
-const double SURE = 6.;         // standard deviations; corners err a little together, so that they seem more sure than they are
+// Standard deviations: told, and decided. Corners err a little together, so that they seem more sure than they are.
+const double TOLD = 3., SURE = 6.;
 
 typedef std::vector<double> Values;
 
@@ -29,7 +30,7 @@ struct FittedRig
     const Fit& fit;
 };
 
-//! One kind of value, of which each layer may have its own: how it is set free, and where it stands then.
+//! One kind of value, of which each layer may have its own: how it is set free, how well it was known, and where it stands then.
 struct GivenValue
 {
     int flag;
@@ -38,27 +39,40 @@ struct GivenValue
     bool isGiven;
     Values (*valuesOf)(const GlassWindow&);
     int (*columnOf)(const ParameterColumns&);
+    Values known;                                   //!< standard deviations, as many as there are values
+    void (*setKnown)(GivenStd&, size_t, double);    //!< all of them to one
 
     double sumOf(const GlassWindow& window) const
     {
         const Values values = valuesOf(window);
         return std::accumulate(values.begin(), values.end(), 0.);
     }
+    double varianceOfSum() const { return std::inner_product(known.begin(), known.end(), known.begin(), 0.); }
 };
 
 std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
     const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
-    return {
-        {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers && options.std.thickness == 0.,
-         [](const GlassWindow& w) { return w.thickness; }, [](const ParameterColumns& at) { return at.thickness; }},
-        {GLASS_FREE_INDEX, "index", "--index", layers && options.std.index == 0.,
-         [](const GlassWindow& w) { return w.index; }, [](const ParameterColumns& at) { return at.index; }},
-        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && options.std.distance == 0.,
-         [](const GlassWindow& w) { return Values{w.distance}; }, [](const ParameterColumns& at) { return at.distance; }},
-        {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia && options.std.outerIndex == 0.,
-         [](const GlassWindow& w) { return Values{w.outerIndex}; }, [](const ParameterColumns& at) { return at.outerIndex; }}};
+    Values indices;
+    for (size_t i = 0; i < window.index.size(); i++)
+        indices.push_back(options.std.indexOf(i));
+    std::vector<GivenValue> values = {
+        {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers,
+         [](const GlassWindow& w) { return w.thickness; }, [](const ParameterColumns& at) { return at.thickness; },
+         Values(window.thickness.size(), options.std.thickness), [](GivenStd& std, size_t, double value) { std.thickness = value; }},
+        {GLASS_FREE_INDEX, "index", "--index", layers,
+         [](const GlassWindow& w) { return w.index; }, [](const ParameterColumns& at) { return at.index; },
+         indices, [](GivenStd& std, size_t count, double value) { std.index.assign(count, value); }},
+        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia,
+         [](const GlassWindow& w) { return Values{w.distance}; }, [](const ParameterColumns& at) { return at.distance; },
+         {options.std.distance}, [](GivenStd& std, size_t, double value) { std.distance = value; }},
+        {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia,
+         [](const GlassWindow& w) { return Values{w.outerIndex}; }, [](const ParameterColumns& at) { return at.outerIndex; },
+         {options.std.outerIndex}, [](GivenStd& std, size_t, double value) { std.outerIndex = value; }}};
+    for (GivenValue& value : values)
+        value.isGiven = value.isGiven && (!(options.flags & value.flag) || value.varianceOfSum() > 0.);
+    return values;
 }
 
 //! As it was given; the value may have come by the name of a material.
@@ -71,27 +85,30 @@ std::string typed(const RigOptions& options, const GivenValue& given, double val
     return format("%.5g", value);
 }
 
-std::string sentenceOf(const GivenValue& given, const std::string& where, const std::string& typed, double before, double estimate,
-                       double std)
+std::string sentenceOf(const GivenValue& given, const std::string& where, const std::string& typed, double estimate, double std,
+                       double deviations)
 {
-    return format("the images contradict %s=%s: set free, the %s%s would be ", given.option, typed.c_str(), given.word, where.c_str())
-        + plusMinus(estimate, std) + format(", %.0f standard deviations away", std::abs(estimate - before)/std);
+    const double known = std::sqrt(given.varianceOfSum());
+    return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, typed.c_str(),
+                  known > 0. ? format(" +- %.2g", known).c_str() : "", given.word, where.c_str())
+        + plusMinus(estimate, std) + format(", %.*f standard deviations away", deviations < 10. ? 1 : 0, deviations);
 }
 
-std::string sentenceOfLayers(const GivenValue& given, const std::string& where, double before, double estimate, double std)
+std::string sentenceOfLayers(const GivenValue& given, const std::string& where, double before, double estimate, double std,
+                             double deviations)
 {
     return format("the images contradict %s: set free, the sum over the layers%s would be ", given.option, where.c_str())
-        + plusMinus(estimate, std) + format(" and not %.5g, %.0f standard deviations away", before, std::abs(estimate - before)/std);
+        + plusMinus(estimate, std) + format(" and not %.5g, %.*f standard deviations away", before, deviations < 10. ? 1 : 0, deviations);
 }
 
-/** The thicknesses or indices of several layers, which images hardly distinguish: each free by a part of what it is, so that the prior
-shares among them what the images say of their sum. */
-RigModel withLayersFree(const FittedRig& c, const GivenValue& given)
+/** A rig in which nothing is known of a value any more. The thicknesses or indices of several layers, which images hardly distinguish,
+are free by a part of what they are, so that the prior shares among them what the images say of their sum. */
+RigModel withoutPrior(const FittedRig& c, const GivenValue& given)
 {
     const double PART = 0.2;
     const Values values = given.valuesOf(c.options.window);
     RigOptions options = c.options;
-    (given.flag == GLASS_FREE_THICKNESS ? options.std.thickness : options.std.index) = PART**std::min_element(values.begin(), values.end());
+    given.setKnown(options.std, values.size(), values.size() > 1 ? PART**std::min_element(values.begin(), values.end()) : 0.);
     RigModel rig = c.fit.rig.clone();
     rig.known.resize(rig.cameras.size());
     for (size_t k = 0; k < rig.cameras.size(); k++)
@@ -104,80 +121,63 @@ RigModel withLayersFree(const FittedRig& c, const GivenValue& given)
     return rig;
 }
 
-//! A given value that is set free.
+/** What is known to a variance p, and was estimated within it with the variance s: the estimate is off the given value by a random
+number of variance p - s if that is right. No second fit is needed to see that it may not be. */
+bool isWithinPrior(const FittedRig& c, const GivenValue& given, int camera)
+{
+    const double TELLING = 1e-3;        // part of p: the images tell less
+    const int count = (int)given.known.size(), first = given.columnOf(columnsOf(c.fit.rig, camera));
+    const double prior = given.varianceOfSum(), left = sum(c.fit.covariance(Rect(first, first, count, count)))[0];
+    const double moved = given.sumOf(c.fit.rig.cameras[camera]->window()) - given.sumOf(c.options.window);
+    return prior > 0. && (prior - left < TELLING*prior || std::abs(moved) < TOLD*std::sqrt(prior - left));
+}
+
+//! A given value that is set free, in each window in which it may be wrong.
 std::vector<Contradiction> contradictedBy(const FittedRig& c, const GivenValue& given)
 {
-    const int count = (int)given.valuesOf(c.options.window).size();
-    const Fit fit = count > 1 ? fitImages(c.data, withLayersFree(c, given), c.fit.views, c.options.flags)
-                              : fitImages(c.data, c.fit.rig, c.fit.views, c.options.flags | given.flag);
-    const int windows = countWindows(c.fit.rig);
-    std::vector<Contradiction> contradictions;
+    std::vector<int> cameras;
     for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.fit.rig.ownsWindow(k) && !isWithinPrior(c, given, k))
+            cameras.push_back(k);
+    if (cameras.empty())
+        return {};
+    const int count = (int)given.known.size(), windows = countWindows(c.fit.rig);
+    const Fit fit = fitImages(c.data, withoutPrior(c, given), c.fit.views, count > 1 ? c.options.flags : c.options.flags | given.flag);
+    std::vector<Contradiction> contradictions;
+    for (int k : cameras)
     {
-        if (!c.fit.rig.ownsWindow(k))
-            continue;
-        const double before = given.sumOf(c.fit.rig.cameras[k]->window()), estimate = given.sumOf(fit.rig.cameras[k]->window());
+        const double before = given.sumOf(c.options.window), estimate = given.sumOf(fit.rig.cameras[k]->window());
         const int first = given.columnOf(columnsOf(fit.rig, k));
-        const double std = std::sqrt(sum(fit.covariance(Rect(first, first, count, count)))[0]);
+        const double variance = sum(fit.covariance(Rect(first, first, count, count)))[0], std = std::sqrt(variance);
+        const double deviations = std::abs(estimate - before)/std::sqrt(variance + given.varianceOfSum());
         const std::string where = windows == 1 ? std::string() : format(" of camera %d's window", k + 1);
-        if (std::abs(estimate - before) > SURE*std)
-            contradictions.push_back({count > 1 ? sentenceOfLayers(given, where, before, estimate, std)
-                                      : sentenceOf(given, where, typed(c.options, given, before), before, estimate, std), fit.sigma});
+        if (deviations > TOLD)
+            contradictions.push_back({count > 1 ? sentenceOfLayers(given, where, before, estimate, std, deviations)
+                                      : sentenceOf(given, where, typed(c.options, given, before), estimate, std, deviations),
+                                      fit.sigma, deviations > SURE});
     }
     return contradictions;
 }
 
-//! A window's parameters in the order of their columns.
-Values parametersOf(const GlassWindow& window)
+//! Wedges, which are about 0.
+std::vector<Contradiction> contradictedWedges(const FittedRig& c)
 {
-    Values all(window.normal.val, window.normal.val + 3);
-    all.push_back(window.distance);
-    all.insert(all.end(), window.thickness.begin(), window.thickness.end());
-    all.insert(all.end(), window.index.begin(), window.index.end());
-    all.insert(all.end(), {window.innerIndex, window.outerIndex});
-    for (const Vec2d& wedge : window.wedge)
-        all.insert(all.end(), {wedge[0], wedge[1]});
-    return all;
-}
-
-//! The option that says how well a parameter is known, and the factor from radians to its unit.
-std::pair<const char*, double> deviationOption(const ParameterColumns& at, int column)
-{
-    if (column >= at.wedge)
-        return {"--wedge-std", 60.*180./CV_PI};
-    return {column == at.outerIndex ? "--outer-index-std" : column >= at.index ? "--index-std" : column >= at.thickness
-            ? "--thickness-std" : "--distance-std", 1.};
-}
-
-/** What is known to a standard deviation p, and estimated within it with the deviation s: the estimate is off the given value by a
-random number of variance p^2 - s^2 if the latter is right. */
-std::vector<Contradiction> contradictedPriors(const FittedRig& c)
-{
-    const double TOLD = 3.;             // standard deviations
-    const double TELLING = 1e-3;        // part of p^2: the images tell less
+    const double prior = std::pow(c.options.std.wedge, 2), minutes = 60.*180./CV_PI;
     std::vector<Contradiction> contradictions;
-    for (int k = 0; k < (int)c.fit.rig.known.size(); k++)
+    for (int k = 0; k < c.data.cameraCount && prior > 0.; k++)
     {
-        const KnownCamera& known = c.fit.rig.known[k];
-        const ParameterColumns own = columnsOf(*c.fit.rig.cameras[k]);
-        if (known.covariance.rows <= own.lensCount || !c.fit.rig.ownsWindow(k))
-            continue;
-        const int first = columnsOf(c.fit.rig, k).lens;
-        const Values given = parametersOf(known.window), found = parametersOf(c.fit.rig.cameras[k]->window());
-        for (int i = own.distance; i < own.end; i++)
+        const ParameterColumns at = columnsOf(c.fit.rig, k);
+        const GlassWindow window = c.fit.rig.cameras[k]->window();
+        for (int i = at.wedge; i < at.end && c.fit.rig.ownsWindow(k); i++)
         {
-            const double prior = known.covariance.at<double>(i, i), left = c.fit.covariance.at<double>(first + i, first + i);
-            if (!(prior > 0.) || !(prior - left > TELLING*prior))
-                continue;
-            const double before = given[i - own.normal], estimate = found[i - own.normal];
-            const double deviations = std::abs(estimate - before)/std::sqrt(prior - left);
-            const auto option = deviationOption(own, i);
+            const double wedge = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2], left = c.fit.covariance.at<double>(i, i);
+            const double deviations = std::abs(wedge)/std::sqrt(std::max(prior - left, 1e-3*prior));
             if (deviations > TOLD)
-                contradictions.push_back({format("the images contradict %s=%.3g: %s%s would be ", option.first,
-                                                 option.second*std::sqrt(prior), own.names[i].c_str(),
+                contradictions.push_back({format("the images contradict --wedge-std=%.3g: %s%s would be ", minutes*std::sqrt(prior),
+                                                 at.names[i - at.lens].c_str(),
                                                  c.data.cameraCount == 1 ? "" : format(" of camera %d", k + 1).c_str())
-                                          + plusMinus(option.second*estimate, option.second*std::sqrt(left))
-                                          + format(" and not %.5g, %.1f standard deviations away", option.second*before, deviations),
+                                          + plusMinus(minutes*wedge, minutes*std::sqrt(left))
+                                          + format(" arc minutes, %.1f standard deviations away", deviations),
                                           c.fit.sigma, deviations > SURE});
         }
     }
@@ -227,9 +227,9 @@ std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions
         catch (const cv::Exception&) {}     // the images do not determine it, so they do not contradict it either
     };
     for (const GivenValue& given : givenValues(c.options))
-        if (given.isGiven && !(c.options.flags & given.flag))
+        if (given.isGiven)
             add([&] { return contradictedBy(c, given); });
-    add([&] { return contradictedPriors(c); });
+    add([&] { return contradictedWedges(c); });
     if (hasExactPoses(c))
         add([&] { return contradictedPoses(c); });
     keepTheBest(contradictions);

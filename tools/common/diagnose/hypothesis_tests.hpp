@@ -7,10 +7,9 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 
-/* Tests of the hypothesis that a given value is right (thickness, index, distance, index of the scene's medium, exact poses). Each that
-is exact is set free in turn, all else as in the calibration; what is known to a standard deviation has been estimated within it. If
-the estimate is many standard deviations away, the images contradict the given value, and the stated +- of everything that depends on
-it is too small. */
+/* Tests of the hypothesis that a given value is right (thickness, index, distance, index of the scene's medium, wedge, exact poses).
+Each is set free in turn, all else as in the calibration. If the estimate is further from the given value than both standard deviations
+explain, the images contradict the given value, and the stated +- of everything that depends on it is too small. */
 namespace tools {
 
 //! A given value that the images contradict.

@@ -1,0 +1,101 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "calibrate/given_std.hpp"
+#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tools {
+
+namespace {
+
+// What is usual where nothing is said.
+const double THICKNESS_MM = 0.1;            // a data sheet's tolerance, or a caliper on a built-in pane
+const double INDEX = 0.001;                 // of a number; a material's name tells its own
+const double DISTANCE_MM = 1.;              // a ruler to where the centre of projection is thought to be
+const double WEDGE_MINUTES = 1.;            // plate glass
+const double SQUARE_RELATIVE = 5e-4;        // a printed board
+const double PLACEMENT_MM = 0.02;           // a board on a stand, a camera on its mount, while the window goes in
+
+const char* const DEFAULT = "default";
+const double ARC_MINUTE = CV_PI/180./60.;
+
+//! A rectangular distribution of that half width (GUM 4.3.7); air as a number is exact.
+Std usualOf(const GivenIndex& index)
+{
+    if (index.isNamed())
+        return Std(index.deviation/std::sqrt(3.), index.light());
+    return Std(index.value == 1. ? 0. : INDEX, DEFAULT);
+}
+
+} // namespace
+
+std::string Std::text(const std::string& unit, double factor) const
+{
+    return cv::format("%.2g", value*factor) + unit + (source.empty() ? "" : " (" + source + ")");
+}
+
+bool GivenStd::ofIndices() const
+{
+    return std::any_of(index.begin(), index.end(), [](const Std& std) { return std > 0.; });
+}
+
+bool GivenStd::ofWindow() const
+{
+    return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0.;
+}
+
+void GivenStdOptions::addTo(CLI::App& app)
+{
+    std::fill(said_, said_ + COUNT, std::numeric_limits<double>::quiet_NaN());
+    const auto add = [&](const char* name, int which, const std::string& about) {
+        app.add_option(name, said_[which], about)->check(notNegative());
+    };
+    add("--thickness-std", THICKNESS, "how well the thickness of each layer is known, one standard deviation; it is estimated within it, "
+        "and is in every +-; 0: exact (default: 0.1 mm)");
+    add("--index-std", INDEX, "the same of each index (default: 0.001; of a material, its tolerance and the light's band)");
+    add("--outer-index-std", OUTER_INDEX, "the same of --outer-index (default: the same)");
+    add("--distance-std", DISTANCE, "the same of --distance (default: 1 mm)");
+    add("--wedge-std", WEDGE, "the same of the angle between the faces of each layer, about 0, in arc minutes: polished optics 0.2, plate "
+        "glass 1 to 3 (default: 1)");
+    add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
+    add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
+        "along each axis, one standard deviation (default: 0.02 mm)");
+    app.add_flag("--exact", exact_, "what is given is exact, where none of these options says another thing (simulated images)");
+}
+
+GivenStd GivenStdOptions::of(const GivenValues& v) const
+{
+    const bool layers = !v.layers.empty();
+    const auto isSaid = [this](int which) { return said_[which] > 0.; };
+    if (!layers && (isSaid(THICKNESS) || isSaid(INDEX) || isSaid(WEDGE)))
+        throw Failure("--thickness-std, --index-std and --wedge-std are of layers: give --thickness and --index");
+    if (v.equalMedia && (isSaid(DISTANCE) || isSaid(OUTER_INDEX)))
+        throw Failure("--distance-std and --outer-index-std: with the same medium on both sides of the window the distance has no effect "
+                      "on the image, and that medium is what indices are relative to; leave them out");
+    if (isSaid(DISTANCE) && !v.distance)
+        throw Failure("--distance-std is of a distance that is given: add --distance");
+    if (isSaid(SQUARE) && !(v.square > 0.))
+        throw Failure("--square-std is of the square of a board: add --square");
+    // What is free has no default: it is estimated from the images alone.
+    const auto choose = [&](int which, double factor, const Std& usual, bool hasDefault) {
+        if (!std::isnan(said_[which]))
+            return Std(factor*said_[which]);
+        return hasDefault && !exact_ ? usual : Std();
+    };
+    GivenStd std;
+    std.thickness = choose(THICKNESS, 1., Std(THICKNESS_MM*v.millimetre, DEFAULT), layers && !v.freeThickness);
+    for (const GivenIndex& layer : v.layers)
+        std.index.push_back(choose(INDEX, 1., usualOf(layer), !v.freeIndex));
+    std.outerIndex = choose(OUTER_INDEX, 1., usualOf(v.outer), !v.equalMedia && !v.freeOuterIndex);
+    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT), !v.equalMedia && v.distance && !v.freeDistance);
+    std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && !v.freeWedge);
+    std.scale = choose(SQUARE, v.square > 0. ? 1./v.square : 0., Std(SQUARE_RELATIVE, DEFAULT), v.square > 0.);
+    std.placement = choose(PLACEMENT, 1., Std(PLACEMENT_MM*v.millimetre, DEFAULT), true);
+    return std;
+}
+
+} // namespace tools

@@ -1,0 +1,69 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_GIVEN_STD_HPP
+#define REFRACT_TOOLS_GIVEN_STD_HPP
+
+#include "calibrate/given_index.hpp"
+#include <string>
+#include <vector>
+
+namespace CLI { class App; }
+
+/* How well given values are known: as the user says, or as is usual for values of their kind. */
+namespace tools {
+
+//! A standard deviation; 0: exact.
+struct Std
+{
+    double value = 0.;
+    std::string source;             //!< "default", or the material that says it; empty: the user
+
+    Std(double std = 0., const std::string& from = "") : value(std), source(from) {}
+    operator double() const { return value; }
+    //! "0.1 mm", "0.1 mm (default)"; with the factor to the unit's value.
+    std::string text(const std::string& unit, double factor = 1.) const;
+};
+
+struct GivenStd
+{
+    Std thickness, outerIndex, distance;
+    std::vector<Std> index = {};        //!< of each layer; empty: exact
+    Std wedge;                          //!< of each of its two angles, radians
+    Std scale;                          //!< of the targets (a board's square), relative
+    Std placement;                      //!< by how much all boards moved between direct and glass, per axis
+
+    Std indexOf(size_t layer) const { return layer < index.size() ? index[layer] : Std(); }
+    bool ofIndices() const;
+    bool ofWindow() const;
+};
+
+//! What the defaults depend on.
+struct GivenValues
+{
+    std::vector<GivenIndex> layers;
+    GivenIndex outer;
+    bool equalMedia = true;             //!< on both sides of the window
+    bool distance = false;              //!< was given
+    double square = 0.;                 //!< of a board; 0: there is none
+    double millimetre = 1.;             //!< in the unit of lengths
+    bool freeThickness = false, freeIndex = false, freeOuterIndex = false, freeDistance = false, freeWedge = false;
+};
+
+//! --thickness-std and its kin.
+class GivenStdOptions
+{
+public:
+    void addTo(CLI::App& app);
+    //! What was said; of all else what is usual. Throws Failure where a deviation is said of what there is not.
+    GivenStd of(const GivenValues& values) const;
+
+private:
+    enum { THICKNESS, INDEX, OUTER_INDEX, DISTANCE, WEDGE, SQUARE, PLACEMENT, COUNT };
+    double said_[COUNT];                //!< NaN: not
+    bool exact_ = false;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_GIVEN_STD_HPP
