@@ -49,7 +49,8 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
                          # it; the finest should be a pixel where the scene is nearest
   sets:                  # what to render; equal poses get equal file names
     direct: { window: 0, poses: [ pair ] }
-    glass: { window: 1, poses: [ pair, board ] }
+    glass: { window: 1, poses: [ pair, board ], motion: { rvec: [0., 0., 0.], tvec: [0.02, 0., 0.] } }  # all boards moved by
+                         # it in camera 1 (or the mount by its inverse), as they do a little between direct and glass images
     room: { window: 1, scene: 1 })";
 
 namespace {
@@ -64,7 +65,8 @@ struct Job
     std::string set, stem;
     int camera;
     bool window;
-    BoardPose pose;         // of the target in camera 1
+    BoardPose pose;         // of the target in camera 1, before the set's motion
+    RigidTransform motion;
     std::string depthPath;  // of a textured scene; empty: it is of the target
     cv::Mat depth;
 
@@ -79,11 +81,11 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
         {
             const std::string folder = set.name + (scene.cameras.single() ? "" : std::to_string(camera + 1)) + "/";
             if (set.scene)
-                jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {},
+                jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {}, {},
                                 folder + "scene_depth.tiff", {}});
             for (const NamedPose& pose : set.poses)
                 jobs.push_back({folder + pose.stem + "." + extension, set.name, pose.stem, camera, set.window, pose.pose,
-                                "", {}});
+                                set.motion, "", {}});
         }
     return jobs;
 }
@@ -97,9 +99,12 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
     return result;
 }
 
+//! In camera 1.
+BoardPose movedPose(const Job& job) { return inOtherCamera(job.pose, job.motion); }
+
 BoardPose poseOf(const Scene& scene, const Job& job)
 {
-    return inOtherCamera(job.pose, scene.cameras.extrinsics[job.camera]);
+    return inOtherCamera(movedPose(job), scene.cameras.extrinsics[job.camera]);
 }
 
 //! The camera in the light of each channel; empty: all see the same.
@@ -159,7 +164,7 @@ void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const
         else
         {
             const std::vector<cv::Point2d> pixels = projectTarget(*target, poseOf(scene, job), cameraOf(scene, job));
-            fs << "rvec" << job.pose.rvec << "tvec" << job.pose.tvec << "pixels" << cv::Mat(pixels).reshape(1);
+            fs << "rvec" << movedPose(job).rvec << "tvec" << movedPose(job).tvec << "pixels" << cv::Mat(pixels).reshape(1);
         }
         fs << "}";
     }

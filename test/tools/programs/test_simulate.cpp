@@ -91,6 +91,25 @@ TEST_CASE("a window whose faces are not parallel is rendered, measured through, 
     }
 }
 
+TEST_CASE("boards that moved between two sets are rendered where they are then", "[tools][simulate]")
+{
+    const TemporaryFolder folder;
+    writeFile(folder / "rig.yml", scene(CHESSBOARD, "   direct: { window: 0, poses: [ fixed ] }\n"
+        "   moved: { window: 0, poses: [ fixed ], motion: { rvec: [ 0., 0., 0. ], tvec: [ 1., 0., 0. ] } }\n"));
+    REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out")).code == 0);
+    const auto truth = readTruth(folder / "out");
+    const TrueView& before = truth.at("direct/fixed1.png");
+    const TrueView& after = truth.at("moved/fixed1.png");
+    CHECK(cv::norm(after.tvec - before.tvec - cv::Vec3d(1, 0, 0)) < 1e-12);
+    CHECK(after.pixels[0].x - before.pixels[0].x > 1.5);    // a millimetre
+    // As refract_calib takes them: where the boards were first.
+    CHECK(mentions(readFile(folder / "out/poses.csv"), ",-100,-80,650"));
+    writeFile(folder / "bad.yml", scene(CHESSBOARD, "   moved: { window: 0, poses: [ fixed ], motion: { rvec: [ 0. ] } }\n"));
+    const ToolResult bad = runTool("refract_simulate " + (folder / "bad.yml") + " --out-dir=" + (folder / "no"));
+    CHECK(bad.code == 1);
+    CHECK(mentions(bad.err, "motion"));
+}
+
 TEST_CASE("rendered targets are found where the truth says, numbered alike however they are turned", "[tools][simulate]")
 {
     struct Kind { std::string target, options; int count; bool turned; double limit; };

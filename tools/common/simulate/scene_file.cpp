@@ -185,6 +185,12 @@ ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& po
     const Keys keys(node, "sets: " + set.name);
     set.window = keys.number("window", 0, 1, 1) != 0;
     set.scene = keys.number("scene", 0, 1, 0) != 0;
+    if (keys.has("motion"))
+    {
+        const Keys motion(node["motion"], keys.name() + ", motion");
+        const auto r = motion.numbers("rvec", 3), t = motion.numbers("tvec", 3);
+        set.motion = transformOf(Vec3d(r[0], r[1], r[2]), Vec3d(t[0], t[1], t[2]));
+    }
     const bool posesNamed = node["poses"].isSeq() && node["poses"].size() > 0;
     if (set.name.find('/') != std::string::npos || (set.scene ? keys.has("poses") : !posesNamed))
         throw Failure(keys.name() + ": either 'poses' must be a list of names of poses, or 'scene' 1; and the set's name a "

@@ -24,7 +24,8 @@
       pair: { count: 6, distance: [560., 660.], tilt_deg: [5., 30.], roll_deg: 15., margin: 20. }   # drawn
     sets:                                    # folder <name> (several cameras: <name>1, <name>2, ...)
       direct: { window: 0, poses: [ pair ] }
-      glass: { window: 1, poses: [ pair ] }
+      glass: { window: 1, poses: [ pair ], motion: { rvec: [0., 0., 0.], tvec: [0.02, 0., 0.] } }    # all boards moved by
+                                             # it in camera 1, or the cameras' mount by its inverse
       room: { window: 1, scene: 1 }          # the textured scene, which surfaces_file.hpp tells, in place of the target
     scene: ...
     texture: ...
@@ -44,6 +45,7 @@ struct ImageSet
     std::string name;
     bool window = true;
     bool scene = false;             //!< of the textured scene; then it has no poses
+    RigidTransform motion = {};     //!< of all its boards in camera 1, from their poses
     std::vector<NamedPose> poses;
 };
 
