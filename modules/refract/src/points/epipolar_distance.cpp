@@ -145,7 +145,7 @@ void EpipolarDistance::run(Search& search, int n, int rounds, double enough, uch
 
 /* What the steps did not find: the nearest of many points of the visible part of the curve is where they begin anew. What the
 camera sees of the curve may end before the curve. */
-uchar EpipolarDistance::lookCloser(Search& search, int lane) const
+uchar EpipolarDistance::refineFromSamples(Search& search, int lane) const
 {
     const auto at = [&](int column) { return search.curve[column*BLOCK + lane]; };
     double& tFar = search.curve[CURVE_FAR*BLOCK + lane];
@@ -211,7 +211,7 @@ void EpipolarDistance::evaluate(Matches& block, int n, bool derivatives) const
     int seen = 0;
     for (int k = 0; k < left; k++)
     {
-        block.status[lanes[k]] = lookCloser(search, lanes[k]);
+        block.status[lanes[k]] = refineFromSamples(search, lanes[k]);
         if (block.status[lanes[k]] == REFRACT_OK)
             lanes[seen++] = lanes[k];
     }

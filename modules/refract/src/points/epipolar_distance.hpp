@@ -46,7 +46,7 @@ private:
     struct Search;
     void start(const Matches& block, Search& search, int n, uchar* status) const;
     void run(Search& search, int n, int rounds, double enough, uchar* arrived) const;
-    uchar lookCloser(Search& search, int lane) const;
+    uchar refineFromSamples(Search& search, int lane) const;
     void differentiate(Matches& block, const Search& search, int n) const;
 
     const Camera& curves_;      //!< the camera whose pixels have curves
