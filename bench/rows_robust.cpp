@@ -35,9 +35,9 @@ struct Trials
             for (int i = 0; i < points; i++)
             {
                 const bool isWrong = i < wrong*points;
-                const Point2d off(noise(engine), noise(engine)), strewn(uniform(0, WIDTH), uniform(0, HEIGHT));
-                seen[i] = isWrong ? strewn : seen[i] + off;
-                seenBare[i] = isWrong ? strewn : seenBare[i] + off;
+                const Point2d off(noise(engine), noise(engine)), random(uniform(0, WIDTH), uniform(0, HEIGHT));
+                seen[i] = isWrong ? random : seen[i] + off;
+                seenBare[i] = isWrong ? random : seenBare[i] + off;
             }
             pixels.push_back(seen);
             pixelsBare.push_back(seenBare);
@@ -90,7 +90,7 @@ Row pnpRow(const Data& d, const std::string& key, const std::string& work)
     return r;
 }
 
-//! Two cameras' matches, strewn where they are wrong.
+//! Two cameras' matches, wrong ones uniformly random.
 struct Matched
 {
     Matched(double outerIndex, int count, double wrong) : scene1(FIVE, outerIndex), scene2(FIVE, outerIndex, true)
@@ -108,18 +108,18 @@ struct Matched
         for (int i = 0; i < count; i++)
         {
             const Point2d off1(noise(engine), noise(engine)), off2(noise(engine), noise(engine));
-            const Point2d strewn(uniform(0, WIDTH), uniform(0, HEIGHT));
+            const Point2d random(uniform(0, WIDTH), uniform(0, HEIGHT));
             pixels1[i] += off1;
             bare1[i] += off1;
-            pixels2[i] = i < wrong*count ? strewn : pixels2[i] + off2;
-            bare2[i] = i < wrong*count ? strewn : bare2[i] + off2;
+            pixels2[i] = i < wrong*count ? random : pixels2[i] + off2;
+            bare2[i] = i < wrong*count ? random : bare2[i] + off2;
         }
     }
     Scene scene1, scene2;
     Vec3d rvec = Vec3d(0, 0.3, 0), truth = Vec3d(-180, 0, 25);
     std::vector<Point2d> pixels1, pixels2, bare1, bare2;        //!< through the windows, without
     Mat R, T;
-    int agreeing = 0;
+    int inliers = 0;
 };
 
 double degreesOff(const Matched& m)
@@ -134,7 +134,7 @@ double degreesOff(const Matched& m)
 Row recoverRow(const std::shared_ptr<Matched>& m, const std::string& key, const std::string& work)
 {
     Row r = { key, work, "cv::findEssentialMat, recoverPose", { 0, 0 }, 1, {}, {}, {}, {}, 0, "deg", 0.5, {}, {}, {} };
-    r.ours = [=] { m->agreeing = refractiveRecoverPose(m->pixels1, m->pixels2, m->scene1.camera, m->scene2.camera, m->R,
+    r.ours = [=] { m->inliers = refractiveRecoverPose(m->pixels1, m->pixels2, m->scene1.camera, m->scene2.camera, m->R,
                                                        m->T); };
     r.peer = [=]
     {
@@ -147,7 +147,7 @@ Row recoverRow(const std::shared_ptr<Matched>& m, const std::string& key, const 
     };
     r.error = [=] { return degreesOff(*m); };
     r.peerError = [=] { r.peer(); return degreesOff(*m); };
-    r.successes = [=] { return m->agreeing >= 0.55*(double)m->pixels1.size() ? 1 : 0; };
+    r.successes = [=] { return m->inliers >= 0.55*(double)m->pixels1.size() ? 1 : 0; };
     return r;
 }
 

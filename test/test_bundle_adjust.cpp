@@ -292,17 +292,36 @@ TEST_CASE("Results do not depend on the number of threads", "[bundle]")
     const RigTruth truth = wandRig();
     const BundleScene scene = makeWandScene(truth, 30, random, 0.1);
     const int threads = getNumThreads();
-    Mat covariances[2];
-    for (int k = 0; k < 2; k++)
+    std::vector<BundleCall> calls;
+    std::vector<double> rms;
+    for (int count : { 1, 2, 3 })
     {
         Random start(11);
-        setNumThreads(k == 0 ? 1 : 4);
-        BundleCall call(truth, scene, start);
-        call.run(GLASS_FREE_EXTRINSICS);
-        covariances[k] = call.covariance;
+        setNumThreads(count);
+        calls.emplace_back(truth, scene, start);
+        rms.push_back(calls.back().run(GLASS_FREE_EXTRINSICS));
     }
     setNumThreads(threads);
-    CHECK(largestDifference(covariances[0], covariances[1]) == 0);
+    const BundleCall& one = calls[0];
+    for (size_t k = 1; k < calls.size(); k++)
+    {
+        const BundleCall& other = calls[k];
+        CAPTURE(k + 1);
+        CHECK(rms[k] == rms[0]);
+        CHECK(largestDifference(one.covariance, other.covariance) == 0);
+        CHECK(largestDifference(one.deviations, other.deviations) == 0);
+        CHECK(largestDifference(one.pointDeviations, other.pointDeviations) == 0);
+        CHECK(largestDifference(one.perViewErrors, other.perViewErrors) == 0);
+        CHECK(largestDifference(Mat(one.points), Mat(other.points)) == 0);
+        for (size_t c = 0; c < one.cameras.size(); c++)
+        {
+            CHECK(largestDifference(one.Rs[c], other.Rs[c]) == 0);
+            CHECK(largestDifference(one.Ts[c], other.Ts[c]) == 0);
+            CHECK(largestDifference(one.cameras[c]->lensParameters(), other.cameras[c]->lensParameters()) == 0);
+            CHECK(one.cameras[c]->window().normal == other.cameras[c]->window().normal);
+            CHECK(one.cameras[c]->window().distance == other.cameras[c]->window().distance);
+        }
+    }
 }
 
 TEST_CASE("What is wrong with the arguments, and what nothing determines, is said", "[bundle]")

@@ -159,6 +159,27 @@ TEST_CASE("Poses known with a covariance: between none and exact, and as good as
     CHECK(uncertain < 0.2*unknown);
 }
 
+TEST_CASE("Covariances of poses in a vector of fixed matrices are those in a vector of Mat", "[rig_glass]")
+{
+    Random random(6490);
+    const RigTruth truth = makeRig(1, { 0 }, 1);
+    const RigScene scene = makeRigScene(truth, 4, random, 0.1);
+    const std::vector<Matx66d> fixed(4, 1e-6*Matx66d::eye());
+    RigCall call(truth, scene, false), same(truth, scene, false);
+    for (RigCall* c : { &call, &same })
+    {
+        c->rvecs = vectorsOf(scene.rvecs);
+        c->tvecs = vectorsOf(scene.tvecs);
+    }
+    call.poseCovariances.assign(4, Mat(1e-6*Matx66d::eye()));
+    call.run(GLASS_USE_POSES);
+    calibrateGlassRig(same.object, same.direct, same.refracted, same.cameras, same.windows, same.Rs, same.Ts, same.rvecs, same.tvecs,
+                      same.deviations, same.covariance, same.perViewErrors, same.imageStatus, same.inliers, same.otherMinima,
+                      GLASS_USE_POSES, fixed);
+    CHECK(call.cameras[0]->window().normal == same.cameras[0]->window().normal);
+    CHECK(largestDifference(call.covariance, same.covariance) == 0);
+}
+
 TEST_CASE("A second minimum of a window seen through only is told, with how much worse it is", "[rig_glass]")
 {
     int withSecond = 0, ambiguous = 0;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Calls that succeed raise no OpenCV error inside, which a program with an error callback would be told of.
-#include "scenes.hpp"
+#include "calibration_scenes.hpp"
+#include "temporary_file.hpp"
 
 #include <opencv2/core/utility.hpp>
 
@@ -43,6 +44,11 @@ TEST_CASE("Successful calls raise no error inside", "[error_callback]")
         points.push_back(Point3d(20*(i % 10) - 90, 20*(i/10) - 90, 600 + i % 7));
     points.push_back(Point3d(0, 0, 5));         // inside the window
     points.push_back(Point3d(NaN, 0, 5));
+    Random random(40);
+    const CalibrationScene boards = makeScene(paperCamera(paper::pane()), 5, random, 0.1);
+    GlassWindow straight = paper::pane();
+    straight.normal = Vec3d(0, 0, 1);
+    const TemporaryFile file(".yml");
     Watch watch;
     std::vector<Point2d> pixels1, pixels2, out;
     std::vector<Point3d> found, directions;
@@ -77,6 +83,15 @@ TEST_CASE("Successful calls raise no error inside", "[error_callback]")
     const Mat some = disparity.clone();
     refractiveReprojectImageTo3D(some, cloud, one, two, R, T, R1, R2, P1, P2, depth1, depth2, false, -1, noArray(), 0.1, noArray(),
                                  covariance);
+    Vec3d rvec, tvec;
+    CHECK(refractiveSolvePnP(std::vector<Point3d>(points.begin(), points.begin() + 100),
+                             std::vector<Point2d>(pixels1.begin(), pixels1.begin() + 100), one, rvec, tvec));
+    CHECK(calibrateGlass(boards.object, boards.direct, boards.refracted, paperCamera(straight), noArray(), noArray()) < 0.2);
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    std::vector<Mat> Rs, Ts;
+    writeRig(file.path, { one, two }, std::vector<Vec3d>{ Vec3d(), R }, std::vector<Vec3d>{ Vec3d(), T });
+    readRig(file.path, cameras, Rs, Ts);
+    CHECK(cameras.size() == 2);
     CAPTURE(watch.last);
     CHECK(watch.count == 0);
     CHECK_THROWS_AS(refractiveUndistortPoints(pixels1, out, one, -1.), cv::Exception);      // the watch works

@@ -19,7 +19,7 @@ struct WrongMatches
     Vec3d rvec, tvec;
 };
 
-enum Wrongness { STREWN, SHIFTED };
+enum Wrongness { RANDOM, SHIFTED };
 
 struct Camera3
 {
@@ -60,7 +60,7 @@ WrongMatches wrongMatches(const Ptr<RefractiveCamera>& camera, Random& random, i
         s.pixels[i] += Point2d(random.normal(sigma), random.normal(sigma));
         if (i >= wrong)
             s.right.push_back(i);
-        else if (how == STREWN)
+        else if (how == RANDOM)
             s.pixels[i] = Point2d(random.uniform(0, 1280), random.uniform(0, 1024));
         else                            // neighbours in a repeating pattern, in all directions
             s.pixels[i] += Point2d((random.below(3) - 1)*shift.x, (random.below(2)*2 - 1)*shift.y);
@@ -92,7 +92,7 @@ TEST_CASE("Three points on three rays have the true pose among theirs", "[pnp][r
         double worst = 0;
         for (int trial = 0; trial < COUNT; trial++)
         {
-            const WrongMatches s = wrongMatches(c.camera, random, 3, 0, false, STREWN, 0);
+            const WrongMatches s = wrongMatches(c.camera, random, 3, 0, false, RANDOM, 0);
             Mat origins, directions;
             refractiveUnprojectPoints(s.pixels, origins, directions, c.camera);
             SceneRay rays[3];
@@ -155,7 +155,7 @@ TEST_CASE("The right matches are found, whatever lens and window", "[pnp][ransac
                 Random random(4100 + kind);
                 CAPTURE(name(kind), lens.name, planar, seed());
                 const Ptr<RefractiveCamera> camera = makeCamera(lens, makeWindow(kind, random));
-                WrongMatches s = wrongMatches(camera, random, 40, 16, planar, STREWN, 0);
+                WrongMatches s = wrongMatches(camera, random, 40, 16, planar, RANDOM, 0);
                 for (int i = 0; i < 16; i++)        // of this lens's image
                     s.pixels[i] = s.perfect[i] + Point2d(random.uniform(20, 60), random.uniform(20, 60));
                 Mat r, t;
@@ -173,7 +173,7 @@ TEST_CASE("Seventy of a hundred matches wrong", "[pnp][ransac]")
     for (const Camera3& c : ransacCameras())
         for (bool planar : { false, true })
             for (float limit : { 8.f, 2.f })
-                for (Wrongness how : { STREWN, SHIFTED })
+                for (Wrongness how : { RANDOM, SHIFTED })
                 {
                     Random random(4200);
                     int right = 0;
@@ -191,7 +191,7 @@ TEST_CASE("Seventy of a hundred matches wrong", "[pnp][ransac]")
                     }
                     CAPTURE(c.name, planar, limit, how, seed());
                     printNumber(std::string("PnP, 70 of 100 wrong, ") + c.name + (planar ? ", flat" : ", solid") + ", "
-                                + (how == STREWN ? "strewn" : "shifted") + ", limit " + std::to_string((int)limit)
+                                + (how == RANDOM ? "uniformly random" : "shifted") + ", limit " + std::to_string((int)limit)
                                 + " px: right in", 100.*right/TRIALS, "%");
                     CHECK(right >= 0.97*TRIALS);
                     if (limit == 8)
@@ -206,7 +206,7 @@ TEST_CASE("Nothing but wrong matches is false, not a pose", "[pnp][ransac]")
     int answers = 0;
     for (int trial = 0; trial < 20; trial++)
     {
-        const WrongMatches s = wrongMatches(camera, random, 100, 100, trial % 2 == 0, STREWN);
+        const WrongMatches s = wrongMatches(camera, random, 100, 100, trial % 2 == 0, RANDOM);
         Mat r = Mat(Vec3d(1, 2, 3), true), t = Mat(Vec3d(4, 5, 6), true);
         std::vector<int> inliers(5);
         const float limit = trial % 4 < 2 ? 8.f : 2.f;
@@ -226,7 +226,7 @@ TEST_CASE("RANSAC: few points, unseen ones, a guess, types", "[pnp][ransac]")
 {
     Random random(4400);
     const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
-    WrongMatches s = wrongMatches(camera, random, 30, 10, false, STREWN, 0.1);
+    WrongMatches s = wrongMatches(camera, random, 30, 10, false, RANDOM, 0.1);
     Mat r, t, r2, t2;
     std::vector<int> inliers, inliers2;
     REQUIRE(refractiveSolvePnPRansac(s.object, s.pixels, camera, r, t, false, 300, 3, 0.999, inliers));
@@ -291,7 +291,7 @@ TEST_CASE("RANSAC: what has no pose, and bad arguments", "[pnp][ransac]")
 {
     Random random(4500);
     const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
-    const WrongMatches s = wrongMatches(camera, random, 12, 0, false, STREWN, 0);
+    const WrongMatches s = wrongMatches(camera, random, 12, 0, false, RANDOM, 0);
     Mat r, t;
     const auto solve = [&](const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, int iterations = 100,
                            float limit = 8, double confidence = 0.99)

@@ -214,19 +214,19 @@ TEST_CASE("Two hundred matches, forty percent wrong, against the Cramer-Rao boun
     }
 }
 
-//! Cameras that hardly move apart or not at all, in water: is the length in its interval, and the rotation off as is stated?
-static void checkShortBaseline(double length, int trialCount, double most)
+//! Cameras that hardly move apart or not at all: is the length in its interval, and the rotation off as is stated?
+static void checkShortBaseline(SceneMedium medium, double length, int trialCount, double most)
 {
     int held = 0;
     double chi2 = 0;
     for (int trial = 0; trial < trialCount; trial++)
     {
         Random random(6900 + trial);
-        Matched m = matchedScene(WATER, random, 150, DEEP, Vec3d(0.05, 0.15, -0.04), length*normalize(Vec3d(-200, 15, 40)));
+        Matched m = matchedScene(medium, random, 150, DEEP, Vec3d(0.05, 0.15, -0.04), length*normalize(Vec3d(-200, 15, 40)));
         disturb(m, random, 0.2, 0);
         Mat R, T, covariance;
         Vec2d interval;
-        CAPTURE(length, trial, seed());
+        CAPTURE(medium, length, trial, seed());
         REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, noArray(), covariance,
                                       interval) > 140);
         Vec3d rvec;
@@ -235,10 +235,10 @@ static void checkShortBaseline(double length, int trialCount, double most)
         chi2 += off.dot(Matx33d(Mat(covariance(Rect(0, 0, 3, 3)).clone()).ptr<double>()).inv()*off)/trialCount;
         held += interval[0] <= length && length <= interval[1];
     }
-    printNumber("refractiveRecoverPose, water, T of " + std::to_string((int)length) + " mm: 95 % interval holds it in",
-                100.*held/trialCount, "%");
+    printNumber(std::string("refractiveRecoverPose, ") + (medium == AIR ? "air" : "water") + ", T of " +
+                std::to_string((int)length) + " mm: 95 % interval holds it in", 100.*held/trialCount, "%");
     printNumber("chi^2 of the rotation's three", chi2, "");
-    CAPTURE(length, seed());
+    CAPTURE(medium, length, seed());
     CHECK(held >= trialCount*0.95 - 3*std::sqrt(trialCount*0.95*0.05));
     CHECK(held <= trialCount*most);
     CHECK(chi2 < 3 + 3*std::sqrt(6./trialCount));
@@ -246,14 +246,17 @@ static void checkShortBaseline(double length, int trialCount, double most)
 
 TEST_CASE("A short baseline's length is in its interval, and a pure rotation's", "[pose][recover]")
 {
-    checkShortBaseline(3, trials(30), 1);
-    checkShortBaseline(0, trials(60), 1);
+    checkShortBaseline(WATER, 3, trials(30), 1);
+    checkShortBaseline(WATER, 0, trials(60), 1);
+    checkShortBaseline(AIR, 0, trials(60), 1);
+    checkShortBaseline(AIR, 1, trials(30), 1);
 }
 
 TEST_CASE("Intervals of short baselines hold what they say", "[.monte-carlo]")
 {
-    for (double length : { 0., 1., 3., 10., 30. })
-        checkShortBaseline(length, trials(400), 0.99);
+    for (SceneMedium medium : { AIR, WATER })
+        for (double length : { 0., 1., 3., 10., 30. })
+            checkShortBaseline(medium, length, trials(400), medium == AIR ? 1 : 0.99);
 }
 
 TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")

@@ -550,6 +550,9 @@ TEST_CASE("What cannot be rectified is refused by name and value", "[stereo_rect
     CHECK_THAT(map(depth, r.R2, r.P2, noArray()), Contains("P and T (0, 0, 0) do not belong together"));
     CHECK_THAT(map(depth, r.R1, r.P1, good.T), Contains("do not belong together"));
     CHECK_THAT(map(depth, r.R2, r.P2, 1.1*good.T), Contains("do not belong together"));
+    for (double off : { -30., 30. })
+        CHECK_THAT(map(depth, r.R2, r.P2, good.T + off*good.camera2->window().normal),
+                   Contains("P and T") && Contains("do not belong together: the pinhole is at"));
     CHECK_THAT(thrown([&] { initRefractiveStereoRectifyMap(good.camera1, depth, r.R1, r.P1, good.T, Size(64, 48), CV_32FC1, map1, map2); }),
                Contains("do not belong together"));
     CHECK_THAT(thrown([&] { initRefractiveStereoRectifyMap(good.camera1, 700., r.R2, r.P2, noArray(), Size(64, 48), CV_32FC1, map1,

@@ -185,4 +185,6 @@ opencv() {      # the modules that the module and the tools use, and nothing tha
   for library in libjpeg-turbo libtiff; do
     cp source/3rdparty/$library/LICENSE.md "$licences/$library"
   done
+  mkdir -p "$licences/opencv-3rdparty"          # what OpenCV's own install states for the code that it includes
+  cp "$prefix"/share/licenses/opencv4/* "$licences/opencv-3rdparty"
 }

@@ -27,7 +27,7 @@ macro(refract_find_ceres)
   endif()
 endmacro()
 
-# Leaves out what needs Ceres where there is none: of the targets of the calling directory, the module's sources and tests.
+# Leaves out what needs Ceres where there is none: of the targets of the calling directory, sources, tests, speed tests.
 function(refract_choose_sources module_dir)
   if(REFRACT_HAS_CERES)
     return()
@@ -38,6 +38,7 @@ function(refract_choose_sources module_dir)
   list(REMOVE_ITEM calibrators ${without} ${module_dir}/src/calibrate/calibrate_normal.cpp
        ${module_dir}/src/calibrate/calibration_error.cpp ${module_dir}/src/start/normal_from_pairs.cpp)
   set_source_files_properties(${calibrators} ${module_dir}/test/test_calibration.cpp
-                              ${module_dir}/test/test_calibration_error.cpp PROPERTIES HEADER_FILE_ONLY ON)
+                              ${module_dir}/test/test_calibration_error.cpp ${module_dir}/perf/perf_calibration.cpp
+                              PROPERTIES HEADER_FILE_ONLY ON)
   set_source_files_properties(${without} PROPERTIES COMPILE_DEFINITIONS REFRACT_WITHOUT_CERES)
 endfunction()

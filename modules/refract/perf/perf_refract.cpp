@@ -2,45 +2,11 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "perf_precomp.hpp"
+#include "perf_scene.hpp"
 
 // Every call that works on an array of points, for one pane in air and for one before water.
 
 namespace opencv_test { namespace {
-
-enum { AIR, WATER };
-CV_ENUM(Scene, AIR, WATER)
-
-class Refract : public TestBaseWithParam<Scene>
-{
-protected:
-    void SetUp() CV_OVERRIDE
-    {
-        TestBaseWithParam<Scene>::SetUp();
-        const double outerIndex = GetParam() == WATER ? 1.333 : 1;
-        const Matx33d K(2438, 0, 644, 0, 2438, 500, 0, 0, 1);
-        const std::vector<double> D = { -0.4082, 0.4359, 0, 0, 0.1 };
-        camera1 = RefractiveCamera::create(K, D, GlassWindow(Vec3d(-0.25, 0.1, 1), 20, 1.54, 50, outerIndex));
-        camera2 = RefractiveCamera::create(K, D, GlassWindow(Vec3d(0.18, 0.03, 1), 20, 1.54, 40, outerIndex));
-        rvec = Vec3d(0, 0.3, 0);
-        tvec = Vec3d(-180, 0, 25);
-    }
-
-    //! Points in a grid 160 mm wide, 600 mm away.
-    void makePoints(int count)
-    {
-        const int columns = cvRound(std::sqrt((double)count));
-        for (int i = 0; i < count; i++)
-            points.push_back(Point3d(160.*(i % columns)/columns - 80, 160.*(i/columns)/columns - 80, 600));
-        refractiveProjectPoints(points, Vec3d(), Vec3d(), camera1, pixels1);
-        refractiveProjectPoints(points, rvec, tvec, camera2, pixels2);
-    }
-
-    Ptr<RefractiveCamera> camera1, camera2;
-    Vec3d rvec, tvec;
-    std::vector<Point3d> points;
-    std::vector<Point2d> pixels1, pixels2;
-};
 
 PERF_TEST_P(Refract, projectPoints, Scene::all())
 {
@@ -177,6 +143,39 @@ PERF_TEST_P(Refract, recoverPose, Scene::all())
         pixels2[i] += Point2d(60, 40);
     Mat R, t;
     TEST_CYCLE() refractiveRecoverPose(pixels1, pixels2, camera1, camera2, R, t);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, solvePnPGeneric, Scene::all())
+{
+    makePoints(100);
+    std::vector<Vec3d> rs, ts;
+    TEST_CYCLE() refractiveSolvePnPGeneric(points, pixels1, camera1, rs, ts);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, solveP3P, Scene::all())
+{
+    makePoints(4);
+    points.pop_back();
+    pixels1.pop_back();
+    std::vector<Mat> rs, ts;
+    TEST_CYCLE() refractiveSolveP3P(points, pixels1, camera1, rs, ts);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, undistortImage, Scene::all())
+{
+    Mat image(1024, 1280, CV_8UC3, Scalar::all(7)), corrected;
+    TEST_CYCLE() refractiveUndistortImage(image, corrected, camera1, 600.);
+    SANITY_CHECK_NOTHING();
+}
+
+PERF_TEST_P(Refract, initStereoRectifyMap, Scene::all())
+{
+    Mat R1, R2, P1, P2, Q, map1, map2;
+    refractiveStereoRectify(camera1, camera2, rvec, tvec, Size(1280, 1024), Vec2d(400, 1000), R1, R2, P1, P2, Q);
+    TEST_CYCLE() initRefractiveStereoRectifyMap(camera2, 600., R2, P2, tvec, szVGA, CV_16SC2, map1, map2);
     SANITY_CHECK_NOTHING();
 }
 

@@ -131,4 +131,35 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
                                      covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");
 }
 
+// Two standing cameras and known distances between some of the points.
+TEST(Refract_BundleAdjust, finds_both_windows)
+{
+    std::vector<Point3d> points;
+    std::vector<Vec4d> lengths;
+    for (int i = 0; i < 40; i++)
+    {
+        const Point3d end(25.*(i % 7) - 75, 22.*(i % 5) - 44, 560 + 11.*(i % 9));
+        points.push_back(end);
+        points.push_back(end + Point3d(30*std::cos(1.7*i), 30*std::sin(1.7*i), 20*std::sin(2.3*i)));
+        lengths.push_back(Vec4d(2*i, 2*i + 1, cv::norm(points[2*i + 1] - points[2*i]), 0.01));
+    }
+    std::vector<std::vector<Point2d> > pixels;
+    pixels.push_back(project(points, camera1()));
+    pixels.push_back(project(points, camera2(), R(), T()));
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    cameras.push_back(RefractiveCamera::create(K1(), D1(), straight(window1())));
+    cameras.push_back(RefractiveCamera::create(K2(), D2(), straight(window2())));
+    std::vector<Mat> Rs(2), Ts(2);
+    Rs[0] = Mat::eye(3, 3, CV_64F);
+    Rs[1] = Mat(R());
+    Ts[0] = Mat::zeros(3, 1, CV_64F);
+    Ts[1] = Mat(T());
+    std::vector<Point3d> found;
+    EXPECT_NEAR(0, refractiveBundleAdjust(pixels, cameras, std::vector<int>(), Rs, Ts, found, lengths), 1e-5);
+    EXPECT_NEAR(0, angle(cameras[0]->window().normal, window1().normal), 1e-5);
+    EXPECT_NEAR(0, angle(cameras[1]->window().normal, window2().normal), 1e-5);
+    ASSERT_EQ(points.size(), found.size());
+    EXPECT_NEAR(0, cv::norm(found[17] - points[17]), 1e-3);
+}
+
 }} // namespace

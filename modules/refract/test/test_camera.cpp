@@ -38,6 +38,14 @@ TEST(Refract_GlassWindow, is_written_and_read)
     EXPECT_EQ(window.outerIndex, copy.outerIndex);
 }
 
+TEST(Refract_RefractiveIndex, is_the_catalogues)
+{
+    EXPECT_NEAR(1.51680, refractiveIndex("N-BK7", 587.5618), 1e-5);     // Schott's data sheet, helium's yellow line
+    EXPECT_EQ(refractiveIndex("water:T=20", 550), refractiveIndex("water", 550));
+    EXPECT_EQ(0.0005, refractiveIndexTolerance("N-BK7"));
+    EXPECT_REFUSED(refractiveIndex("N-BK8", 550), "N-BK7");
+}
+
 TEST(Refract_Camera, keeps_what_it_was_made_of)
 {
     const Ptr<RefractiveCamera> camera = camera2();

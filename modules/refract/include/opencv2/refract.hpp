@@ -33,8 +33,8 @@ without a window.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
-  index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty input gives empty output.
-  Calibrations that have no answer for their data throw CalibrationError, which is a cv::Exception too.
+  index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty input gives empty output; only
+  calibrations and bundle adjustment refuse it. Those without an answer throw CalibrationError, a cv::Exception too.
 - **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust need Ceres. In a build
   without it they throw with the code Error::StsNotImplemented, and the text says what to install. All other functions work.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
@@ -204,8 +204,8 @@ public:
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
-Faces that are not quite parallel have a `wedge`. A commercial pane is sold with up to 3 arc minutes, tempered plate with no
-figure at all; at range z a wedge d looks like a tilt of the pane by index z d/thickness.
+Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
+tempered glass. At range z a wedge d looks like a tilt of the pane by index z d/thickness.
 
 The first face has `normal`. With e1, the camera's x axis made orthogonal to the normal, and e2 = normal x e1, the outer face of
 layer i leans by the sum W = wedge[0] + ... + wedge[i] against the first one: its normal is the first one's, turned by the angle
@@ -213,10 +213,10 @@ layer i leans by the sum W = wedge[0] + ... + wedge[i] against the first one: it
 \f[ m = \cos|W|\,n + \frac{\sin|W|}{|W|}\,(W_1 e_1 + W_2 e_2) \f]
 so that neither the order of the two components nor that of the layers matters. A positive component turns the normal of the
 outer face towards its axis: the layer gets thinner there. Thickness is measured along the normal through the centre
-of projection. Where two faces meet before the light has passed both, there is no answer.
+of projection. If two faces intersect before the ray has passed both, the point has no solution.
 
 The indices are those of one colour of light. Where `materials` says what the media are, atWavelength() is the same window in
-another colour: of water 3 to 6 px between blue and red at the edge of a wide port.
+another colour. In water, blue and red are 3 to 6 px apart at the edge of a wide port.
 */
 class CV_EXPORTS_W_SIMPLE GlassWindow
 {
@@ -240,7 +240,7 @@ public:
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
-    /** Of each layer: how much its outer face leans against its inner one, radians about 0 along e1 and e2, see above.
+    /** Of each layer: the angle between its outer and its inner face, radians along e1 and e2, about 0; see above.
     Empty: all faces are parallel. */
     CV_PROP_RW std::vector<Vec2d> wedge;
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
@@ -250,8 +250,8 @@ public:
 
     /** @brief The same window in light of another colour.
 
-    Each index is multiplied by what its material's changes by from `wavelength` to wavelengthNm, so that one that was measured
-    or estimated keeps its distance from the catalogue's. Where `wavelength` is 0, the indices become the catalogue's.
+    Each index is multiplied by what its material's changes by from `wavelength` to wavelengthNm, so that a measured index
+    keeps its ratio to the catalogue's value. Where `wavelength` is 0, the indices become the catalogue's.
     @param wavelengthNm in air, nm.
     Throws cv::Exception if the window refracts and `materials` is empty, or as refractiveIndex does.
     */
@@ -431,7 +431,7 @@ A .cameramodel file of mrcal holds one camera. For a rig, `camera-%d.cameramodel
 
 @param filename path; %d stands for the number of .cameramodel files.
 @param cameras one or more.
-@param Rs 3x3 CV_64F rotation camera 1 -> camera, one per camera; the first is the identity.
+@param Rs 3x3 CV_64F camera 1 -> camera, one per camera, first the identity. A std::vector<Matx33d> must have this size before.
 @param Ts 3x1 CV_64F, as Rs; the first is 0.
 
 Throws cv::Exception with the name of the file and the key if something is missing or wrong.
@@ -575,8 +575,8 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, con
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z of the scene points, camera frame: one number for all, or N numbers. A bad one among N concerns only its point
-(status). (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this would be ambiguous
+@param depth z of the scene points, camera frame: one number for all, or N numbers. An invalid depth sets only the status of
+its own point. (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this is ambiguous
 and is refused: give a double, or an array of one number. For a camera without a window the depth has no effect and may be
 empty.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
@@ -820,8 +820,8 @@ CV_EXPORTS_W void computeRefractiveEpilines(InputArray points, int whichImage,
 
 The curve is the image of a pixel's ray between the near and far end of depthRange; it begins where the ray leaves the window.
 For a pixel beyond an end of the curve the distance is that from the end. So a small distance means that the match has a point
-in the depth range. The distance is exact to 1e-6 px near the curve. For pixels hundreds of pixels away, about 1 in some
-hundred distances refers to a neighbouring part of the curve. For pixels thousands of pixels away it is exact to some percent.
+in the depth range. The distance is exact to 1e-6 px near the curve. For pixels hundreds of pixels away, about 1 in 100
+distances refers to a neighbouring part of the curve. For pixels thousands of pixels away it is exact to some percent.
 
 @param points1 N raw pixels of camera 1.
 @param points2 N raw pixels of camera 2, the supposed matches.

@@ -172,12 +172,15 @@ std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, 
 
 std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count)
 {
-    const int given = covariances.empty() ? 0 : (int)covariances.total();
-    if (given != 0 && given != count)
-        CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, but there are %d views", given, count));
+    std::vector<Mat> all;
+    if (!covariances.empty())
+        covariances.getMatVector(all);              // of a std::vector<Matx66d>, too
+    if (!all.empty() && (int)all.size() != count)
+        CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, but there are %d views", (int)all.size(), count));
+    all.resize(count);
     std::vector<PosePrior> priors;
     for (int view = 0; view < count; view++)
-        priors.push_back(readPosePrior(given ? covariances.getMat(view) : Mat(), numbered("poseCovariances", view)));
+        priors.push_back(readPosePrior(all[view], numbered("poseCovariances", view)));
     return priors;
 }
 

@@ -145,7 +145,7 @@ void EpipolarDistance::run(Search& search, int n, int rounds, double enough, uch
 
 /* What the steps did not find: the nearest of many points of the visible part of the curve is where they begin anew. What the
 camera sees of the curve may end before the curve. */
-uchar EpipolarDistance::lookCloser(Search& search, int lane) const
+uchar EpipolarDistance::refineFromSamples(Search& search, int lane) const
 {
     const auto at = [&](int column) { return search.curve[column*BLOCK + lane]; };
     double& tFar = search.curve[CURVE_FAR*BLOCK + lane];
@@ -211,7 +211,7 @@ void EpipolarDistance::evaluate(Matches& block, int n, bool derivatives) const
     int seen = 0;
     for (int k = 0; k < left; k++)
     {
-        block.status[lanes[k]] = lookCloser(search, lanes[k]);
+        block.status[lanes[k]] = refineFromSamples(search, lanes[k]);
         if (block.status[lanes[k]] == REFRACT_OK)
             lanes[seen++] = lanes[k];
     }
@@ -258,10 +258,11 @@ void EpipolarDistance::differentiate(Matches& block, const Search& search, int n
     pointKernels().distanceDerivatives(motion_, n, x, y, z, ray.dx, ray.dy, ray.dz, m, m + BLOCK, m + 2*BLOCK, byPoint1,
                                        byPoint2, nearest, out);
     for (int i = 0; i < n; i++)
-        if (status[i] != REFRACT_OK || search.isCut[i])         // an end of visibility moves in its own way
-            for (int c = 0; c < 10; c++)
-                if (status[i] != REFRACT_OK || search.nearest[NEAREST_AT_END*BLOCK + i] != 0)
-                    out.at(0, c)[i] = NaN;
+    {
+        block.isCut[i] = search.isCut[i] && search.nearest[NEAREST_AT_END*BLOCK + i] != 0;
+        for (int c = 0; c < 10 && status[i] != REFRACT_OK; c++)
+            out.at(0, c)[i] = NaN;
+    }
 }
 
 static void distances(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
@@ -304,7 +305,7 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
             for (int c = 0; c < 10 && jacobian; c++)
             {
                 const int from = c < 4 && whichImage == 2 ? (c + 2) % 4 : c;
-                jacobian->at<double>(begin + i, c) = ok ? block.jacobian[from*BLOCK + i] : NaN;
+                jacobian->at<double>(begin + i, c) = ok && !block.isCut[i] ? block.jacobian[from*BLOCK + i] : NaN;
             }
         }
         outStatus.store(begin, n, block.status);

@@ -26,6 +26,8 @@ struct Matches
     double distance[BLOCK];     //!< of the other's pixel from the curve
     double depth[BLOCK];        //!< z of the nearest point, in the frame of the curves' camera
     double jacobian[10*BLOCK];  //!< by the curve's pixel (2), the other (2), the rotation vector (3), the translation (3)
+    //! The nearest point is where visibility ends. How that moves is not known: the derivatives are those of a constant depth.
+    uchar isCut[BLOCK];
 };
 
 //! Distances of pixels of one camera from the curves of pixels of another.
@@ -44,7 +46,7 @@ private:
     struct Search;
     void start(const Matches& block, Search& search, int n, uchar* status) const;
     void run(Search& search, int n, int rounds, double enough, uchar* arrived) const;
-    uchar lookCloser(Search& search, int lane) const;
+    uchar refineFromSamples(Search& search, int lane) const;
     void differentiate(Matches& block, const Search& search, int n) const;
 
     const Camera& curves_;      //!< the camera whose pixels have curves

@@ -136,12 +136,14 @@ Matx66d covarianceOf(const std::vector<Matx16d>& byPose, const Matx<double, 6, N
     return motion*inverseOfPositive(sum.curvature)*motion.t();
 }
 
-//! How the errors move with rotation vector and T, and their covariance if the errors' variance is 1.
+/** How the errors move with rotation vector and T, and their covariance if the errors' variance is 1. That all points are in front is
+an inequality and no observation: at its bound the errors rise steeply on one side, and say nothing of the other. */
 Matx66d covarianceOf(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose, bool atLength,
                      std::vector<Matx16d>& byPose)
 {
+    const double OF_LINES = 0;              // the errors of rays that may meet anywhere
     std::vector<double> errors;
-    sampsonErrors(pair, matches, pose, errors, &byPose);
+    sampsonErrors(pair, matches, pose, errors, &byPose, OF_LINES);
     return atLength ? covarianceOf(byPose, motionAtLength(pose)) : covarianceOf(byPose, Matx66d::eye());
 }
 
@@ -202,17 +204,34 @@ Vec3d difference(const Vec3d& from, Vec3d to)
     return norm(otherWay - from) < norm(to - from) ? otherWay - from : to - from;
 }
 
-/** The rotation at an end of the length's 95 % interval is as likely as that, which a covariance of the best pose need not say: where
-T is hardly known, rotation and T are not each other's linear functions. */
-void widen(Matx66d& covariance, const Vec3d& toEnd)
+//! The rotation's covariance becomes at least another one, in all directions.
+void widen(Matx66d& covariance, const Matx33d& other)
 {
-    const double NORMAL = 3.841459;         // the square that 5 % exceed
-    const double square = toEnd.dot(inverseOfPositive(covariance.get_minor<3, 3>(0, 0))*toEnd);
-    if (!(square > NORMAL))
+    const Matx33d own = covariance.get_minor<3, 3>(0, 0);
+    Vec3d variances, ratios;
+    Matx33d axes, turned;                   // rows
+    if (!checkRange(Mat(own)) || !checkRange(Mat(other)) || !eigen(own, variances, axes) || !(variances[2] > 0))
         return;
+    const Vec3d sigmas(std::sqrt(variances[0]), std::sqrt(variances[1]), std::sqrt(variances[2]));
+    const Matx33d whitening = Matx33d::diag(Vec3d(1/sigmas[0], 1/sigmas[1], 1/sigmas[2]))*axes;
+    eigen(whitening*other*whitening.t(), ratios, turned);
+    for (int k = 0; k < 3; k++)
+        ratios[k] = std::max(ratios[k] - 1, 0.);
+    const Matx33d root = axes.t()*Matx33d::diag(sigmas)*turned.t(), wider = own + root*Matx33d::diag(ratios)*root.t();
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
-            covariance(r, c) += toEnd[r]*toEnd[c]*(1/NORMAL - 1/square);
+            covariance(r, c) = wider(r, c);
+}
+
+/** The rotation at an end of the length's 95 % interval is as likely as that, and as uncertain as it is there. A covariance of the best
+pose need not say this: where T is hardly known, rotation and T are not each other's linear functions. */
+void widenToEnd(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& end, Estimate& e)
+{
+    const double NORMAL = 3.841459;         // the square that 5 % exceed
+    std::vector<Matx16d> byPose;
+    const Vec3d off = difference(rotationVector(e.motion.R), rotationVector(end.R));
+    widen(e.covariance, off*off.t()*(1/NORMAL));
+    widen(e.covariance, (e.variance*covarianceOf(pair, matches, end, !pair.refracts(), byPose)).get_minor<3, 3>(0, 0));
 }
 
 //! The most likely pose over all lengths, from a good one; false if there are too few inliers.
@@ -257,7 +276,7 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     }
     e.covariance = e.variance*covarianceOf(pair, some, e.motion, e.interval[1] == INFINITE, byPose);
     for (const RigidTransform& end : lengths.ends)
-        widen(e.covariance, difference(rotationVector(e.motion.R), rotationVector(end.R)));
+        widenToEnd(pair, some, end, e);
     e.fitted = fitted;
     e.inliers = best.inliers;
     e.squares.assign(matches.size(), limit*limit);

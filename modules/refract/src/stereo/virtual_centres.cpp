@@ -8,8 +8,7 @@
 
 namespace cv { namespace refract {
 
-//! Where a ray along the window's normal comes from.
-static double paraxialTau(const Camera& camera)
+double paraxialTau(const Camera& camera)
 {
     const Vec3d n = camera.layers().normal();
     Rays rays;

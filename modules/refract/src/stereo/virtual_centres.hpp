@@ -39,6 +39,9 @@ private:
     std::vector<Ray> rays1_, rays2_;    //!< each in the frame of its camera
 };
 
+//! Tau of a ray along the window's normal.
+double paraxialTau(const Camera& camera);
+
 /** Taus of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones nearest to
 those of rays along the normals. */
 Vec2d bestVirtualCentres(const StereoPair& pair, const RowSamples& samples, double depth);

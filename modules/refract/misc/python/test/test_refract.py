@@ -373,6 +373,56 @@ class refract_test(NewOpenCVTests):
         self.assertClose(make_window().normal, cameras[0].window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, cameras[1].window().normal, 1e-6)
 
+    def test_stereo(self):
+        size = (1280, 1024)
+        results = cv.refract.refractiveStereoRectify(self.camera1, self.camera2, R, T, size, (400, 1000))
+        R1, R2, P1, P2, Q = results[:5]
+        self.assertEqual(((3, 4), (3, 4), (4, 4)), (P1.shape, P2.shape, Q.shape))
+        maps1 = cv.refract.initRefractiveStereoRectifyMap(self.camera1, 600., R1, P1, None, size, cv.CV_32FC1)
+        maps2 = cv.refract.initRefractiveStereoRectifyMap(self.camera2, 600., R2, P2, T, size, cv.CV_32FC1)
+        self.assertEqual([(1024, 1280)]*4, [m.shape for m in maps1 + maps2])
+        disparity = np.full((1024, 1280), 700, np.float32)
+        depth1, depth2 = cv.refract.refractiveRectifiedDepth(disparity, P1, P2, size)[:2]
+        self.assertEqual(((1024, 1280), (1024, 1280)), (depth1.shape, depth2.shape))
+        with self.assertRaisesRegex(cv.error, 'do not belong together'):
+            cv.refract.initRefractiveStereoRectifyMap(self.camera2, 600., R2, P2, None, size, cv.CV_32FC1)
+
+    @needs_ceres
+    def test_bundle_adjust(self):
+        points = self.points + np.array([0, 0, 7.])*(np.arange(30) % 5)[:, None]
+        pixels = [cv.refract.refractiveProjectPoints(points, self.zero, self.zero, self.camera1)[0],
+                  cv.refract.refractiveProjectPoints(points, R, T, self.camera2)[0]]
+        lengths = np.array([[i, 29 - i, np.linalg.norm(points[i] - points[29 - i]), 0.01] for i in range(15)])
+        cameras = [self.camera1.clone(), self.camera2.clone()]
+        result = cv.refract.refractiveBundleAdjustExtended(
+            [[pixels[0]], [pixels[1]]], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [self.zero.copy()],
+            [self.zero.copy()], points + 0.5, lengths)
+        self.assertLess(result[0], 1e-5)
+        self.assertClose(points, result[5], 1e-3)
+
+    def test_pnp_generic_extended(self):
+        pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
+        pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
+        count, rvecs, tvecs, errors, covariances = cv.refract.refractiveSolvePnPGenericExtended(
+            make_board(), pixels, self.camera1, False, None, None, sigma=0.1)
+        self.assertEqual([count]*4, [len(a) for a in (rvecs, tvecs, errors, covariances)])
+        self.assertEqual((6, 6), covariances[0].shape)
+        self.assertClose(pose[1], tvecs[0], 1e-4)
+
+    def test_rig_is_written_and_read(self):
+        handle, filename = tempfile.mkstemp('.yml')
+        os.close(handle)
+        try:
+            cv.refract.writeRig(filename, [self.camera1, self.camera2], [np.eye(3), R], [np.zeros(3), T], [0, 1])
+            cameras, Rs, Ts = cv.refract.readRig(filename)
+            windows = cv.refract.readRigExtended(filename)[3]
+        finally:
+            os.remove(filename)
+        self.assertEqual((2, 2, 2, [0, 1]), (len(cameras), len(Rs), len(Ts), list(windows)))
+        self.assertClose(R, Rs[1], 1e-12)
+        self.assertClose(T, Ts[1], 1e-9)
+        self.assertClose(self.camera2.window().normal, cameras[1].window().normal, 1e-12)
+
     def test_pnp(self):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
         pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]
