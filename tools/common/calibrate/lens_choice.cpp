@@ -18,7 +18,8 @@ const int MOST_IMAGES = 60;             // of a camera: more decide nothing else
 const size_t MIN_IMAGES = 3;            // of a flat target, to find a lens from
 const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target are held out (selectLensCoefficients)
 const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
-const double CLEARLY_BETTER = 0.97;     // a fisheye's error, to be taken in place of OpenCV's usual model
+// A fisheye's error in that of OpenCV's model, to be taken in its place: of the rational one, which has more coefficients; of others.
+const double AS_GOOD = 1.02, CLEARLY_BETTER = 0.97;
 
 //! What the candidates are fitted to.
 struct LensImages
@@ -188,7 +189,8 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
     const LensChoice fisheye = chooseCoefficients(data, images, true, options, robust);
     if (fisheye.scores.empty())
         return choice;
-    const bool better = choice.scores.empty() || fisheye.lens().px < CLEARLY_BETTER*choice.lens().px;
+    const bool better = choice.scores.empty()
+        || fisheye.lens().px < (choice.lens().coefficients == RICHEST ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
     const int before = (int)choice.scores.size();
     choice.direct = fisheye.direct;
     choice.byImages = fisheye.byImages;
