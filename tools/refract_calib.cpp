@@ -41,6 +41,7 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
+#include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/poses_file.hpp"
@@ -72,7 +73,7 @@ struct Options
     RigSources images;
     WatchOptions watch;
     PerCamera<std::string> camera;
-    std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "opencv5";
+    std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
     std::string innerIndex = "1", outerIndex = "1";
     std::string channel;
     double wavelength = 0., distance = 0.;
@@ -94,6 +95,13 @@ template<typename T> std::vector<std::string> namesOf(const std::map<std::string
     std::vector<std::string> names;
     for (const auto& entry : map)
         names.push_back(entry.first);
+    return names;
+}
+
+std::vector<std::string> lensNames()
+{
+    std::vector<std::string> names = namesOf(pinholeLenses());
+    names.insert(names.begin(), "auto");
     return names;
 }
 
@@ -125,8 +133,8 @@ Options parseOptions(Command& command)
         if (c > 1)
             camera->group("");              // told in the manual
     }
-    app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, or "
-                   "cv::fisheye's four")->check(CLI::IsMember(namesOf(pinholeLenses())))
+    app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
+                   "cv::fisheye's four, or auto: as many as held-out images support")->check(CLI::IsMember(lensNames()))
         ->capture_default_str();
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
@@ -409,7 +417,8 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (o.target.given())
         target = std::make_unique<Target>(o.target);
     readWindow(o, c.options);
-    c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
+    if (o.lens != "auto")
+        c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
     takeStd(o, target.get(), c.options);
     c.limits = o.limits;
     c.label = o.label;
@@ -430,6 +439,10 @@ RigCalibration calibrate(const Options& o, bool quiet)
     noticeLiquidLayers(o, c.options, c.notices);
     if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
+    if (o.lens == "auto")
+        c.lens = chooseLens(c.data, c.options, o.robust);
+    if (!c.lens.scores.empty())
+        setLens(c.lens.lens(), c.options);
     const CalibrationInput input{c.data, c.options, c.square, c.notices};
     Progress progress("calibrating", 5, quiet);
     try

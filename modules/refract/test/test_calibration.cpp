@@ -83,6 +83,32 @@ std::vector<std::vector<Mat> > asMats(const PixelViews& first, const PixelViews&
     return cameras;
 }
 
+TEST(Refract_SelectLensCoefficients, finds_k1_and_k2)
+{
+    std::vector<std::vector<Mat> > direct = asMats(views(bare1()), views(bare1()));
+    direct.resize(1);
+    const Mat none(8, 1, CV_64F, Scalar(0));
+    const std::vector<Ptr<RefractiveCamera> > cameras(1, RefractiveCamera::create(K1(), none));
+    Mat scores;
+    cv::RNG random(1);
+    for (size_t i = 0; i < direct[0].size(); i++)
+    {
+        Mat noise(direct[0][i].size(), CV_64FC2);
+        random.fill(noise, cv::RNG::NORMAL, 0, 0.05);
+        direct[0][i] += noise;
+    }
+    const int flags = selectLensCoefficients(boards(), direct, std::vector<std::vector<Mat> >(), cameras, std::vector<int>(),
+                                             noArray(), noArray(), 0, scores);
+    EXPECT_EQ(Size(4, 6), scores.size());
+    EXPECT_TRUE((flags & GLASS_FIX_TANGENT_DIST) != 0);
+    EXPECT_TRUE((flags & GLASS_FIX_K1) == 0);
+    EXPECT_NEAR(-0.41, cameras[0]->distCoeffs().at<double>(0), 0.1);
+    EXPECT_EQ(0, cameras[0]->distCoeffs().at<double>(2));
+    EXPECT_GT(scores.at<double>(0, 2), 2*scores.at<double>(2, 2));
+    EXPECT_REFUSED(selectLensCoefficients(boards(), direct, std::vector<std::vector<Mat> >(), cameras, std::vector<int>(),
+                                          noArray(), noArray(), GLASS_USE_POSES), "has no meaning here");
+}
+
 TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
 {
     std::vector<Ptr<RefractiveCamera> > cameras;

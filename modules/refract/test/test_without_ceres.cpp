@@ -31,6 +31,8 @@ TEST(Refract_WithoutCeres, the_code_is_not_implemented)
     std::vector<Mat> Rs, Ts, rvecs, tvecs;
     std::vector<Point3d> points;
     int rig = 0, bundle = 0;
+    EXPECT_REFUSED(selectLensCoefficients(boards(), none, none, cameras, std::vector<int>(), noArray(), noArray()),
+                   "selectLensCoefficients needs the library Ceres");
     try { calibrateGlassRig(boards(), none, none, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs); }
     catch (const cv::Exception& e) { rig = e.code; }
     try { refractiveBundleAdjust(views(camera1()), cameras, std::vector<int>(), Rs, Ts, points, noArray()); }

@@ -237,6 +237,51 @@ TEST_CASE("refract_calib takes the lens from the direct images and lives with mi
     CHECK(focalLengthOf(options, 102, "") == Approx(2438.).epsilon(0.01));
 }
 
+TEST_CASE("refract_calib chooses as many lens coefficients as the images determine, and says it", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.views = 14;
+    writeScene(f, options, 119);
+    const std::string summary = " --no-cross-validation --summary=" + f / "summary.json";
+    const ToolResult chosen = runTool(inputs(f, PANE + summary));
+    INFO(chosen.out << chosen.err);
+    REQUIRE(chosen.code == 0);
+    CHECK(mentions(chosen.out, "Lens: opencv, 2 coefficients (k1, k2), chosen by held-out images: 0."));
+    const nlohmann::json lens = nlohmann::json::parse(readFile(f / "summary.json"))["lens_choice"];
+    CHECK(lens["model"] == "opencv");
+    CHECK(lens["coefficients"] == 2);
+    CHECK(lens["held_out"] == "images");
+    CHECK(lens["images"] == "direct images");
+    REQUIRE(lens["candidates"].size() == 6);
+    CHECK(lens["candidates"][0]["rms_px"].get<double>() > 2*lens["candidates"][2]["rms_px"].get<double>());
+    const Mat coefficients = RefractiveCamera::read(f / "calib.yml")->distCoeffs();
+    REQUIRE(coefficients.total() == 4);
+    CHECK(coefficients.at<double>(0) == Approx(-0.408).margin(0.03));
+    CHECK(coefficients.at<double>(2) == 0);
+    CHECK(coefficients.at<double>(3) == 0);
+
+    const ToolResult named = runTool(inputs(f, PANE + summary + " --lens=opencv5"));
+    INFO(named.out << named.err);
+    REQUIRE(named.code == 0);
+    CHECK_FALSE(mentions(named.out, "Lens: "));
+    CHECK(nlohmann::json::parse(readFile(f / "summary.json"))["lens_choice"].is_null());
+    CHECK(RefractiveCamera::read(f / "calib.yml")->distCoeffs().total() == 5);
+}
+
+TEST_CASE("refract_calib chooses the lens through the window where there is no other image", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.views = 20;
+    writeScene(f, options, 120);
+    const ToolResult r = runTool(inputs(f, std::string(PANE) + " --free=intrinsics --no-cross-validation", false));
+    INFO(r.out << r.err);
+    REQUIRE(r.code != 1);
+    CHECK(mentions(r.out, "chosen by held-out images through the window: 0."));
+    CHECK(mentions(r.out, "Lens: opencv, "));
+}
+
 TEST_CASE("refract_calib ends with 2 if a limit is not met, and still writes the file", "[calib_tool]")
 {
     const TemporaryFolder f;

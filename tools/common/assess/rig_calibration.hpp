@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_RIG_CALIBRATION_HPP
 
 #include "assess/cross_validation.hpp"
+#include "calibrate/lens_choice.hpp"
 #include "calibrate/outliers.hpp"
 #include <optional>
 
@@ -38,6 +39,7 @@ struct RigCalibration
 {
     RigData data;
     RigOptions options;
+    LensChoice lens;                            //!< where the user named none
     RigModel start;
     std::vector<LensSource> lensSources;
     Fit fit;

@@ -34,11 +34,22 @@ void roundTo(double step, Mat& numbers)
         *it = std::round(*it/step)*step;
 }
 
-int calibrateCameraFlags(int coefficients)
+//! Flags of ours as those of OpenCV.
+int translated(int fixed, const std::vector<std::pair<int, int>>& flags)
 {
+    int result = 0;
+    for (const auto& flag : flags)
+        result |= fixed & flag.first ? flag.second : 0;
+    return result;
+}
+
+int calibrateCameraFlags(int coefficients, int fixed)
+{
+    const int FIXED = translated(fixed, {{GLASS_FIX_K1, CALIB_FIX_K1}, {GLASS_FIX_K2, CALIB_FIX_K2}, {GLASS_FIX_K3, CALIB_FIX_K3},
+                                         {GLASS_FIX_K4, CALIB_FIX_K4}, {GLASS_FIX_TANGENT_DIST, CALIB_ZERO_TANGENT_DIST}});
     for (const auto& lens : pinholeLenses())
         if (lens.second.coefficients == coefficients)
-            return lens.second.flags;
+            return lens.second.flags | FIXED;
     CV_Error_(Error::StsBadArg, ("coefficients is %d; cv::calibrateCamera has no such lens model", coefficients));
 }
 
@@ -91,11 +102,13 @@ double calibrateFromFocalLengths(const PinholeViews& views, Size imageSize, int 
 }
 
 /** From one focal length: k1 to k4 are 0 at first, as all together leave the right valley from a crude start. */
-double calibrateFisheyeFrom(double focal, const PinholeViews& views, Size imageSize, Matx33d& K, Vec4d& D)
+double calibrateFisheyeFrom(double focal, const PinholeViews& views, Size imageSize, int fixed, Matx33d& K, Vec4d& D)
 {
     K = Matx33d(focal, 0, 0.5*(imageSize.width - 1), 0, focal, 0.5*(imageSize.height - 1), 0, 0, 1);
     D = Vec4d();
-    const int flags = fisheye::CALIB_USE_INTRINSIC_GUESS | fisheye::CALIB_RECOMPUTE_EXTRINSIC | fisheye::CALIB_FIX_SKEW;
+    const int flags = fisheye::CALIB_USE_INTRINSIC_GUESS | fisheye::CALIB_RECOMPUTE_EXTRINSIC | fisheye::CALIB_FIX_SKEW
+        | translated(fixed, {{GLASS_FIX_K1, fisheye::CALIB_FIX_K1}, {GLASS_FIX_K2, fisheye::CALIB_FIX_K2},
+                             {GLASS_FIX_K3, fisheye::CALIB_FIX_K3}, {GLASS_FIX_K4, fisheye::CALIB_FIX_K4}});
     const int noBend = fisheye::CALIB_FIX_K1 | fisheye::CALIB_FIX_K2 | fisheye::CALIB_FIX_K3 | fisheye::CALIB_FIX_K4;
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-10);
     double rms = std::numeric_limits<double>::infinity();
@@ -107,7 +120,7 @@ double calibrateFisheyeFrom(double focal, const PinholeViews& views, Size imageS
     return checkRange(K) && checkRange(D) && K(0, 0) > 0 && K(1, 1) > 0 ? rms : std::numeric_limits<double>::infinity();
 }
 
-Ptr<RefractiveCamera> calibrateFisheye(const PinholeViews& views, Size imageSize, double& rms)
+Ptr<RefractiveCamera> calibrateFisheye(const PinholeViews& views, Size imageSize, int fixed, double& rms)
 {
     if (!views.onBoards)
         CV_Error(Error::StsNotImplemented, "cv::fisheye::calibrate takes flat targets alone: give --camera with a lens to start "
@@ -119,7 +132,7 @@ Ptr<RefractiveCamera> calibrateFisheye(const PinholeViews& views, Size imageSize
         {
             Matx33d K;
             Vec4d D;
-            const double error = calibrateFisheyeFrom(focal*imageSize.width, views, imageSize, K, D);
+            const double error = calibrateFisheyeFrom(focal*imageSize.width, views, imageSize, fixed, K, D);
             if (error >= rms)
                 continue;
             rms = error;
@@ -150,16 +163,17 @@ const std::map<std::string, PinholeLens>& pinholeLenses()
     return lenses;
 }
 
-Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, double& rms)
+Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, int fixed,
+                                       double& rms)
 {
     const PinholeViews views = seenViews(targetViews);
     if (coefficients == FISHEYE_LENS)
     {
-        const Ptr<RefractiveCamera> camera = calibrateFisheye(views, imageSize, rms);
+        const Ptr<RefractiveCamera> camera = calibrateFisheye(views, imageSize, fixed, rms);
         camera->setImageSize(imageSize);
         return camera;
     }
-    const int flags = calibrateCameraFlags(coefficients);
+    const int flags = calibrateCameraFlags(coefficients, fixed);
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13);
     Mat cameraMatrix, distCoeffs, rvecs, tvecs;
     if (views.onBoards)

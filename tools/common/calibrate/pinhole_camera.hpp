@@ -33,9 +33,10 @@ struct TargetView
 
 /** cv::calibrateCamera on the seen points of all views that are not empty; where a target is not flat, from several focal
 lengths. With FISHEYE_LENS cv::fisheye::calibrate, on flat targets, from several focal lengths too. Throws cv::Exception where
-it finds nothing. */
+it finds nothing.
+@param fixed GLASS_FIX_...: k1 to k4, p1 and p2 that stay 0 */
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
-                                                     int coefficients, double& rms);
+                                                     int coefficients, int fixed, double& rms);
 
 //! Whether a target has depth of its own, so that one view of it tells the focal length.
 bool isSolid(const std::vector<cv::Point3d>& objectPoints);

@@ -102,7 +102,7 @@ CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, 
     if (targetViews.size() < MIN_VIEWS && !solid)
         throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
     CameraCalibration result;
-    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, result.rms);
+    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, 0, result.rms);
     return result;
 }
 

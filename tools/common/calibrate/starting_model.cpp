@@ -48,7 +48,7 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (source.views < 3 && !solid)
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
-    return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, source.rms);
+    return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, options.flags, source.rms);
 }
 
 //! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.

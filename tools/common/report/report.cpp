@@ -319,6 +319,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("few_cameras", c.data.cameraCount <= 2);
     page.set("window_rows", rowsOf(windowRows(c)));
     page.set("fit_rows", rowsOf(fitRows(c)));
+    page.set("has_lens_choice", !c.lens.scores.empty());
+    if (!c.lens.scores.empty())
+        page.set("lens_choice", c.lens.sentence());
     setTable(page, "held_out", heldOutRows(c));
     setTable(page, "point_errors", pointErrorRows(c, assessment));
     setTable(page, "budget", budgetRows(assessment));

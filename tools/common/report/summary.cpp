@@ -33,7 +33,9 @@ std::string lensOf(const RigCalibration& c, int camera)
 {
     const LensSource& source = c.lensSources[camera];
     const RefractiveCamera& lens = *c.fit.rig.cameras[camera];
-    std::string text = format("%s, %d coefficients, ", lens.lensModel().c_str(), (int)lens.distCoeffs().total());
+    const bool chosen = source.kind != LensSource::FROM_FILE && !c.lens.scores.empty();
+    std::string text = format("%s, %d coefficients, ", lens.lensModel().c_str(),
+                              chosen ? c.lens.lens().coefficients : (int)lens.distCoeffs().total());
     text += source.kind == LensSource::FROM_FILE ? std::string("given") : format("%d views, %.3f px", source.views, source.rms);
     if (!(c.options.flags & GLASS_FREE_INTRINSICS))
         return text;
@@ -331,6 +333,8 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
                   {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
                   adviceRows(assessment.advice));
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
+    if (!c.lens.scores.empty())
+        out << "Lens: " << c.lens.sentence() << ".\n";
     printSentences(out, "Images in which the target was not found:", c.withoutTarget);
     std::vector<std::string> rejected;
     for (const Rejected& d : rejectedOf(c))

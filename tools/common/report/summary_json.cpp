@@ -123,6 +123,20 @@ Json droppedJson(const RigCalibration& c)
     return list;
 }
 
+//! Null where the user named the lens, or gave it.
+Json lensChoiceJson(const LensChoice& choice)
+{
+    if (choice.scores.empty())
+        return nullptr;
+    Json candidates = Json::array();
+    for (const LensScore& score : choice.scores)
+        candidates.push_back({{"model", score.model}, {"coefficients", score.coefficients}, {"rms_px", score.px}});
+    return {{"model", choice.lens().model}, {"coefficients", choice.lens().coefficients}, {"rms_px", choice.lens().px},
+            {"held_out", choice.byImages ? "images" : "parts of the target"},
+            {"images", choice.direct ? "direct images" : "glass images"}, {"candidates", candidates},
+            {"sentence", choice.sentence()}};
+}
+
 Json heldOutJson(const HeldOut& h)
 {
     if (!h.folds)
@@ -198,6 +212,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         {"notes", notes},
         {"unit", c.unit},
         {"square", c.square},
+        {"lens_choice", lensChoiceJson(c.lens)},
         {"held_out", heldOutJson(c.heldOut)},
         {"not_checked", findings.notChecked.empty() ? Json() : Json(findings.notChecked)},
         {"near_far", nearFarJson(c.nearFar)},

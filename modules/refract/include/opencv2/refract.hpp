@@ -1367,6 +1367,38 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
         OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
+/** @brief Chooses how many coefficients of a lens the images can determine.
+
+Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 and p2 too, then k3, then k4 to k6, and so on,
+as far as the cameras' lenses have them. Each is fitted, and each view is held out in turn: its error, its pose fitted to it,
+is that of the fit to the other views (to first order, without fitting again). If there are fewer than 4 views, eighths of each
+target are held out, their poses fitted to the others. The candidate with the fewest coefficients is chosen whose held-out
+error is at most 2 % and two standard errors of the difference above the best. A candidate that does not converge is left out.
+
+Give the images without the window, if there are enough of them (10 or more): only these, with cameras without a window, each
+view seen by one camera. Then no window is fitted. Otherwise give the images through the windows.
+
+@param objectPoints as calibrateGlassRig.
+@param imagePointsDirect as calibrateGlassRig.
+@param imagePointsRefracted as calibrateGlassRig, or empty as a whole.
+@param cameras initial value: lenses with as many coefficients as there may be (usually 8; of a fisheye lens 4), and windows.
+Result: the lens that is chosen; its other coefficients are 0.
+@param windowOfCamera as calibrateGlassRig.
+@param Rs as calibrateGlassRig, initial value; may be empty as there.
+@param Ts as Rs.
+@param flags as calibrateGlassRig; GLASS_FREE_INTRINSICS is always set. With GLASS_ROBUST points are left out that are more
+than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge are not used.
+@param scores Nx4 CV_64F, one row per candidate: its flags (GLASS_FIX_...), its number of coefficients, its held-out RMS error
+in pixels, and the standard error of the difference of this error from the best; NaN: it did not converge.
+@return the flags (GLASS_FIX_...) of the chosen candidate, to be added to those of the calibration. Throws as calibrateGlassRig
+if no candidate can be fitted.
+*/
+CV_EXPORTS_W int selectLensCoefficients(InputArrayOfArrays objectPoints,
+        const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags = 0, OutputArray scores = noArray());
+
 /** @brief Bundle adjustment without a target: estimates cameras, their windows, poses and scene points from matches, with the
 scale of known lengths.
 

@@ -67,6 +67,28 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
     }
 }
 
+//! As the arrays have them: an empty list is no view.
+static std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
+{
+    return imagePoints.empty() ? std::vector<Mat>() : imagePoints[camera];
+}
+
+RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras)
+{
+    if (cameras == 0)
+        CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
+    checkCount(imagePointsDirect.size(), cameras, "imagePointsDirect", !imagePointsRefracted.empty());
+    checkCount(imagePointsRefracted.size(), cameras, "imagePointsRefracted", !imagePointsDirect.empty());
+    RigViews views;
+    views.object = readObjectViews(objectPoints, "objectPoints");
+    for (int c = 0; c < cameras; c++)
+        views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c), numbered("imagePointsDirect", c).c_str(),
+                                                viewsOf(imagePointsRefracted, c), numbered("imagePointsRefracted", c).c_str(),
+                                                views.object));
+    return views;
+}
+
 std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names)
 {
     std::vector<Camera> cameras;
@@ -231,12 +253,6 @@ static Eigen::MatrixXd readTargetCovariance(InputArray covariance)
     return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
 }
 
-//! As the arrays have them: an empty list is no view.
-static std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoints, int camera)
-{
-    return imagePoints.empty() ? std::vector<Mat>() : imagePoints[camera];
-}
-
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
 {
     if (!out.needed())
@@ -263,23 +279,15 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
                         InputArrayOfArrays cameraCovariances, InputArray targetCovariance)
 {
     const int count = (int)cameras.size();
-    if (count == 0)
-        CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
     checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
-    checkCount(imagePointsDirect.size(), count, "imagePointsDirect", true);
     checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
-
     RigTask task;
+    task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count);
     std::vector<String> names, refractedNames;
-    task.views.object = readObjectViews(objectPoints, "objectPoints");
     for (int c = 0; c < count; c++)
     {
         names.push_back(numbered("cameras", c));
         refractedNames.push_back(numbered("imagePointsRefracted", c));
-        task.views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c),
-                                                     numbered("imagePointsDirect", c).c_str(),
-                                                     imagePointsRefracted[c], refractedNames[c].c_str(),
-                                                     task.views.object));
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);

@@ -31,6 +31,10 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
 //! One entry per camera; fewer only if it may be left out altogether.
 void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty);
 
+//! What all cameras saw; either list may be empty as a whole, but not both.
+RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras);
+
 //! The cameras behind the handles, each of which must be an object of its own; names in messages.
 std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names);
 void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handles);

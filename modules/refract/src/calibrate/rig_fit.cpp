@@ -112,7 +112,17 @@ Mat targetErrorsOf(const Problem& problem)
     return values;
 }
 
-//! Starts of windows and poses. Robust: images without a pose are taken out of the task.
+int seenCount(const RigViews& views)
+{
+    int count = 0;
+    for (const CameraViews& camera : views.cameras)
+        for (int view = 0; view < views.count(); view++)
+            count += countSeen(camera.refracted[view]) + countSeen(camera.direct[view]);
+    return count;
+}
+
+} // namespace
+
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
     if (task.isIncremental())
@@ -139,17 +149,6 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
         start = bestSealedStart(start, views, task.flags, minima);
     return outcome;
 }
-
-int seenCount(const RigViews& views)
-{
-    int count = 0;
-    for (const CameraViews& camera : views.cameras)
-        for (int view = 0; view < views.count(); view++)
-            count += countSeen(camera.refracted[view]) + countSeen(camera.direct[view]);
-    return count;
-}
-
-} // namespace
 
 double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)
 {

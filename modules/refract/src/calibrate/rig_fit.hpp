@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_RIG_FIT_HPP
 #define OPENCV_REFRACT_RIG_FIT_HPP
 
+#include "start/multi_start.hpp"
 #include "start/rig_task.hpp"
 
 namespace cv { namespace refract {
@@ -25,6 +26,9 @@ struct RigFit
 
 //! Both limits in force: what the caller left open is generous.
 TermCriteria checkedCriteria(TermCriteria criteria);
+
+//! Starts of windows and poses. Robust: images without a pose are taken out of the task. minima: the second best of each window.
+FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima);
 
 //! Starts, fit, and what it tells. rig is start and result; it and fit mean nothing unless the outcome is CONVERGED.
 FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit);

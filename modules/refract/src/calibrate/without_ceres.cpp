@@ -50,6 +50,13 @@ double stereoCalibrateGlass(InputArrayOfArrays, InputArrayOfArrays, InputArrayOf
     throwWithoutCeres("stereoCalibrateGlass");
 }
 
+int selectLensCoefficients(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                           const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputArrayOfArrays,
+                           InputArrayOfArrays, int, OutputArray)
+{
+    throwWithoutCeres("selectLensCoefficients");
+}
+
 double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,

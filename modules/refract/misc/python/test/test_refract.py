@@ -423,6 +423,18 @@ class refract_test(NewOpenCVTests):
         self.assertClose(T, Ts[1], 1e-9)
         self.assertClose(self.camera2.window().normal, cameras[1].window().normal, 1e-12)
 
+    @needs_ceres
+    def test_select_lens(self):
+        random = np.random.RandomState(1)
+        bare = cv.refract.RefractiveCamera.create(K, D)
+        views = [view + random.normal(0, 0.05, view.shape) for view in make_views(bare)]
+        camera = cv.refract.RefractiveCamera.create(K, np.zeros(8))
+        flags, scores = cv.refract.selectLensCoefficients([make_board()]*5, [views], [], [camera], [], [], [])
+        self.assertEqual((6, 4), scores.shape)
+        self.assertEqual(cv.refract.GLASS_FIX_TANGENT_DIST, flags & cv.refract.GLASS_FIX_TANGENT_DIST)
+        self.assertIn(flags, scores[:, 0])
+        self.assertClose(-0.41, camera.distCoeffs()[0, 0], 0.1)
+
     def test_pnp(self):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
         pixels = cv.refract.refractiveProjectPoints(make_board(), *pose, self.camera1)[0]

@@ -1,0 +1,321 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* How many coefficients of a lens the images can carry. The candidates are nested; each is fitted from the one before it and judged by
+its errors on parts of the observations that are held out in turn (adjust/held_out.hpp). More coefficients always fit better what
+they are fitted to; held out they are worse from the number on that the data do not determine.
+
+The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard errors and a few
+percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984). */
+
+#include "adjust/held_out.hpp"
+#include "adjust/minimize.hpp"
+#include "arrays/arrays.hpp"
+#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/failure.hpp"
+#include "calibrate/rig_fit.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double MOST_ABOVE_BEST = 1.02;    // held-out RMS of what is chosen
+const double MOST_STANDARD_ERRORS = 2;  // of its difference from the best
+const int START_POINTS = 150;           // of a target, to find where windows and cameras are
+const int ROUNDS = 3;                   // of leaving outliers out
+const double OUTLIER = 5;               // in standard deviations
+
+const int TILT = GLASS_FIX_TAUX_TAUY, PRISM = TILT | GLASS_FIX_S1_S2_S3_S4, RATIONAL = GLASS_FIX_K4 | GLASS_FIX_K5 | GLASS_FIX_K6 | PRISM,
+          K3 = GLASS_FIX_K3 | RATIONAL, TANGENT = GLASS_FIX_TANGENT_DIST | K3, K2 = GLASS_FIX_K2 | TANGENT, K1 = GLASS_FIX_K1 | K2;
+//! What stays, from the simplest lens on.
+const int FIXED[] = { K1, K2, TANGENT, K3, RATIONAL, PRISM, TILT, 0 };
+const int FIRST = 2;                    // the search for windows and cameras begins with k1 and k2
+
+struct Candidate
+{
+    int flags;                          //!< GLASS_FIX_...
+    int coefficients;                   //!< that are free, of the camera with most
+    bool isFitted;
+    RigStart fitted;
+    std::vector<HeldOutPart> parts;
+    double squares;                     //!< of all parts
+    double excess, excessSigma;         //!< over the best one's
+};
+
+int countFreeCoefficients(const Rig& rig, int flags)
+{
+    int most = 0;
+    for (const Camera& camera : rig.cameras)
+    {
+        const std::vector<bool> isFree = freeLens(camera, flags | GLASS_FREE_INTRINSICS);
+        most = std::max(most, (int)std::count(isFree.begin() + std::min<size_t>(4, isFree.size()), isFree.end(), true));
+    }
+    return most;
+}
+
+std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
+{
+    std::vector<Candidate> candidates;
+    for (int fixed : FIXED)
+    {
+        const int count = countFreeCoefficients(rig, flags | fixed);
+        if (candidates.empty() || count > candidates.back().coefficients)
+            candidates.push_back({ fixed, count, false, RigStart(), std::vector<HeldOutPart>(), 0, 0, 0 });
+    }
+    return candidates;
+}
+
+//! Some points of large targets, evenly.
+RigViews sampled(const RigViews& views)
+{
+    RigViews some = views;
+    for (int view = 0; view < views.count(); view++)
+    {
+        const int count = (int)views.object[view].size(), step = (count + START_POINTS - 1)/START_POINTS;
+        for (CameraViews& camera : some.cameras)
+            for (std::vector<Point2d>* pixels : { &camera.direct[view], &camera.refracted[view] })
+                for (int i = 0; i < (int)pixels->size(); i++)
+                    if (i % step)
+                        (*pixels)[i] = Point2d(std::numeric_limits<double>::quiet_NaN(), 0);
+    }
+    return some;
+}
+
+class LensSelection
+{
+public:
+    LensSelection(const Rig& given, const RigTask& task, bool isRobust)
+        : given_(given), task_(task), isRobust_(isRobust), candidates_(candidatesOf(given, task.flags))
+    {}
+
+    FitOutcome run()
+    {
+        const size_t first = std::min<size_t>(FIRST, candidates_.size() - 1);
+        RigStart start;
+        FitOutcome outcome = startOf(candidates_[first], start);
+        if (!outcome.converged())
+            return outcome;
+        outcome = fitAll(start, first);
+        for (int round = 0; round < ROUNDS && isRobust_ && outcome.converged(); round++)
+            if (leaveOutliersOut())
+                outcome = fitAll(RigStart(candidates_[first].fitted), first);
+        if (outcome.converged())
+            compare();
+        return outcome;
+    }
+    const std::vector<Candidate>& candidates() const { return candidates_; }
+    //! Index of the choice.
+    int chosen() const
+    {
+        for (int i = 0; i < (int)candidates_.size(); i++)
+        {
+            const Candidate& c = candidates_[i];
+            if (c.isFitted && c.excess <= MOST_STANDARD_ERRORS*c.excessSigma && c.squares <= std::pow(MOST_ABOVE_BEST, 2)*best().squares)
+                return i;
+        }
+        return (int)(&best() - candidates_.data());
+    }
+
+private:
+    FitOutcome startOf(const Candidate& candidate, RigStart& start)
+    {
+        RigTask task = task_;
+        task.flags |= candidate.flags;
+        if (!hasWindow())
+        {
+            const RigViews views = isRobust_ ? inlierViews(given_, task.views) : task.views;
+            start = { given_, posesWithoutWindow(given_, views, task.knownPoses) };
+            if (isRobust_)
+                dropUnusable(start.poses);
+            return checkPoses(task_.views, start.poses);
+        }
+        task.views = sampled(task_.views);
+        std::vector<OtherMinimum> minima;
+        return findStart(given_, task, start, minima);
+    }
+
+    //! Views that outliers give no pose, or one with points behind the camera.
+    void dropUnusable(const std::vector<Pose>& poses)
+    {
+        const Problem problem(given_, task_.views, poses, task_.posePriors, task_.cameraPriors, task_.flags | GLASS_FIX_NORMAL);
+        for (const Image& image : problem.images())
+        {
+            const std::vector<double> errors = problem.pixelErrors(image);
+            if (!poses[image.view].found || !std::all_of(errors.begin(), errors.end(), [](double e) { return std::isfinite(e); }))
+                task_.views.cameras[image.camera].direct[image.view].clear();
+        }
+    }
+
+    bool hasWindow() const
+    {
+        return std::any_of(task_.views.cameras.begin(), task_.views.cameras.end(),
+                           [](const CameraViews& camera) { return seesAnything(camera.refracted); });
+    }
+
+    //! Down from the first to the simplest, up to the richest, each from its neighbour.
+    FitOutcome fitAll(const RigStart& start, size_t first)
+    {
+        FitOutcome outcome = fit(candidates_[first], start);
+        if (!outcome.isUsable())
+            return outcome;
+        RigStart from = candidates_[first].fitted;
+        for (size_t i = first; i-- > 0;)
+            if (fit(candidates_[i], from).converged())
+                from = candidates_[i].fitted;
+        from = candidates_[first].fitted;
+        for (size_t i = first + 1; i < candidates_.size(); i++)
+            if (fit(candidates_[i], from).converged())
+                from = candidates_[i].fitted;
+        return std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.isFitted; }) ? FitOutcome() : outcome;
+    }
+
+    FitOutcome fit(Candidate& candidate, const RigStart& from)
+    {
+        const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-9);
+        const int flags = task_.flags | candidate.flags | (hasWindow() ? 0 : GLASS_FIX_NORMAL);
+        RigStart start = from;
+        for (int c = 0; c < start.rig.count(); c++)
+        {
+            const std::vector<bool> isFree = freeLens(given_.cameras[c], flags);
+            const std::vector<bool> mayBeFree = freeLens(given_.cameras[c], task_.flags);
+            std::vector<double> lens = start.rig.cameras[c].lens().parameters();
+            for (size_t i = 0; i < lens.size(); i++)
+                if (mayBeFree[i] && !isFree[i])
+                    lens[i] = 0;
+            start.rig.cameras[c].setLensParameters(Mat(lens));
+        }
+        Problem problem(start.rig, task_.views, start.poses, task_.posePriors, task_.cameraPriors, flags, task_.targetCovariance);
+        for (size_t i = 0; i < weights_.size(); i++)
+            problem.setRootWeights((int)i, weights_[i]);
+        FitOutcome outcome = problem.freedom() > 0 ? minimize(problem, criteria) : FitOutcome(FitOutcome::TOO_FEW_EQUATIONS);
+        candidate.isFitted = outcome.converged();
+        if (!outcome.isUsable())
+            return outcome;
+        candidate.fitted = { problem.rig(), std::vector<Pose>() };
+        for (int view = 0; view < problem.viewCount(); view++)
+            candidate.fitted.poses.push_back(problem.pose(view));
+        if (!outcome.converged())
+            return outcome;
+        candidate.parts = heldOutErrors(problem);
+        candidate.squares = 0;
+        for (const HeldOutPart& part : candidate.parts)
+            candidate.squares += part.squares;
+        candidate.isFitted = std::isfinite(candidate.squares);
+        errors_.clear();
+        for (const Image& image : problem.images())
+            errors_.push_back(problem.pixelErrors(image));
+        return outcome;
+    }
+
+    //! Of the richest lens that was fitted, which is the last of all fits that has errors. False: there are no more.
+    bool leaveOutliersOut()
+    {
+        std::vector<double> all;
+        for (const std::vector<double>& image : errors_)
+            for (double error : image)
+                if (std::isfinite(error))
+                    all.push_back(error);
+        std::nth_element(all.begin(), all.begin() + all.size()/2, all.end());
+        const double median = all[all.size()/2], sigma = median/std::sqrt(2*std::log(2.));
+        std::vector<std::vector<double> > weights;
+        for (const std::vector<double>& image : errors_)
+        {
+            weights.push_back(std::vector<double>());
+            for (double error : image)
+                weights.back().push_back(error <= OUTLIER*sigma ? 1 : 0);
+        }
+        const bool changed = weights != weights_;
+        weights_ = weights;
+        return changed;
+    }
+
+    const Candidate& best() const
+    {
+        return *std::min_element(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b)
+                                 { return a.isFitted && (!b.isFitted || a.squares < b.squares); });
+    }
+
+    //! The parts are the same in all candidates, so their differences are what tells.
+    void compare()
+    {
+        const std::vector<HeldOutPart>& least = best().parts;
+        for (Candidate& candidate : candidates_)
+        {
+            if (!candidate.isFitted)
+                continue;
+            const double count = (double)least.size();
+            candidate.excess = candidate.squares - best().squares;
+            double variance = 0;
+            for (size_t i = 0; i < least.size(); i++)
+                variance += std::pow(candidate.parts[i].squares - least[i].squares - candidate.excess/count, 2);
+            candidate.excessSigma = std::sqrt(variance*count/std::max(1., count - 1));
+        }
+    }
+
+    const Rig& given_;
+    RigTask task_;
+    const bool isRobust_;
+    std::vector<Candidate> candidates_;
+    std::vector<std::vector<double> > weights_, errors_;
+};
+
+Mat scoresOf(const std::vector<Candidate>& candidates)
+{
+    Mat_<double> scores((int)candidates.size(), 4, std::numeric_limits<double>::quiet_NaN());
+    for (int i = 0; i < scores.rows; i++)
+    {
+        const Candidate& c = candidates[i];
+        scores(i, 0) = c.flags;
+        scores(i, 1) = c.coefficients;
+        if (!c.isFitted)
+            continue;
+        double points = 0;
+        for (const HeldOutPart& part : c.parts)
+            points += part.points;
+        scores(i, 2) = std::sqrt(c.squares/points);
+        scores(i, 3) = c.excessSigma/points/(2*std::max(scores(i, 2), DBL_MIN));
+    }
+    return scores;
+}
+
+} // namespace
+
+int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                           const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                           const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                           InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags, OutputArray scores)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    const int count = (int)cameras.size();
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
+    std::vector<String> names, refractedNames;
+    for (int c = 0; c < count; c++)
+    {
+        names.push_back(numbered("cameras", c));
+        refractedNames.push_back(numbered("imagePointsRefracted", c));
+    }
+    RigTask task;
+    task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count);
+    task.flags = (flags & ~GLASS_ROBUST) | GLASS_FREE_INTRINSICS;
+    task.criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
+    Rig rig;
+    rig.cameras = camerasOf(cameras, names);
+    addWedges(rig.cameras, flags);
+    setOwners(rig, windowOfCamera);
+    if (!imagePointsRefracted.empty())
+        checkWindows(rig, task.views, flags, refractedNames);
+    const bool placesFollow = task.isIncremental() && Rs.empty() && Ts.empty();
+    rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
+
+    LensSelection selection(rig, task, (flags & GLASS_ROBUST) != 0);
+    throwUnlessConverged(selection.run(), FitKind::CALIBRATION);
+    const Candidate& chosen = selection.candidates()[selection.chosen()];
+    setCameras(chosen.fitted.rig, cameras);
+    writeMat(scoresOf(selection.candidates()), scores);
+    return chosen.flags;
+}
+
+}} // namespace

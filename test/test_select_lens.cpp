@@ -1,0 +1,245 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// The number of coefficients that images can carry: simulated lenses of which it is known, few images and many, in air and
+// through a window; judged by fresh images, against every fixed choice.
+#include "calibration_scenes.hpp"
+#include <iostream>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+const Size IMAGE(1280, 1024);
+const double SIGMA = 0.2;
+
+//! A lens and how many coefficients it has.
+struct TrueLens
+{
+    const char* name;
+    bool fisheye;
+    double f;
+    std::vector<double> coefficients;
+    int count;
+
+    Ptr<RefractiveCamera> camera(const GlassWindow& window = GlassWindow()) const
+    {
+        const Matx33d K(f, 0, 645, 0, f + 3, 508, 0, 0, 1);
+        return fisheye ? RefractiveCamera::createFisheye(K, coefficients, window) : RefractiveCamera::create(K, coefficients, window);
+    }
+    //! What one would start from.
+    Ptr<RefractiveCamera> start(const GlassWindow& window = GlassWindow()) const
+    {
+        const Matx33d K(1.05*f, 0, 639.5, 0, 1.05*f, 511.5, 0, 0, 1);
+        return fisheye ? RefractiveCamera::createFisheye(K, std::vector<double>(4, 0.), window)
+                       : RefractiveCamera::create(K, std::vector<double>(8, 0.), window);
+    }
+};
+
+const std::vector<TrueLens> LENSES = {
+    { "none", false, 1100, {}, 0 },
+    { "k1, k2", false, 1100, { -0.28, 0.09, 0, 0 }, 2 },
+    { "5", false, 1100, { -0.28, 0.09, 2e-3, -1.5e-3, 0.1 }, 5 },
+    { "8", false, 560, { 0.5, 0.03, 1e-3, -7e-4, 1e-4, 0.8, 0.1, 0.002 }, 8 },
+    { "fisheye", true, 560, { -0.02, 0.006, -0.004, 0.0012 }, 4 } };
+
+struct Images
+{
+    ObjectViews object;
+    std::vector<Mat> pixels;
+};
+
+//! Boards that fill much of the image; NaN where a point lies outside.
+Images imagesOf(const Ptr<RefractiveCamera>& camera, int count, Random& random)
+{
+    Images images;
+    const double range = camera->cameraMatrix().at<double>(0, 0)*0.3;
+    const Rect2d inside(Point2d(0, 0), Size2d(IMAGE));
+    while ((int)images.object.size() < count)
+    {
+        const std::vector<Point3d> object = board(9, 7, 40);
+        const Vec3d rvec = random.vector(0.35), tvec(random.uniform(-120, 120), random.uniform(-90, 90), random.uniform(range, 1.6*range));
+        std::vector<Point2d> pixels;
+        refractiveProjectPoints(object, rvec, tvec, camera, pixels);
+        int used = 0;
+        for (Point2d& p : pixels)
+        {
+            p += Point2d(random.normal(SIGMA), random.normal(SIGMA));
+            if (inside.contains(p))
+                used++;
+            else
+                p = Point2d(NaN, NaN);
+        }
+        if (used < 20)
+            continue;
+        images.object.push_back(object);
+        images.pixels.push_back(Mat(pixels, true));
+    }
+    return images;
+}
+
+//! Infinite where a point has no answer.
+double freshRms(const Images& images, const Ptr<RefractiveCamera>& camera)
+{
+    double sum = 0;
+    int count = 0;
+    for (size_t i = 0; i < images.object.size(); i++)
+    {
+        Vec3d rvec, tvec;
+        std::vector<double> error;
+        if (!refractiveSolvePnP(images.object[i], images.pixels[i], camera, rvec, tvec, false, error))
+            return INF;
+        int seen = 0;
+        for (const Point2d& p : Mat_<Point2d>(images.pixels[i]))
+            seen += p.x == p.x;
+        sum += 2*error[0]*error[0]*seen;
+        count += seen;
+    }
+    return std::sqrt(sum/count);
+}
+
+//! cv::calibrateCamera with a fixed number of coefficients.
+Ptr<RefractiveCamera> fixedChoice(const Images& images, int flags, int count)
+{
+    std::vector<std::vector<Point3f> > object;
+    std::vector<std::vector<Point2f> > pixels;
+    for (size_t i = 0; i < images.object.size(); i++)
+    {
+        object.push_back(std::vector<Point3f>());
+        pixels.push_back(std::vector<Point2f>());
+        for (size_t k = 0; k < images.object[i].size(); k++)
+        {
+            const Point2d p = images.pixels[i].at<Point2d>((int)k);
+            if (p.x != p.x)
+                continue;
+            object.back().push_back(Point3f(images.object[i][k]));
+            pixels.back().push_back(Point2f(p));
+        }
+    }
+    Mat K, D, rvecs, tvecs;
+    calibrateCamera(object, pixels, IMAGE, K, D, rvecs, tvecs, flags, TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13));
+    return RefractiveCamera::create(K, D.reshape(1, 1).colRange(0, count));
+}
+
+int countFree(const Mat_<double>& scores, int flags)
+{
+    for (int i = 0; i < scores.rows; i++)
+        if ((int)scores(i, 0) == flags)
+            return (int)scores(i, 1);
+    return -1;
+}
+
+} // namespace
+
+TEST_CASE("selectLensCoefficients is as good as the best fixed choice, in few images and in many", "[select_lens]")
+{
+    CAPTURE(seed());
+    const int NO_BEND = CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_ZERO_TANGENT_DIST;
+    const struct { int flags, count; } FIXED[] = { { NO_BEND, 0 }, { CALIB_ZERO_TANGENT_DIST | CALIB_FIX_K3, 4 }, { CALIB_FIX_K3, 4 },
+                                                   { 0, 5 }, { CALIB_RATIONAL_MODEL, 8 } };
+    for (const int count : { 3, 6, 25 })
+        for (const TrueLens& lens : LENSES)
+        {
+            if (count == 3 && lens.count == 8)
+                continue;           // every choice is pixels off
+            Random random(count);
+            const Images images = imagesOf(lens.camera(), count, random), fresh = imagesOf(lens.camera(), 40, random);
+            const Ptr<RefractiveCamera> camera = lens.start();
+            Mat_<double> scores;
+            const int chosen = selectLensCoefficients(images.object, { images.pixels }, {}, { camera }, {}, noArray(), noArray(), 0,
+                                                      scores);
+            const int free = countFree(scores, chosen);
+            const double rms = freshRms(fresh, camera);
+            double best = lens.fisheye ? freshRms(fresh, lens.camera()) : INF;
+            for (const auto& fixed : FIXED)
+                if (!lens.fisheye)
+                    best = std::min(best, freshRms(fresh, fixedChoice(images, fixed.flags, fixed.count)));
+            std::cout << "[numbers] " << count << " images, true lens " << lens.name << ": " << free << " coefficients, "
+                      << rms << " px on fresh images, best fixed choice (of the fisheye the true lens) " << best << '\n';
+            CAPTURE(count, lens.name, free, scores);
+            CHECK(free <= lens.count + (count > 6 ? 0 : 2));
+            if (count == 25)
+                CHECK(free >= (lens.fisheye ? 2 : lens.count));     // k3 and k4 of the fisheye do not show
+            CHECK(rms <= 1.03*best);
+        }
+}
+
+TEST_CASE("selectLensCoefficients works through a window, without a direct image", "[select_lens]")
+{
+    CAPTURE(seed());
+    for (size_t i : { 0, 1 })
+    {
+        const TrueLens& lens = LENSES[i];
+        Random random(30 + (int)i);
+        const GlassWindow truth(Vec3d(0.2, -0.1, 1), 20, 1.5437, 50, 1.333);
+        const Images images = imagesOf(lens.camera(truth), 20, random);
+        const Ptr<RefractiveCamera> camera = lens.start(GlassWindow(Vec3d(0, 0, 1), 20, 1.5437, 80, 1.333));
+        Mat_<double> scores;
+        const int chosen = selectLensCoefficients(images.object, {}, { images.pixels }, { camera }, {}, noArray(), noArray(),
+                                                  GLASS_FREE_DISTANCE, scores);
+        CAPTURE(lens.name, scores);
+        CHECK(countFree(scores, chosen) == lens.count);
+        std::vector<Mat> rvecs, tvecs;
+        CHECK(calibrateGlass(images.object, noArray(), images.pixels, camera, rvecs, tvecs,
+                             GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen) < 2*SIGMA);
+    }
+}
+
+TEST_CASE("selectLensCoefficients decides for all cameras together", "[select_lens]")
+{
+    Random random(40);
+    const Images straight = imagesOf(LENSES[0].camera(), 8, random), bent = imagesOf(LENSES[1].camera(), 8, random);
+    ObjectViews object = straight.object;
+    object.insert(object.end(), bent.object.begin(), bent.object.end());
+    std::vector<std::vector<Mat> > direct = { straight.pixels, std::vector<Mat>(8) };
+    direct[0].resize(16);
+    direct[1].insert(direct[1].end(), bent.pixels.begin(), bent.pixels.end());
+    const std::vector<Ptr<RefractiveCamera> > cameras = { LENSES[0].start(), LENSES[1].start() };
+    const std::vector<Mat> Rs(2, Mat::eye(3, 3, CV_64F)), Ts(2, Mat::zeros(3, 1, CV_64F));
+    Mat_<double> scores;
+    const int chosen = selectLensCoefficients(object, direct, {}, cameras, {}, Rs, Ts, 0, scores);
+    CHECK(countFree(scores, chosen) == 2);
+    CHECK(std::abs(cameras[0]->distCoeffs().at<double>(0)) < 0.01);
+    CHECK(cameras[1]->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.01));
+    CHECK(countNonZero(cameras[1]->distCoeffs().rowRange(2, 8)) == 0);
+}
+
+TEST_CASE("With GLASS_ROBUST wrong points do not decide on the lens", "[select_lens]")
+{
+    Random random(50);
+    Images images = imagesOf(LENSES[1].camera(), 15, random);
+    for (Mat& pixels : images.pixels)
+        for (int i = 0; i < pixels.rows; i += 17)
+            pixels.at<Point2d>(i) += Point2d(random.uniform(10, 40), random.uniform(10, 40));
+    const Ptr<RefractiveCamera> camera = LENSES[1].start();
+    camera->setLensParameters(Mat(std::vector<double>{ 1120, 1120, 639.5, 511.5, -0.2, 0, 0, 0, 0, 0, 0, 0 }));
+    Mat_<double> scores;
+    const int chosen = selectLensCoefficients(images.object, { images.pixels }, {}, { camera }, {}, noArray(), noArray(), GLASS_ROBUST,
+                                              scores);
+    CAPTURE(scores);
+    CHECK(countFree(scores, chosen) == 2);
+    CHECK(scores(2, 2) < 2*SIGMA);
+    CHECK(camera->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.01));
+}
+
+TEST_CASE("selectLensCoefficients says what is missing, and leaves the cameras as they were", "[select_lens]")
+{
+    Random random(60);
+    const Images images = imagesOf(LENSES[1].camera(), 1, random);
+    const Ptr<RefractiveCamera> camera = LENSES[1].start();
+    const Mat before = camera->lensParameters();
+    const auto select = [&](const std::vector<Mat>& pixels, int flags)
+    {
+        return thrown([&] { selectLensCoefficients(images.object, { pixels }, {}, { camera }, {}, noArray(), noArray(), flags); });
+    };
+    CHECK(select({}, 0) != "");
+    CHECK(select(images.pixels, GLASS_USE_POSES).find("has no meaning here") != std::string::npos);
+    CHECK(thrown([&] { selectLensCoefficients(images.object, {}, {}, { camera }, {}, noArray(), noArray()); }) != "");
+    Mat few = images.pixels[0].clone();
+    few.rowRange(4, few.rows).setTo(Scalar::all(NaN));
+    few.rowRange(0, 4) = Mat(std::vector<Point2d>{ { 100, 100 }, { 900, 120 }, { 880, 800 }, { 120, 790 } });
+    CHECK(select({ few }, 0) != "");
+    CHECK(norm(before, camera->lensParameters()) == 0);
+}

@@ -1,0 +1,114 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// The lens model that refract_calib chooses: between OpenCV's and cv::fisheye's, from direct images, or through the window.
+#include "calibrate/lens_choice.hpp"
+#include "calibrate/pinhole_camera.hpp"
+#include "scenes.hpp"
+#include <catch2/catch.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+const Size IMAGE(1280, 1024);
+
+//! Boards that fill much of the image.
+RigData dataOf(const Ptr<RefractiveCamera>& camera, int views, bool glass, unsigned salt)
+{
+    scenes::Random random(salt);
+    RigData data;
+    data.imageSize[0] = IMAGE;
+    const double range = 0.3*camera->cameraMatrix().at<double>(0, 0);
+    while ((int)data.views.size() < views)
+    {
+        View view;
+        for (int i = 0; i < 63; i++)
+            view.objectPoints.emplace_back(40*(i % 9 - 4), 40*(i/9 - 3), 0);
+        const Vec3d rvec = random.vector(0.35), tvec(random.uniform(-120, 120), random.uniform(-90, 90), random.uniform(range, 1.6*range));
+        std::vector<Point2d> pixels;
+        refractiveProjectPoints(view.objectPoints, rvec, tvec, camera, pixels);
+        int inside = 0;
+        for (Point2d& p : pixels)
+        {
+            p += Point2d(random.normal(0.2), random.normal(0.2));
+            const bool isInside = Rect2d(Point2d(), Size2d(IMAGE)).contains(p);
+            inside += isInside;
+            if (!isInside)
+                p = Point2d(NAN, NAN);
+        }
+        if (inside < 20)
+            continue;
+        (glass ? view.glass : view.direct)[0] = pixels;
+        data.views.push_back(view);
+    }
+    return data;
+}
+
+Ptr<RefractiveCamera> bent(const GlassWindow& window = GlassWindow())
+{
+    return RefractiveCamera::create(Matx33d(1100, 0, 645, 0, 1103, 508, 0, 0, 1), std::vector<double>{-0.28, 0.09, 0, 0}, window);
+}
+
+} // namespace
+
+TEST_CASE("A lens that k1 and k2 describe is chosen by its direct images, and said in one line", "[lens_choice]")
+{
+    RigOptions options;
+    const LensChoice choice = chooseLens(dataOf(bent(), 15, false, 1), options, true);
+    REQUIRE(!choice.scores.empty());
+    CHECK(choice.lens().model == "opencv");
+    CHECK(choice.lens().coefficients == 2);
+    CHECK_THAT(choice.sentence(), Catch::StartsWith("opencv, 2 coefficients (k1, k2), chosen by held-out images: 0.2")
+               && Catch::Contains("px; with 0: ") && Catch::Contains(", 1: ") && Catch::Contains(", 5: "));
+    setLens(choice.lens(), options);
+    CHECK(options.lensCoefficients == 4);
+    CHECK((options.flags & GLASS_FIX_TANGENT_DIST) != 0);
+    CHECK((options.flags & (GLASS_FIX_K1 | GLASS_FIX_K2)) == 0);
+}
+
+TEST_CASE("A wide fisheye is chosen where OpenCV's model does not describe it", "[lens_choice]")
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(Matx33d(400, 0, 645, 0, 402, 508, 0, 0, 1),
+                                                                         std::vector<double>{-0.02, 0.006, -0.004, 0.0012});
+    RigOptions options;
+    const LensChoice choice = chooseLens(dataOf(camera, 20, false, 2), options, false);
+    REQUIRE(!choice.scores.empty());
+    CAPTURE(choice.sentence());
+    CHECK(choice.lens().model == "fisheye");
+    CHECK(choice.lens().px < 0.3);
+    setLens(choice.lens(), options);
+    CHECK(options.lensCoefficients == FISHEYE_LENS);
+}
+
+TEST_CASE("Three direct images are held out in parts", "[lens_choice]")
+{
+    const LensChoice choice = chooseLens(dataOf(bent(), 3, false, 3), RigOptions(), true);
+    REQUIRE(!choice.scores.empty());
+    CHECK_THAT(choice.sentence(), Catch::Contains("chosen by held-out parts of the target: "));
+}
+
+TEST_CASE("Images through the window decide where there is no other, and where the lens is to be found from them", "[lens_choice]")
+{
+    const GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.52, 0);
+    const RigData data = dataOf(bent(window), 20, true, 4);
+    RigOptions options;
+    options.window = window;
+    options.window.normal = Vec3d(0, 0, 1);
+    CHECK(chooseLens(data, options, true).scores.empty());
+    options.flags = GLASS_FREE_INTRINSICS;
+    const LensChoice choice = chooseLens(data, options, true);
+    REQUIRE(!choice.scores.empty());
+    CHECK_THAT(choice.sentence(), Catch::Contains("held-out images through the window"));
+    CHECK(choice.lens().coefficients <= 4);
+    CHECK(choice.lens().coefficients >= 1);
+}
+
+TEST_CASE("Nothing is chosen for a lens that is known", "[lens_choice]")
+{
+    RigOptions options;
+    options.known[0] = bent();
+    CHECK(chooseLens(dataOf(bent(), 15, false, 5), options, true).scores.empty());
+}

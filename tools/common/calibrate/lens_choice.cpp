@@ -1,0 +1,210 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "calibrate/lens_choice.hpp"
+#include "calibrate/pinhole_camera.hpp"
+#include "console/table.hpp"
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int RICHEST = 8;                  // coefficients that are tried
+const int MOST_IMAGES = 60;             // of a camera: more decide nothing else
+const size_t MIN_IMAGES = 3;            // of a flat target, to find a lens from
+const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target are held out (selectLensCoefficients)
+const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
+// A fisheye's error in that of OpenCV's model, to be taken in its place: of the rational one, which has more coefficients; of others.
+const double AS_GOOD = 1.02, CLEARLY_BETTER = 0.97;
+
+//! What the candidates are fitted to.
+struct LensImages
+{
+    std::vector<int> cameras;
+    std::vector<std::vector<Point3d>> object;
+    std::vector<std::vector<Mat>> direct, glass;    //!< one of them is empty
+    std::vector<std::vector<TargetView>> views;     //!< of each camera
+};
+
+std::vector<int> unknownCameras(const RigData& data, const RigOptions& options)
+{
+    std::vector<int> cameras;
+    for (int c = 0; c < data.cameraCount; c++)
+        if (!options.known[c])
+            cameras.push_back(c);
+    return cameras;
+}
+
+std::vector<TargetView> imagesOf(const RigData& data, int camera, bool glass)
+{
+    std::vector<TargetView> all, some;
+    for (const View& view : data.views)
+        if (!(glass ? view.glass : view.direct)[camera].empty())
+            all.push_back({view.objectPoints, (glass ? view.glass : view.direct)[camera]});
+    const size_t step = (all.size() + MOST_IMAGES - 1)/MOST_IMAGES;
+    for (size_t i = 0; i < all.size(); i += step)
+        some.push_back(all[i]);
+    return some;
+}
+
+bool determineLens(const std::vector<TargetView>& views)
+{
+    return views.size() >= MIN_IMAGES
+        || std::any_of(views.begin(), views.end(), [](const TargetView& v) { return isSolid(v.objectPoints); });
+}
+
+//! Each image of each camera has a pose of its own. Nothing where a camera has too few.
+LensImages directImages(const RigData& data, const std::vector<int>& cameras)
+{
+    LensImages images;
+    images.cameras = cameras;
+    images.direct.resize(cameras.size());
+    for (int c : cameras)
+    {
+        images.views.push_back(imagesOf(data, c, false));
+        if (!determineLens(images.views.back()))
+            return LensImages();
+        for (const TargetView& view : images.views.back())
+        {
+            images.object.push_back(view.objectPoints);
+            for (std::vector<Mat>& pixels : images.direct)
+                pixels.push_back(&pixels == &images.direct[images.views.size() - 1] ? Mat(view.pixels) : Mat());
+        }
+    }
+    return images;
+}
+
+LensImages glassImages(const RigData& data, const std::vector<int>& cameras)
+{
+    LensImages images;
+    images.cameras = cameras;
+    images.glass.resize(cameras.size());
+    for (int c : cameras)
+        images.views.push_back(imagesOf(data, c, true));
+    for (const View& view : data.views)
+    {
+        if (!view.hasGlass())
+            continue;
+        images.object.push_back(view.objectPoints);
+        for (size_t k = 0; k < cameras.size(); k++)
+            images.glass[k].push_back(Mat(view.glass[cameras[k]]));
+    }
+    return images;
+}
+
+//! Lenses to start from, with as many coefficients as may be.
+std::vector<Ptr<RefractiveCamera>> startLenses(const RigData& data, const LensImages& images, bool fisheye, const GlassWindow& window)
+{
+    std::vector<Ptr<RefractiveCamera>> cameras;
+    for (size_t k = 0; k < images.cameras.size(); k++)
+    {
+        double rms;
+        const Size size = data.imageSize[images.cameras[k]];
+        const Ptr<RefractiveCamera> lens = fisheye ? calibratePinhole(images.views[k], size, FISHEYE_LENS, 0, rms)
+                                                   : calibratePinhole(images.views[k], size, 4, TWO, rms);
+        cameras.push_back(fisheye ? RefractiveCamera::createFisheye(lens->cameraMatrix(), std::vector<double>(4, 0.), window)
+                                  : RefractiveCamera::create(lens->cameraMatrix(), std::vector<double>(RICHEST, 0.), window));
+    }
+    return cameras;
+}
+
+//! Of one model; nothing where it cannot be fitted.
+LensChoice chooseCoefficients(const RigData& data, const LensImages& images, bool fisheye, const RigOptions& options, bool robust)
+{
+    LensChoice choice;
+    choice.direct = images.glass.empty();
+    choice.byImages = (int)images.object.size() >= MIN_HELD_OUT;
+    try
+    {
+        const std::vector<Ptr<RefractiveCamera>> cameras = startLenses(data, images, fisheye,
+                                                                       choice.direct ? GlassWindow() : options.window);
+        std::vector<int> windows;
+        for (int c : images.cameras)
+            if (!choice.direct && !options.windows.empty())
+                windows.push_back(options.windows[c]);
+        std::vector<Mat> Rs(cameras.size(), Mat::eye(3, 3, CV_64F)), Ts(cameras.size(), Mat::zeros(3, 1, CV_64F));
+        int flags = robust ? GLASS_ROBUST : 0;
+        if (!choice.direct)
+        {
+            flags |= (options.flags & ~GLASS_USE_POSES) | (cameras.size() > 1 ? GLASS_FREE_EXTRINSICS : 0);
+            Rs.clear();
+            Ts.clear();
+        }
+        Mat_<double> scores;
+        const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores);
+        for (int i = 0; i < scores.rows; i++)
+        {
+            choice.scores.push_back({fisheye ? "fisheye" : "opencv", (int)scores(i, 0), (int)scores(i, 1), scores(i, 2)});
+            if (choice.scores.back().flags == chosen)
+                choice.chosen = i;
+        }
+    }
+    catch (const cv::Exception&) {}         // told where the calibration itself fails
+    return choice;
+}
+
+std::string namesOf(const LensScore& lens)
+{
+    if (lens.coefficients == 0)
+        return "no coefficients";
+    std::string text = format("%d coefficient%s", lens.coefficients, lens.coefficients == 1 ? "" : "s");
+    static const std::map<int, const char*> NAMES = {{1, "k1"}, {2, "k1, k2"}, {3, "k1 to k3"}, {4, "k1, k2, p1, p2"},
+                                                     {5, "k1, k2, p1, p2, k3"}, {8, "k1 to k6, p1, p2"}};
+    return text + " (" + (lens.model == "fisheye" && lens.coefficients == 4 ? "k1 to k4" : NAMES.at(lens.coefficients)) + ")";
+}
+
+} // namespace
+
+std::string LensChoice::sentence() const
+{
+    std::string others;
+    for (int i = 0; i < (int)scores.size(); i++)
+        if (i != chosen && !std::isnan(scores[i].px))
+            others += (others.empty() ? "; with " : ", ") + (scores[i].model == lens().model ? "" : scores[i].model + " ")
+                      + format("%d: %.3f", scores[i].coefficients, scores[i].px);
+    return format("%s, %s, chosen by held-out %s%s: %.3f px", lens().model.c_str(), namesOf(lens()).c_str(),
+                  byImages ? "images" : "parts of the target", direct ? "" : " through the window", lens().px) + others;
+}
+
+LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust)
+{
+    const std::vector<int> cameras = unknownCameras(data, options);
+    if (cameras.empty())
+        return LensChoice();
+    LensImages images = directImages(data, cameras);
+    if (images.cameras.empty())
+    {
+        if (!(options.flags & GLASS_FREE_INTRINSICS))
+            return LensChoice();
+        images = glassImages(data, cameras);
+    }
+    LensChoice choice = chooseCoefficients(data, images, false, options, robust);
+    // A lens that k1 and k2 describe is not looked at as a fisheye.
+    if (!choice.scores.empty() && choice.lens().coefficients <= 2)
+        return choice;
+    const LensChoice fisheye = chooseCoefficients(data, images, true, options, robust);
+    if (fisheye.scores.empty())
+        return choice;
+    const bool better = choice.scores.empty()
+        || fisheye.lens().px < (choice.lens().coefficients == RICHEST ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
+    const int before = (int)choice.scores.size();
+    choice.direct = fisheye.direct;
+    choice.byImages = fisheye.byImages;
+    choice.scores.insert(choice.scores.end(), fisheye.scores.begin(), fisheye.scores.end());
+    if (better)
+        choice.chosen = before + fisheye.chosen;
+    return choice;
+}
+
+void setLens(const LensScore& lens, RigOptions& options)
+{
+    const int LEAST = 4;        // of OpenCV's model, but for none at all
+    options.lensCoefficients = lens.model == "fisheye" ? FISHEYE_LENS : lens.coefficients == 0 ? 0 : std::max(LEAST, lens.coefficients);
+    options.flags |= lens.flags;
+}
+
+} // namespace tools

@@ -1,0 +1,41 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_LENS_CHOICE_HPP
+#define REFRACT_TOOLS_LENS_CHOICE_HPP
+
+#include "calibrate/starting_model.hpp"
+
+/* The lens that the images can carry: as many coefficients as held-out images (or, of too few images, held-out parts of the target)
+support. Where there are direct images, these decide. */
+namespace tools {
+
+//! A lens model that was tried.
+struct LensScore
+{
+    std::string model;          //!< opencv, fisheye
+    int flags;                  //!< GLASS_FIX_...: the coefficients that stay 0
+    int coefficients;           //!< that are free
+    double px;                  //!< held-out RMS; NaN: it could not be fitted
+};
+
+struct LensChoice
+{
+    std::vector<LensScore> scores = {};     //!< empty: nothing was chosen
+    int chosen = 0;
+    bool byImages = true;       //!< false: by parts of the target
+    bool direct = true;         //!< false: images through the window
+
+    const LensScore& lens() const { return scores[chosen]; }
+    std::string sentence() const;
+};
+
+//! Empty where all lenses are known, or no candidate can be fitted. @param robust points far from the richest lens's fit do not count
+LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust);
+
+//! The options for this lens.
+void setLens(const LensScore& lens, RigOptions& options);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_LENS_CHOICE_HPP
