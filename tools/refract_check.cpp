@@ -206,7 +206,8 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
         const int times = imagesNeeded(window, result.windows.size(), o, input.dof);
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
         const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times,
-            pairs ? "pairs" : "images", pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
+            pairs ? "pairs" : "images",
+            pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
                       "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
     }
