@@ -557,7 +557,7 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
         {board + " --square=3.9" + images + PANE + known + out, "in place of 3.9"},
         {board + " --square=39" + images + PANE + known + out + " --outer-index=1.333", "--outer-index=1 in place of 1.333"},
         {board + " --square=39 --direct=" + f / "glass1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out, "exchanged"},
-        {board + " --square=39" + images + " --thickness=2 --index=1.5437" + known + out + " --no-robust", "in place of 2,"},
+        {board + " --square=39" + images + " --thickness=2 --index=1.5437 --exact" + known + out + " --no-robust", "in place of 2,"},
         {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "other.vnl" + PANE + known + out, "--unpaired"},
         {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out,
          "one image"},
@@ -567,6 +567,12 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
     for (char c : glass)
         other += c == 'v' ? 'w' : c;
     std::ofstream(f / "other.vnl") << other;
+    // Within its deviation it is taken, and then contradicted.
+    const ToolResult thin = runTool(board + " --square=39" + images + " --thickness=2 --index=1.5437" + known + " --no-robust --out="
+                                    + f / "thin.yml");
+    INFO(thin.out << thin.err);
+    CHECK(thin.code == 2);
+    CHECK(mentions(thin.err, "contradict --thickness=2 +- 0.1: set free, the thickness would be 20"));
     const size_t before = f.count();
     for (const Refusal& c : cases)
     {

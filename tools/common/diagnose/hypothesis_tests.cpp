@@ -121,31 +121,17 @@ RigModel withoutPrior(const FittedRig& c, const GivenValue& given)
     return rig;
 }
 
-/** What is known to a variance p, and was estimated within it with the variance s: the estimate is off the given value by a random
-number of variance p - s if that is right. No second fit is needed to see that it may not be. */
-bool isWithinPrior(const FittedRig& c, const GivenValue& given, int camera)
-{
-    const double TELLING = 1e-3;        // part of p: the images tell less
-    const int count = (int)given.known.size(), first = given.columnOf(columnsOf(c.fit.rig, camera));
-    const double prior = given.varianceOfSum(), left = sum(c.fit.covariance(Rect(first, first, count, count)))[0];
-    const double moved = given.sumOf(c.fit.rig.cameras[camera]->window()) - given.sumOf(c.options.window);
-    return prior > 0. && (prior - left < TELLING*prior || std::abs(moved) < TOLD*std::sqrt(prior - left));
-}
-
-//! A given value that is set free, in each window in which it may be wrong.
+/** A given value that is set free. How far a fit within its prior has moved it does not tell: where the value is far off, the noise
+seems large, and the prior is as strong as that. */
 std::vector<Contradiction> contradictedBy(const FittedRig& c, const GivenValue& given)
 {
-    std::vector<int> cameras;
-    for (int k = 0; k < c.data.cameraCount; k++)
-        if (c.fit.rig.ownsWindow(k) && !isWithinPrior(c, given, k))
-            cameras.push_back(k);
-    if (cameras.empty())
-        return {};
     const int count = (int)given.known.size(), windows = countWindows(c.fit.rig);
     const Fit fit = fitImages(c.data, withoutPrior(c, given), c.fit.views, count > 1 ? c.options.flags : c.options.flags | given.flag);
     std::vector<Contradiction> contradictions;
-    for (int k : cameras)
+    for (int k = 0; k < c.data.cameraCount; k++)
     {
+        if (!c.fit.rig.ownsWindow(k))
+            continue;
         const double before = given.sumOf(c.options.window), estimate = given.sumOf(fit.rig.cameras[k]->window());
         const int first = given.columnOf(columnsOf(fit.rig, k));
         const double variance = sum(fit.covariance(Rect(first, first, count, count)))[0], std = std::sqrt(variance);

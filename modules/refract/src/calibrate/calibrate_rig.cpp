@@ -279,10 +279,10 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
                         InputArrayOfArrays cameraCovariances, InputArray targetCovariance)
 {
     const int count = (int)cameras.size();
-    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
-    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
     RigTask task;
     task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count);
+    checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     std::vector<String> names, refractedNames;
     for (int c = 0; c < count; c++)
     {

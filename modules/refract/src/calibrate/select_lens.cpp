@@ -290,7 +290,6 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
 
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
     const int count = (int)cameras.size();
-    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     std::vector<String> names, refractedNames;
     for (int c = 0; c < count; c++)
     {
@@ -299,6 +298,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     }
     RigTask task;
     task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count);
+    checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     task.flags = (flags & ~GLASS_ROBUST) | GLASS_FREE_INTRINSICS;
     task.criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
     Rig rig;
