@@ -27,4 +27,4 @@ rms, normal, center, covariance = refract.calibrateGlassNormal([direct], [glass]
 off = np.degrees(np.arccos(min(1., float(np.dot(normal.ravel(), camera.window().normal)))))
 print(f"normal {normal.ravel()}, +- {np.degrees(np.sqrt(np.trace(covariance)/2)):.3f} degrees per axis")
 print(f"distortion centre {center.ravel()} px, RMS {rms:.3f} px")
-print(f"off the truth by {off:.3f} degrees")
+print(f"off the truth by {off:.3f} degrees: this pane has a wedge of 2 arc minutes, which looks like a tilt; refract_calib knows that")
