@@ -78,15 +78,20 @@ double newtonDecrement(const Information& information)
     return std::sqrt(rotated.head(qr.rank()).squaredNorm() + information.ofInner);
 }
 
-MatrixXd pseudoCovariance(const Information& information)
+MatrixXd pseudoInverseRoot(const Information& information)
 {
     if (information.root.cols() == 0)
-        return MatrixXd(0, 0);
+        return MatrixXd(0, information.root.rows());
     const VectorXd scale = scaleOf(information);
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
     cod.setThreshold(information.rounding);
     cod.compute(information.root*scale.asDiagonal());
-    const MatrixXd half = scale.asDiagonal()*cod.pseudoInverse();
+    return scale.asDiagonal()*cod.pseudoInverse();
+}
+
+MatrixXd pseudoCovariance(const Information& information)
+{
+    const MatrixXd half = pseudoInverseRoot(information);
     return half*half.transpose();
 }
 

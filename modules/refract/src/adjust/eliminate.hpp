@@ -31,6 +31,18 @@ struct Information
     std::vector<InnerBlock> inner;  //!< of views, or of clusters
 };
 
+//! A view without its pose.
+struct EliminatedView
+{
+    InnerBlock pose;
+    Eigen::MatrixXd rows;           //!< what no change of the pose can imitate: by the pose's columns, and the residuals
+    Eigen::VectorXd squares;        //!< of each column
+    double ofPose = 0;              //!< of the residuals that the pose could take up
+};
+
+//! Each view by itself, with the prior of its pose.
+std::vector<EliminatedView> eliminateEachPose(const Problem& problem, const std::vector<ImageRows>& images);
+
 /** Sets a block from rows [K | J, r], rotated so that K is triangular.
 @param qr of K with its columns scaled
 @param rotated Q^T [J, r] */
@@ -53,6 +65,8 @@ Information eliminateLast(const Information& information, int first, InnerBlock&
 coordinate's standard deviation, it is the length of the step in standard deviations of what it moves. */
 double newtonDecrement(const Information& information);
 
+//! R^+; what is not determined has no part in it.
+Eigen::MatrixXd pseudoInverseRoot(const Information& information);
 //! C = (R^T R)^+; what is not determined has no part in it.
 Eigen::MatrixXd pseudoCovariance(const Information& information);
 

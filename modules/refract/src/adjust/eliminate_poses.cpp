@@ -122,15 +122,6 @@ struct ViewRows
     }
 };
 
-//! A view without its pose.
-struct EliminatedView
-{
-    InnerBlock pose;
-    MatrixXd rows;          //!< what no change of the pose can imitate: by its columns, and the residuals
-    VectorXd squares;       //!< of each column
-    double ofPose = 0;      //!< of the residuals that the pose could take up
-};
-
 EliminatedView eliminate(const ViewRows& view)
 {
     EliminatedView result;
@@ -163,9 +154,8 @@ EliminatedView eliminate(const ViewRows& view)
 
 } // namespace
 
-Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images)
+std::vector<EliminatedView> eliminateEachPose(const Problem& problem, const std::vector<ImageRows>& images)
 {
-    const int count = space.count;
     std::vector<EliminatedView> views(problem.viewCount());
     parallel_for_(Range(0, problem.viewCount()), [&](const Range& range)
     {
@@ -176,10 +166,17 @@ Information eliminatePoses(const Problem& problem, const FreeSpace& space, const
             views[view] = eliminate(rows);
         }
     });
+    return views;
+}
+
+Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images)
+{
+    const int count = space.count;
+    const std::vector<EliminatedView> views = eliminateEachPose(problem, images);
     Information information;
     SquareRoot root(count + 1);
     VectorXd squares = VectorXd::Zero(count);
-    for (EliminatedView& view : views)
+    for (const EliminatedView& view : views)
     {
         std::vector<int> columns = view.pose.columns;
         for (size_t k = 0; k < columns.size(); k++)

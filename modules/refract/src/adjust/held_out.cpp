@@ -11,7 +11,7 @@ others, to first order, its residuals are
 space of its derivatives: the pose is fitted to what is held out. */
 
 #include "adjust/held_out.hpp"
-#include "adjust/linearize.hpp"
+#include "adjust/eliminate.hpp"
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -94,47 +94,22 @@ MatrixXd spread(const ImageRows& image, int count)
     return rows;
 }
 
-//! The part of rows that no change of the pose can produce.
-MatrixXd withoutPose(const MatrixXd& byPose, MatrixXd rows)
-{
-    const Eigen::RowVectorXd norms = byPose.colwise().norm();
-    if (norms.maxCoeff() == 0)
-        return rows;
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(byPose.array().rowwise()/norms.cwiseMax(1e-300).array()));
-    rows.applyOnTheLeft(qr.householderQ().adjoint());
-    return rows.bottomRows(rows.rows() - qr.rank());
-}
-
 std::vector<PartRows> viewsAsParts(const Problem& problem, const std::vector<ImageRows>& images, int count)
 {
     std::vector<PartRows> parts;
-    for (int view = 0; view < problem.viewCount(); view++)
+    const std::vector<EliminatedView> views = eliminateEachPose(problem, images);
+    for (int v = 0; v < problem.viewCount(); v++)
     {
-        if (problem.imagesOf(view).empty())
+        if (problem.imagesOf(v).empty())
             continue;
+        const EliminatedView& view = views[v];
         PartRows part(count);
-        MatrixXd byPose(0, 6);
-        const auto addPose = [&](const MatrixXd& rows)
-        {
-            byPose.conservativeResize(byPose.rows() + rows.rows(), Eigen::NoChange);
-            byPose.bottomRows(rows.rows()) = rows;
-        };
-        for (int i : problem.imagesOf(view))
-        {
-            part.add(spread(images[i], count));
+        part.rows = MatrixXd::Zero(view.rows.rows(), count + 1);
+        for (size_t i = 0; i < view.pose.columns.size(); i++)
+            part.rows.col(view.pose.columns[i]) = view.rows.col(i);
+        part.rows.rightCols<1>() = view.rows.rightCols<1>();
+        for (int i : problem.imagesOf(v))
             part.points += problem.images()[i].usedCount();
-            addPose(images[i].inner);
-        }
-        const int pose = problem.poseBlock(view);
-        const MatrixXd prior = problem.priorRows(pose);
-        if (prior.rows() > 0)
-        {
-            MatrixXd rows = MatrixXd::Zero(prior.rows(), count + 1);
-            rows.rightCols<1>() = problem.priorResidual(pose);
-            part.add(rows);
-            addPose(prior);
-        }
-        part.rows = withoutPose(byPose, part.rows);
         parts.push_back(part);
     }
     return parts;
@@ -215,17 +190,6 @@ MatrixXd priorsOf(const Problem& problem, const FreeSpace& space, bool withPoses
     return priors.rows;
 }
 
-//! R^-1 (pseudo-inverse), columns scaled to their effect as the parameters' sizes differ by orders.
-MatrixXd inverseRoot(MatrixXd root)
-{
-    const Eigen::RowVectorXd norms = root.colwise().norm();
-    const VectorXd scale = (norms.array() > 0).select(norms.cwiseInverse(), 0.).transpose();
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
-    cod.setThreshold(ROUNDING);
-    cod.compute(root*scale.asDiagonal());
-    return scale.asDiagonal()*cod.pseudoInverse();
-}
-
 //! Squares of (I - X X^T)^-1 z.
 double squaresOfHeldOut(const MatrixXd& X, const VectorXd& z)
 {
@@ -256,7 +220,11 @@ std::vector<HeldOutPart> heldOutErrors(const Problem& problem)
             all.reduce();
     }
     all.reduce();
-    const MatrixXd inverse = inverseRoot(all.rows.leftCols(count));
+    Information information;
+    information.root = all.rows.leftCols(count);
+    information.effect = information.root.colwise().norm().transpose();
+    information.rounding = ROUNDING;
+    const MatrixXd inverse = pseudoInverseRoot(information);
     std::vector<HeldOutPart> errors;
     for (const PartRows& part : parts)
     {

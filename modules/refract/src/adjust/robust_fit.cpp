@@ -93,6 +93,16 @@ std::vector<double> RobustFit::imageScales(const std::vector<std::vector<double>
     return scales;
 }
 
+//! Of the images that have a say.
+static double medianScale(const std::vector<double>& scales, const std::vector<std::vector<double> >& errors)
+{
+    std::vector<double> some;
+    for (size_t i = 0; i < scales.size(); i++)
+        if (!errors[i].empty())
+            some.push_back(scales[i]);
+    return median(some);
+}
+
 FitOutcome RobustFit::reweightGradually()
 {
     const int ROUNDS = 30;
@@ -108,7 +118,7 @@ FitOutcome RobustFit::reweightGradually()
             break;
         last = sum;
         if (problem_.hasPriors())   // weighed as the errors are now: too strong, they would make what contradicts them an outlier
-            problem_.setPixelSigma(std::max(median(scales), LEAST_PIXEL_SIGMA));
+            problem_.setPixelSigma(std::max(medianScale(scales, errors), LEAST_PIXEL_SIGMA));
         const Masks candidates = outliers_.candidates();
         for (int i = 0; i < (int)images().size(); i++)
         {
