@@ -43,6 +43,6 @@ int main(int argc, char** argv)
     std::cout << "normal " << normal << ", +- " << std::sqrt(trace(covariance)/2)*180/CV_PI << " degrees per axis\n"
               << "distortion centre " << center << " px, RMS " << rms << " px\n"
               << "off the truth by " << std::acos(std::min(1., normal.dot(camera->window().normal)))*180/CV_PI
-              << " degrees" << std::endl;
+              << " degrees: this pane has a wedge of 2 arc minutes, which looks like a tilt; refract_calib knows that" << std::endl;
     return 0;
 }

@@ -126,6 +126,28 @@ inline double angleBetween(const cv::Vec3d& a, const cv::Vec3d& b)
     return std::atan2(cv::norm(a.cross(b)), a.dot(b))*180/CV_PI;
 }
 
+//! RMS px of views whose poses are fitted, all else fixed. NaN pixels are not seen; infinite where a view has no pose.
+template<typename Pixels>
+double rmsOfFittedPoses(const std::vector<std::vector<cv::Point3d> >& object, const std::vector<Pixels>& pixels,
+                        const cv::Ptr<RefractiveCamera>& camera)
+{
+    double sum = 0;
+    int count = 0;
+    for (size_t i = 0; i < object.size(); i++)
+    {
+        cv::Vec3d rvec, tvec;
+        std::vector<double> error;
+        if (!refractiveSolvePnP(object[i], pixels[i], camera, rvec, tvec, false, error))
+            return std::numeric_limits<double>::infinity();
+        int seen = 0;
+        for (const cv::Point2d& p : cv::Mat_<cv::Point2d>(cv::Mat(pixels[i])))
+            seen += p.x == p.x;
+        sum += 2*error[0]*error[0]*seen;
+        count += seen;
+    }
+    return std::sqrt(sum/count);
+}
+
 } // namespace scenes
 
 #endif // REFRACT_TEST_CALIBRATION_SCENES_HPP

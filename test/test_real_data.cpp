@@ -5,6 +5,7 @@
 // The data stay where they are (REFRACT_DATA_DIR); without them the cases are skipped.
 
 #include "real_data.hpp"
+#include "calibration_scenes.hpp"
 #include "paths.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -63,17 +64,9 @@ Boards some(const Boards& all, size_t begin, size_t end)
 //! RMS over all points of boards whose poses are fitted with everything else fixed.
 double heldOutRms(const Boards& boards, const Ptr<RefractiveCamera>& camera)
 {
-    double sum = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < boards.object.size(); i++)
-    {
-        Vec3d rvec, tvec;
-        std::vector<double> error;
-        REQUIRE(refractiveSolvePnP(boards.object[i], boards.pixels[i], camera, rvec, tvec, false, error));
-        sum += 2*error[0]*error[0]*boards.object[i].size();
-        count += boards.object[i].size();
-    }
-    return std::sqrt(sum/count);
+    const double rms = scenes::rmsOfFittedPoses(boards.object, boards.pixels, camera);
+    REQUIRE(std::isfinite(rms));
+    return rms;
 }
 
 Ptr<RefractiveCamera> pinhole(const Boards& boards, Size size, double& rms)

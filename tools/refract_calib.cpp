@@ -319,11 +319,7 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.distance = o.distanceGiven;
     given.square = target ? target->square() : 0.;
     given.millimetre = 1./millimetresIn(o.unit);
-    given.freeThickness = rig.flags & GLASS_FREE_THICKNESS;
-    given.freeIndex = rig.flags & GLASS_FREE_INDEX;
-    given.freeOuterIndex = rig.flags & GLASS_FREE_OUTER_INDEX;
-    given.freeDistance = rig.flags & GLASS_FREE_DISTANCE;
-    given.freeWedge = rig.flags & GLASS_FREE_WEDGE;
+    given.flags = rig.flags;
     rig.std = o.std.of(given);
     if (rig.std.wedge > 0. || rig.flags & GLASS_FREE_WEDGE)
         rig.window.wedge.assign(rig.window.thickness.size(), cv::Vec2d());

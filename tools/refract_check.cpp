@@ -92,7 +92,7 @@ CheckInput checkInputOf(const Options& o, const Calibration& calibration)
     if (!o.newPane)
         return input;
     PaneStd pane = o.pane;
-    pane.wedge = o.wedgeMinutes/60.*CV_PI/180.;
+    pane.wedge = o.wedgeMinutes*ARC_MINUTE;
     return withNewPanes(input, pane);
 }
 

@@ -6,6 +6,7 @@
 #include "console/failure.hpp"
 #include "scenes.hpp"
 #include <CLI/CLI.hpp>
+#include <opencv2/refract.hpp>
 
 using namespace tools;
 
@@ -89,7 +90,7 @@ TEST_CASE("What is said holds, 0 is exact, and what is free has no default", "[g
     CHECK(exact.placement == 0.);
     CHECK(exact.indexOf(0) == 0.002);
     GivenValues free = pane();
-    free.freeThickness = free.freeIndex = free.freeWedge = true;
+    free.flags = cv::refract::GLASS_FREE_THICKNESS | cv::refract::GLASS_FREE_INDEX | cv::refract::GLASS_FREE_WEDGE;
     CHECK(read({}, free).thickness == 0.);
     CHECK_FALSE(read({}, free).ofIndices());
     CHECK(read({}, free).wedge == 0.);

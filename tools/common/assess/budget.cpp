@@ -3,6 +3,7 @@
 
 #include "assess/budget.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include "measure/point_error.hpp"
 #include <cmath>
@@ -20,16 +21,6 @@ struct Source
     std::vector<int> columns;       //!< of the covariance with the targets' errors
     Mat prior;                      //!< covariance of these
 };
-
-//! The part of a matrix.
-Mat part(const Mat& matrix, const std::vector<int>& rows, const std::vector<int>& columns)
-{
-    Mat result((int)rows.size(), (int)columns.size(), CV_64F);
-    for (int i = 0; i < result.rows; i++)
-        for (int j = 0; j < result.cols; j++)
-            result.at<double>(i, j) = matrix.at<double>(rows[i], columns[j]);
-    return result;
-}
 
 std::vector<int> rangeOf(int first, int count)
 {
@@ -50,7 +41,7 @@ Source sourceOf(const std::string& name, const std::string& given, const Mat& pr
             own.push_back(row);
             source.columns.push_back(first + row);
         }
-    source.prior = part(prior, own, own);
+    source.prior = partOf(prior, own, own);
     return source;
 }
 
@@ -76,7 +67,7 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     };
     add("thickness", std.thickness.text(length), own.thickness, own.layers);
     add("index", indices, own.index, own.layers);
-    add("wedge", std.wedge.text("'", 180./CV_PI*60.), own.wedge, own.end - own.wedge);
+    add("wedge", std.wedge.text("'", 1./ARC_MINUTE), own.wedge, own.end - own.wedge);
     add("distance", std.distance.text(length), own.distance, 1);
     add("index of the scene's medium", std.outerIndex.text(""), own.outerIndex, 1);
     return sources;
@@ -142,7 +133,7 @@ std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& c)
     };
     for (const Source& source : sourcesOf(c))
     {
-        const Mat columns = part(c.fit.withTargets, cameras, source.columns);
+        const Mat columns = partOf(c.fit.withTargets, cameras, source.columns);
         const double square = volume.meanSquare(columns*source.prior.inv(DECOMP_SVD)*columns.t());
         left -= square;
         add(source.name, source.given, square);

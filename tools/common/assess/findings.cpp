@@ -8,6 +8,7 @@
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace cv;
 using namespace cv::refract;
@@ -58,14 +59,12 @@ void checkLimits(const RigCalibration& c, const Assessment& a, Findings& f)
 //! The covariance of all parameters, were some of them (and the targets' errors) known.
 Mat conditional(const Fit& fit, const std::vector<int>& known)
 {
-    const int count = (int)known.size();
-    Mat of(fit.withTargets.rows, count, CV_64F), among(count, count, CV_64F);
-    for (int i = 0; i < count; i++)
-        fit.withTargets.col(known[i]).copyTo(of.col(i));
-    for (int i = 0; i < count; i++)
-        of.row(known[i]).copyTo(among.row(i));
-    const Mat covariance = count ? Mat(fit.withTargets - of*among.inv(DECOMP_SVD)*of.t()) : fit.withTargets;
-    return covariance(Rect(0, 0, fit.covariance.cols, fit.covariance.rows));
+    if (known.empty())
+        return fit.covariance;
+    std::vector<int> all(fit.covariance.rows);
+    std::iota(all.begin(), all.end(), 0);
+    const Mat of = partOf(fit.withTargets, all, known), among = partOf(fit.withTargets, known, known);
+    return fit.covariance - of*among.inv(DECOMP_SVD)*of.t();
 }
 
 /** The larger principal deviation of the normal, were it known how wedge-shaped the pane is and how the boards moved: a wedge or a motion
@@ -86,18 +85,20 @@ void checkTilt(const RigCalibration& c, int camera, Findings& f)
     const double std = windowStd(c.fit, camera).normalDeg[0], ofNoise = normalStdOfNoise(c, camera);
     const bool pairs = c.data.countPairs(camera) > 0;
     if (ofNoise > WEAK_NORMAL_DEG)
+    {
         f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std)
                          + (pairs ? "take more pairs, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
+        if (!pairs)
+            f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
+                                   "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
+                                   "such glass-only views");
+    }
     else if (std > TELLING_RATIO*ofNoise)
         f.cannotTell.push_back(of(c, camera) + format("the window's tilt better than to %.2g deg: a wedge between its faces%s looks like "
                                "a tilt (were it known, %.2g deg). Points hardly suffer from that", std,
                                pairs && c.options.std.placement > 0. ? ", or a motion of all boards between direct and glass," : "",
                                ofNoise));
-    if (!pairs && ofNoise > WEAK_NORMAL_DEG)
-        f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
-                               "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
-                               "such glass-only views");
 }
 
 void checkWindow(const RigCalibration& c, int camera, Findings& f)

@@ -6,6 +6,7 @@
 #include "measure/point_error.hpp"
 #include "assess/wedge.hpp"
 #include "calibrate/image_fit.hpp"
+#include "calibrate/units.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
@@ -22,7 +23,6 @@ namespace {
 
 const double THICKNESS_MM = 0.1;
 const double INDEX = 0.001;            // of a given number
-const double ARC_MINUTE = CV_PI/180./60.;
 const double NUDGE_MM = 0.1;
 const double SQUARE = 0.001;            // share of it
 const double BOW_MM = 0.1;

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/given_std.hpp"
+#include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/failure.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+using namespace cv::refract;
 
 namespace tools {
 
@@ -21,7 +24,6 @@ const double SQUARE_RELATIVE = 5e-4;        // a printed board
 const double PLACEMENT_MM = 0.02;           // a board on a stand, a camera on its mount, while the window goes in
 
 const char* const DEFAULT = "default";
-const double ARC_MINUTE = CV_PI/180./60.;
 
 //! A rectangular distribution of that half width (GUM 4.3.7); air as a number is exact.
 Std usualOf(const GivenIndex& index)
@@ -80,19 +82,20 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
         throw Failure("--distance-std is of a distance that is given: add --distance");
     if (isSaid(SQUARE) && !(v.square > 0.))
         throw Failure("--square-std is of the square of a board: add --square");
-    // What is free has no default: it is estimated from the images alone.
     const auto choose = [&](int which, double factor, const Std& usual, bool hasDefault) {
         if (!std::isnan(said_[which]))
             return Std(factor*said_[which]);
         return hasDefault && !exact_ ? usual : Std();
     };
+    const auto isFree = [&v](int flag) { return (v.flags & flag) != 0; };
     GivenStd std;
-    std.thickness = choose(THICKNESS, 1., Std(THICKNESS_MM*v.millimetre, DEFAULT), layers && !v.freeThickness);
+    std.thickness = choose(THICKNESS, 1., Std(THICKNESS_MM*v.millimetre, DEFAULT), layers && !isFree(GLASS_FREE_THICKNESS));
     for (const GivenIndex& layer : v.layers)
-        std.index.push_back(choose(INDEX, 1., usualOf(layer), !v.freeIndex));
-    std.outerIndex = choose(OUTER_INDEX, 1., usualOf(v.outer), !v.equalMedia && !v.freeOuterIndex);
-    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT), !v.equalMedia && v.distance && !v.freeDistance);
-    std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && !v.freeWedge);
+        std.index.push_back(choose(INDEX, 1., usualOf(layer), !isFree(GLASS_FREE_INDEX)));
+    std.outerIndex = choose(OUTER_INDEX, 1., usualOf(v.outer), !v.equalMedia && !isFree(GLASS_FREE_OUTER_INDEX));
+    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT),
+                          !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
+    std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && !isFree(GLASS_FREE_WEDGE));
     std.scale = choose(SQUARE, v.square > 0. ? 1./v.square : 0., Std(SQUARE_RELATIVE, DEFAULT), v.square > 0.);
     std.placement = choose(PLACEMENT, 1., Std(PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;

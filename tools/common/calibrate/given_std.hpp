@@ -47,7 +47,7 @@ struct GivenValues
     bool distance = false;              //!< was given
     double square = 0.;                 //!< of a board; 0: there is none
     double millimetre = 1.;             //!< in the unit of lengths
-    bool freeThickness = false, freeIndex = false, freeOuterIndex = false, freeDistance = false, freeWedge = false;
+    int flags = 0;                      //!< GLASS_FREE_...: what is estimated from the images alone has no default
 };
 
 //! --thickness-std and its kin.

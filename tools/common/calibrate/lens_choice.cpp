@@ -15,7 +15,6 @@ namespace {
 
 const int RICHEST = 8;                  // coefficients that are tried
 const int MOST_IMAGES = 60;             // of a camera: more decide nothing else
-const size_t MIN_IMAGES = 3;            // of a flat target, to find a lens from
 const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target are held out (selectLensCoefficients)
 const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
 // A fisheye's error in that of OpenCV's model, to be taken in its place: of the rational one, which has more coefficients; of others.
@@ -49,12 +48,6 @@ std::vector<TargetView> imagesOf(const RigData& data, int camera, bool glass)
     for (size_t i = 0; i < all.size(); i += step)
         some.push_back(all[i]);
     return some;
-}
-
-bool determineLens(const std::vector<TargetView>& views)
-{
-    return views.size() >= MIN_IMAGES
-        || std::any_of(views.begin(), views.end(), [](const TargetView& v) { return isSolid(v.objectPoints); });
 }
 
 //! Each image of each camera has a pose of its own. Nothing where a camera has too few.

@@ -45,6 +45,15 @@ int extrinsicsColumn(const RigModel& rig, int camera)
 
 int columnCount(const RigModel& rig) { return extrinsicsColumn(rig, (int)rig.cameras.size()); }
 
+Mat partOf(const Mat& matrix, const std::vector<int>& rows, const std::vector<int>& columns)
+{
+    Mat result((int)rows.size(), (int)columns.size(), CV_64F);
+    for (int i = 0; i < result.rows; i++)
+        for (int j = 0; j < result.cols; j++)
+            result.at<double>(i, j) = matrix.at<double>(rows[i], columns[j]);
+    return result;
+}
+
 std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
 {
     const int at = columnsOf(rig, camera).normal;

@@ -23,6 +23,9 @@ int extrinsicsColumn(const RigModel& rig, int camera);
 //! Of all of them.
 int columnCount(const RigModel& rig);
 
+//! These rows and columns of a matrix.
+cv::Mat partOf(const cv::Mat& matrix, const std::vector<int>& rows, const std::vector<int>& columns);
+
 //! Two principal standard deviations of the normal of a camera, larger first.
 std::vector<double> normalStdDeg(const cv::Mat& covariance, const RigModel& rig, int camera);
 

@@ -191,6 +191,13 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetView
     return camera;
 }
 
+bool determineLens(const std::vector<TargetView>& views)
+{
+    const size_t LEAST_OF_FLAT = 3;
+    return views.size() >= LEAST_OF_FLAT
+        || std::any_of(views.begin(), views.end(), [](const TargetView& v) { return isSolid(v.objectPoints); });
+}
+
 bool isSolid(const std::vector<Point3d>& objectPoints)
 {
     const double FLAT = 0.02;           // thickness over width

@@ -38,6 +38,9 @@ it finds nothing.
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
                                                      int coefficients, int fixed, double& rms);
 
+//! Whether there are enough images to find a lens from: three of flat targets, one of a target with depth.
+bool determineLens(const std::vector<TargetView>& views);
+
 //! Whether a target has depth of its own, so that one view of it tells the focal length.
 bool isSolid(const std::vector<cv::Point3d>& objectPoints);
 

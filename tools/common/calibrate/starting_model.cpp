@@ -44,8 +44,7 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
         source.kind = LensSource::FROM_GLASS;
     }
     source.views = (int)views.size();
-    const bool solid = std::any_of(views.begin(), views.end(), [](const TargetView& v) { return isSolid(v.objectPoints); });
-    if (source.views < 3 && !solid)
+    if (!determineLens(views))
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
     return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, options.flags, source.rms);

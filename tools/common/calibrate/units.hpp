@@ -6,8 +6,10 @@
 
 #include "calibrate/calib_file.hpp"
 
-/* A length in another unit than it is taken for. */
+/* A length in another unit than it is taken for; angles. */
 namespace tools {
+
+const double ARC_MINUTE = CV_PI/180./60.;       //!< radians
 
 //! The units that --unit knows.
 std::vector<std::string> unitNames();

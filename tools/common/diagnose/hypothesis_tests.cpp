@@ -6,6 +6,7 @@
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
+#include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -85,20 +86,25 @@ std::string typed(const RigOptions& options, const GivenValue& given, double val
     return format("%.5g", value);
 }
 
+std::string howFar(double deviations)
+{
+    return format(", %.*f standard deviations away", deviations < 10. ? 1 : 0, deviations);
+}
+
 std::string sentenceOf(const GivenValue& given, const std::string& where, const std::string& typed, double estimate, double std,
                        double deviations)
 {
     const double known = std::sqrt(given.varianceOfSum());
     return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, typed.c_str(),
                   known > 0. ? format(" +- %.2g", known).c_str() : "", given.word, where.c_str())
-        + plusMinus(estimate, std) + format(", %.*f standard deviations away", deviations < 10. ? 1 : 0, deviations);
+        + plusMinus(estimate, std) + howFar(deviations);
 }
 
 std::string sentenceOfLayers(const GivenValue& given, const std::string& where, double before, double estimate, double std,
                              double deviations)
 {
     return format("the images contradict %s: set free, the sum over the layers%s would be ", given.option, where.c_str())
-        + plusMinus(estimate, std) + format(" and not %.5g, %.*f standard deviations away", before, deviations < 10. ? 1 : 0, deviations);
+        + plusMinus(estimate, std) + format(" and not %.5g", before) + howFar(deviations);
 }
 
 /** A rig in which nothing is known of a value any more. The thicknesses or indices of several layers, which images hardly distinguish,
@@ -148,7 +154,7 @@ std::vector<Contradiction> contradictedBy(const FittedRig& c, const GivenValue& 
 //! Wedges, which are about 0.
 std::vector<Contradiction> contradictedWedges(const FittedRig& c)
 {
-    const double prior = std::pow(c.options.std.wedge, 2), minutes = 60.*180./CV_PI;
+    const double prior = std::pow(c.options.std.wedge, 2), minutes = 1./ARC_MINUTE;
     std::vector<Contradiction> contradictions;
     for (int k = 0; k < c.data.cameraCount && prior > 0.; k++)
     {

@@ -3,6 +3,7 @@
 
 #include "report/summary.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "calibrate/units.hpp"
 #include "console/colour.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -148,7 +149,7 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
                            [&](int k) { return estimateOr(window(k).thickness[i], deviation(k).thickness[i], "given"); }));
         rows.push_back(row(c, "index" + layer,
                            [&](int k) { return estimateOr(window(k).index[i], deviation(k).index[i], "given"); }));
-        const double toMinutes = 60.*180./CV_PI;
+        const double toMinutes = 1./ARC_MINUTE;
         for (size_t axis = 0; axis < 2 && !first.wedge.empty(); axis++)
             rows.push_back(row(c, std::string("wedge ") + "xy"[axis] + layer + ", arc minutes", [&](int k) {
                 return estimateOr(toMinutes*window(k).wedge[i][(int)axis], toMinutes*deviation(k).wedge[2*i + axis], "given");

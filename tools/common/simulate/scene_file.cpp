@@ -128,6 +128,12 @@ private:
 
 using PosesByName = std::map<std::string, std::vector<NamedPose>>;
 
+BoardPose readPose(const Keys& keys)
+{
+    const auto r = keys.numbers("rvec", 3), t = keys.numbers("tvec", 3);
+    return {Vec3d(r.data()), Vec3d(t.data())};
+}
+
 std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, const Calibration& rig, uint64_t seed)
 {
     const std::string name = node.name();
@@ -137,8 +143,7 @@ std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, con
         for (const FileNode& item : node)
         {
             const Keys keys(item, "poses: " + name);
-            const auto r = keys.numbers("rvec", 3), t = keys.numbers("tvec", 3);
-            poses.push_back({name + std::to_string(poses.size() + 1), {Vec3d(r.data()), Vec3d(t.data())}});
+            poses.push_back({name + std::to_string(poses.size() + 1), readPose(keys)});
         }
         return poses;
     }
@@ -188,8 +193,8 @@ ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& po
     if (keys.has("motion"))
     {
         const Keys motion(node["motion"], keys.name() + ", motion");
-        const auto r = motion.numbers("rvec", 3), t = motion.numbers("tvec", 3);
-        set.motion = transformOf(Vec3d(r[0], r[1], r[2]), Vec3d(t[0], t[1], t[2]));
+        const BoardPose pose = readPose(motion);
+        set.motion = transformOf(pose.rvec, pose.tvec);
     }
     const bool posesNamed = node["poses"].isSeq() && node["poses"].size() > 0;
     if (set.name.find('/') != std::string::npos || (set.scene ? keys.has("poses") : !posesNamed))
