@@ -17,38 +17,11 @@ static Vec4d planeOf(InputArray depth, Size size, bool isNeeded, const char* nam
     return scenePlane(depth, isNeeded, name);
 }
 
-/** Where on the axis of the window rays of the image meet it, and as far again: there a virtual centre may be. The image is taken to
-be twice as large as the principal point is far from the first pixel. */
-static Vec2d centresOf(const Camera& camera)
-{
-    const int STEPS = 32;
-    const std::vector<double>& lens = camera.lens().parameters();
-    Vec2d range = Vec2d::all(paraxialTau(camera));
-    for (int row = 0; row <= STEPS; row++)
-    {
-        double u[STEPS + 1], v[STEPS + 1];
-        Rays rays;
-        uchar status[STEPS + 1] = {};
-        for (int i = 0; i <= STEPS; i++)
-        {
-            u[i] = 2*lens[2]*i/STEPS;
-            v[i] = 2*lens[3]*row/STEPS;
-        }
-        camera.unproject(STEPS + 1, u, v, rays, status);
-        for (int i = 0; i <= STEPS; i++)
-            if (status[i] == REFRACT_OK)
-                range = Vec2d(std::min(range[0], rays.tau[i]), std::max(range[1], rays.tau[i]));
-    }
-    const double again = range[1] - range[0];
-    return range + Vec2d(-again, again);
-}
-
-/* A pinhole is on the axis of the camera's window, near where rays meet it, or at the centre of projection if there is none:
+/* A pinhole is on the axis of the camera's window, where rays may meet it, or at the centre of projection if there is none:
 refractiveStereoRectify puts it nowhere else. P of one camera with the T of another is off by about the base line. */
 static void checkPinhole(const Camera& camera, const Vec3d& centre, const Vec3d& T, const char* name)
 {
     const double PRINTED = 1e-4, ROUNDING = 1e-9;       // relative; in any unit
-    const double NEAR = 0.1;                            // of how deep the window is
     const Vec3d normal = camera.layers().normal();
     const double along = centre.dot(normal);
     const double off = norm(camera.refracts() ? centre - along*normal : centre);
@@ -59,7 +32,7 @@ static void checkPinhole(const Camera& camera, const Vec3d& centre, const Vec3d&
                                      T[1], T[2], off));
     if (!camera.refracts())
         return;
-    const Vec2d range = centresOf(camera) + (NEAR*camera.layers().stack().total + slack)*Vec2d(-1, 1);
+    const Vec2d range = virtualCentreRange(camera) + slack*Vec2d(-1, 1);
     if (!(range[0] <= along && along <= range[1]))
         CV_Error_(Error::StsBadArg, ("%s and T (%g, %g, %g) do not belong together: the pinhole is at %g along the axis of this "
                                      "camera's window; its rays meet the axis between %g and %g", name, T[0], T[1], T[2], along,

@@ -18,6 +18,37 @@ double paraxialTau(const Camera& camera)
     return rays.tau[0];
 }
 
+Vec2d virtualCentreRange(const Camera& camera)
+{
+    const int STEPS = 32;
+    const double RARE = 0.1;            // of the rays on either side: those along the window may meet its axis anywhere
+    const double NEAR = 0.1;            // of how deep the window is, beside a range that is a point
+    const std::vector<double>& lens = camera.lens().parameters();
+    std::vector<double> taus;
+    for (int row = 0; row <= STEPS; row++)
+    {
+        double u[STEPS + 1], v[STEPS + 1];
+        Rays rays;
+        uchar status[STEPS + 1] = {};
+        for (int i = 0; i <= STEPS; i++)
+        {
+            u[i] = 2*lens[2]*i/STEPS;
+            v[i] = 2*lens[3]*row/STEPS;
+        }
+        camera.unproject(STEPS + 1, u, v, rays, status);
+        for (int i = 0; i <= STEPS; i++)
+            if (status[i] == REFRACT_OK)
+                taus.push_back(rays.tau[i]);
+    }
+    std::sort(taus.begin(), taus.end());
+    const double paraxial = paraxialTau(camera);
+    const size_t rare = (size_t)(RARE*taus.size());
+    const Vec2d range = taus.empty() ? Vec2d::all(paraxial) : Vec2d(std::min(paraxial, taus[rare]),
+                                                                    std::max(paraxial, taus[taus.size() - 1 - rare]));
+    const double again = range[1] - range[0] + NEAR*camera.layers().stack().total;
+    return range + Vec2d(-again, again);
+}
+
 VirtualPair::VirtualPair(const StereoPair& pair, const Vec2d& tau)
 {
     const Vec3d V1 = tau[0]*pair.camera1.layers().normal(), V2 = tau[1]*pair.camera2.layers().normal();
@@ -112,11 +143,20 @@ class RowProblem
 public:
     RowProblem(const StereoPair& pair, const RowSamples& samples, double depth) : pair_(pair), samples_(samples), depth_(depth)
     {
-        free_[0] = pair.camera1.refracts();
-        free_[1] = pair.camera2.refracts();
-        start_ = Vec2d(free_[0] ? paraxialTau(pair.camera1) : 0, free_[1] ? paraxialTau(pair.camera2) : 0);
+        const Camera* cameras[] = { &pair.camera1, &pair.camera2 };
+        for (int k = 0; k < 2; k++)
+        {
+            free_[k] = cameras[k]->refracts();
+            start_[k] = free_[k] ? paraxialTau(*cameras[k]) : 0;
+            range_[k] = free_[k] ? virtualCentreRange(*cameras[k]) : Vec2d();
+        }
     }
     Vec2d start() const { return start_; }
+    Vec2d inRange(const Vec2d& tau) const
+    {
+        const auto limited = [&](int k) { return std::min(std::max(tau[k], range_[k][0]), range_[k][1]); };
+        return Vec2d(limited(0), limited(1));
+    }
 
     std::vector<double> residuals(const Vec2d& tau) const
     {
@@ -156,7 +196,7 @@ private:
     const RowSamples& samples_;
     double depth_;
     bool free_[2];
-    Vec2d start_;
+    Vec2d start_, range_[2];
 };
 
 double sumOfSquares(const std::vector<double>& e) { return std::inner_product(e.begin(), e.end(), e.begin(), 0.); }
@@ -172,7 +212,7 @@ Vec2d bestVirtualCentres(const StereoPair& pair, const RowSamples& samples, doub
     std::vector<double> e = problem.residuals(tau);
     for (int iteration = 0; iteration < ITERATIONS; iteration++)
     {
-        const Vec2d next = tau + problem.step(tau, e);
+        const Vec2d next = problem.inRange(tau + problem.step(tau, e));
         const std::vector<double> eNext = problem.residuals(next);
         if (!(sumOfSquares(eNext) < (1 - DONE)*sumOfSquares(e)))
             break;

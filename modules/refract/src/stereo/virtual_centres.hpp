@@ -42,7 +42,11 @@ private:
 //! Tau of a ray along the window's normal.
 double paraxialTau(const Camera& camera);
 
-/** Taus of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones nearest to
+/** Least and largest tau of a virtual centre: where four in five rays of the image meet the axis of the window, and as far again.
+The image is taken to be twice as large as the principal point is far from the first pixel. */
+Vec2d virtualCentreRange(const Camera& camera);
+
+/** Taus in these ranges of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones nearest to
 those of rays along the normals. */
 Vec2d bestVirtualCentres(const StereoPair& pair, const RowSamples& samples, double depth);
 
