@@ -1373,7 +1373,7 @@ Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 a
 as far as the cameras' lenses have them. Each is fitted, and each view is held out in turn: its error, its pose fitted to it,
 is that of the fit to the other views (to first order, without fitting again). If there are fewer than 4 views, eighths of each
 target are held out, their poses fitted to the others. The candidate with the fewest coefficients is chosen whose held-out
-error is at most 2 % and two standard errors of the difference above the best. A candidate that does not converge is left out.
+error is at most 2 % and one standard error of the difference above the best. A candidate that does not converge is left out.
 
 Give the images without the window, if there are enough of them (10 or more): only these, with cameras without a window, each
 view seen by one camera. Then no window is fitted. Otherwise give the images through the windows.

@@ -6,7 +6,7 @@
 its errors on parts of the observations that are held out in turn (adjust/held_out.hpp). More coefficients always fit better what
 they are fitted to; held out they are worse from the number on that the data do not determine.
 
-The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard errors and a few
+The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard error and a few
 percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984). */
 
 #include "adjust/held_out.hpp"
@@ -21,7 +21,7 @@ namespace cv { namespace refract {
 namespace {
 
 const double MOST_ABOVE_BEST = 1.02;    // held-out RMS of what is chosen
-const double MOST_STANDARD_ERRORS = 2;  // of its difference from the best
+const double MOST_STANDARD_ERRORS = 1;  // of its difference from the best
 const int START_POINTS = 150;           // of a target, to find where windows and cameras are
 const int ROUNDS = 3;                   // of leaving outliers out
 const double OUTLIER = 5;               // in standard deviations

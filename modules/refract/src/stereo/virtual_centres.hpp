@@ -46,8 +46,8 @@ double paraxialTau(const Camera& camera);
 The image is taken to be twice as large as the principal point is far from the first pixel. */
 Vec2d virtualCentreRange(const Camera& camera);
 
-/** Taus in these ranges of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones nearest to
-those of rays along the normals. */
+/** Taus in these ranges of the centres by which the rows differ least. Where several do alike, as behind a shared window, the ones
+nearest to those of rays along the normals. */
 Vec2d bestVirtualCentres(const StereoPair& pair, const RowSamples& samples, double depth);
 
 }} // namespace
