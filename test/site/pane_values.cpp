@@ -20,15 +20,18 @@ const Matx33d K(1200, 0, 639.5, 0, 1200, 511.5, 0, 0, 1);
 
 struct Configuration
 {
-    double tilt, direction, tilt2, direction2, thickness, index, distance, outerIndex;
+    double tilt, direction, tilt2, direction2, thickness, index, distance, outerIndex, wedge;
     Point3d point;
 };
 
 GlassWindow windowOf(const Configuration& c, double tilt, double direction)
 {
     const double t = tilt*CV_PI/180, a = direction*CV_PI/180;
-    return GlassWindow(Vec3d(std::sin(t)*std::cos(a), std::sin(t)*std::sin(a), std::cos(t)), c.thickness, c.index, c.distance,
+    GlassWindow window(Vec3d(std::sin(t)*std::cos(a), std::sin(t)*std::sin(a), std::cos(t)), c.thickness, c.index, c.distance,
                        c.outerIndex);
+    if (c.wedge != 0)
+        window.wedge = { Vec2d(c.wedge/60*CV_PI/180, 0) };
+    return window;
 }
 
 Configuration randomConfiguration(RNG& rng, int i)
@@ -42,6 +45,7 @@ Configuration randomConfiguration(RNG& rng, int i)
     c.index = rng.uniform(1.3, 1.9);
     c.distance = rng.uniform(10., 80.);
     c.outerIndex = i % 4 < 2 ? 1 : i % 4 == 2 ? 1.333 : rng.uniform(1., 1.5);
+    c.wedge = i % 3 == 0 ? 0 : rng.uniform(-30., 30.);
     c.point = Point3d(rng.uniform(-150., 350.), rng.uniform(-200., 200.), rng.uniform(300., 1200.));
     return c;
 }
@@ -101,7 +105,8 @@ void printAnswers(const Configuration& c)
     print("pixel2", { pixel2.x, pixel2.y });
     print("pinhole1", { pinhole1.x, pinhole1.y });
     print("pinhole2", { pinhole2.x, pinhole2.y });
-    print("origin", { o.x, o.y, o.z });
+    if (c.wedge == 0)           // else any point of the ray near the axis will do
+        print("origin", { o.x, o.y, o.z });
     print("direction", { d.x, d.y, d.z });
     print("curve", curvePixels(pixel1, window1, window2));
     print("ignored", { i.x, i.y, i.z });
@@ -119,8 +124,8 @@ int main(int argc, char** argv)
     {
         const Configuration c = randomConfiguration(rng, i);
         std::printf("{ input: { tilt: %.17g, direction: %.17g, tilt2: %.17g, direction2: %.17g, thickness: %.17g, index: %.17g, "
-                    "distance: %.17g, outerIndex: %.17g, x: %.17g, y: %.17g, z: %.17g },",
-                    c.tilt, c.direction, c.tilt2, c.direction2, c.thickness, c.index, c.distance, c.outerIndex,
+                    "distance: %.17g, outerIndex: %.17g, wedge: %.17g, x: %.17g, y: %.17g, z: %.17g },",
+                    c.tilt, c.direction, c.tilt2, c.direction2, c.thickness, c.index, c.distance, c.outerIndex, c.wedge,
                     c.point.x, c.point.y, c.point.z);
         printAnswers(c);
         std::printf(" },\n");
