@@ -108,14 +108,17 @@ public:
         for (const auto& range : ranges)
             for (const auto& place : places)
                 for (const auto& tilt : tilts)
-                    result.push_back({format("%s (z = %.4g %s), %s, %s", range.words, range.z, c_.unit.c_str(), place.words,
-                                             tilt.words),
-                                      tilt.axis*(TILT_DEG*CV_PI/180.), boardAt(place.at, range.z, tilt.axis)});
+                {
+                    const Vec3d tvec = boardAt(place.at, range.z, tilt.axis);
+                    if (std::isfinite(tvec[0] + tvec[1] + tvec[2]))
+                        result.push_back({format("%s (z = %.4g %s), %s, %s", range.words, range.z, c_.unit.c_str(), place.words,
+                                                 tilt.words), tilt.axis*(TILT_DEG*CV_PI/180.), tvec});
+                }
         return result;
     }
 
 private:
-    //! tvec that brings the board's middle to a share of the image, at the depth z.
+    //! tvec that brings the board's middle to a share of the image, at the depth z; NaN if no ray leads there.
     Vec3d boardAt(const Point2d& share, double z, const Vec3d& axis) const
     {
         const Size size = c_.data.imageSize[0];
