@@ -17,23 +17,30 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 RIG = (ROOT/"samples/data/stereo/rig.yml").read_text(encoding="utf-8")
 
 
+def replaced(rig, pattern, by, times=1):
+    changed, count = re.subn(pattern, by, rig)
+    if count != times:
+        sys.exit(f"samples/data/stereo/rig.yml has '{pattern}' {count} times, not {times}")
+    return changed
+
+
 def without_wedge(rig):
-    return re.sub(r"      wedge: .*\n", "", rig)
+    return replaced(rig, r"      wedge: .*\n", "", 2)
 
 
 def without_motion(rig):
-    return re.sub(r", motion: \{.*?\} \}", " }", rig)
+    return replaced(rig, r", motion: \{.*?\} \}", " }")
 
 
 def with_ranges(rig):
-    return rig.replace("pair: { count: 6, distance: [ 540., 680. ]", "pair: { count: 6, distance: [ 520., 1100. ]")
+    return replaced(rig, r"(pair: \{ count: 6, distance: )\[ 540\., 680\. \]", r"\1[ 520., 1100. ]")
 
 
 def with_images(rig):
     """Ten boards more, through the window only."""
     more = "   more: { count: 10, distance: [ 540., 680. ], tilt_deg: [ 5., 30. ], roll_deg: 20., margin: 20. }\n"
-    rig = rig.replace("   z600_:", more + "   z600_:")
-    return rig.replace("glass: { window: 1, poses: [ pair ]", "glass: { window: 1, poses: [ pair, more ]")
+    rig = replaced(rig, r"(?m)^(?=   z600_:)", more)
+    return replaced(rig, r"(glass: \{ window: 1, poses: \[ pair) \]", r"\1, more ]")
 
 
 FLAT, MOUNT = ["--wedge-std=0.02"], ["--placement-std=0.001"]
@@ -48,8 +55,9 @@ CASES = [
 
 
 def angle(a, b):
-    dot = sum(x*y for x, y in zip(a, b))/math.sqrt(sum(x*x for x in a)*sum(y*y for y in b))
-    return math.degrees(math.acos(min(1., dot)))
+    """Degrees, to the last digit of small ones too."""
+    cross = [a[i - 2]*b[i - 1] - a[i - 1]*b[i - 2] for i in range(3)]
+    return math.degrees(math.atan2(math.hypot(*cross), sum(x*y for x, y in zip(a, b))))
 
 
 def calibrate(programs, rig, options):

@@ -118,10 +118,6 @@ int countFree(const Mat_<double>& scores, int flags)
     return -1;
 }
 
-} // namespace
-
-namespace {
-
 //! The least RMS on fresh images that a fixed number of coefficients gives; of the fisheye, which OpenCV fits otherwise, the true lens.
 double bestFixedRms(const TrueLens& lens, const Images& images, const Images& fresh)
 {
