@@ -3,8 +3,7 @@
 
 // What the next images would bring, where a part of the near plane lies before the window.
 #include "assess/advice.hpp"
-#include "calibrate/image_fit.hpp"
-#include "paper_rig.hpp"
+#include "fitted_rig.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -16,23 +15,13 @@ TEST_CASE("No image is advised where a board would be before the window", "[advi
     RigModel rig = paperRig(1);
     rig.cameras[0]->setWindow(GlassWindow(Vec3d(1.732, 0, 1), 5, 1.5, 60));      // near at the right edge, far at the left one
     const double square = 3;
-    RigCalibration c;
-    c.square = square;
-    c.unit = "mm";
-    c.data.cameraCount = 1;
-    c.data.imageSize[0] = Size(1280, 1024);
+    RigData data = dataOf(rig);
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(6, 10), random.uniform(-8, 2), random.uniform(128, 145)), rvec = random.vector(0.15);
-        c.data.views.push_back(observe(rig, board(6, 5, square), rvec, tvec, true, 0.1, random));
+        data.views.push_back(observe(rig, board(6, 5, square), rvec, tvec, true, 0.1, random));
     }
-    c.options.window = rig.cameras[0]->window();
-    c.options.known[0] = rig.cameras[0];
-    rig.known.push_back(knownOf(*rig.cameras[0], c.options, 0));
-    rig.known[0].window = rig.cameras[0]->window();
-    c.start = rig;
-    c.lensSources.resize(1);
-    c.fit = fitImages(c.data, rig, allViews(c.data), 0);
+    const RigCalibration c = fittedRig(rig, data, square);
 
     const double near = workingDepth(c, 0)[0];
     std::vector<Point3d> left;

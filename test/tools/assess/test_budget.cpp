@@ -4,8 +4,7 @@
 // The uncertainty budget: its rows against what each source does by itself.
 #include "assess/budget.hpp"
 #include "assess/tolerance.hpp"
-#include "calibrate/image_fit.hpp"
-#include "paper_rig.hpp"
+#include "fitted_rig.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -20,28 +19,24 @@ RigCalibration calibrated(const GivenStd& std)
 {
     scenes::Random random(1210);
     RigModel rig = paperRig(2);
-    RigCalibration c;
-    c.square = SQUARE;
-    c.data.cameraCount = 2;
-    c.data.imageSize[0] = c.data.imageSize[1] = Size(1280, 1024);
+    RigData data = dataOf(rig);
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
-        c.data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, 0.1, random));
+        data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, 0.1, random));
     }
-    c.options.window = rig.cameras[0]->window();
-    c.options.std = std;
+    RigOptions options;
+    options.window = rig.cameras[0]->window();
+    options.std = std;
     for (int k = 0; k < 2; k++)
     {
-        c.options.known[k] = rig.cameras[k];
-        rig.known.push_back(knownOf(*rig.cameras[k], c.options, k));
+        options.known[k] = rig.cameras[k];
+        rig.known.push_back(knownOf(*rig.cameras[k], options, k));
         rig.known[k].window = rig.cameras[k]->window();
     }
-    rig.targetCovariance = targetCovarianceOf(c.data, rig, std);
-    c.start = rig;
-    c.lensSources.resize(2);
-    c.fit = fitImages(c.data, rig, allViews(c.data), 0);
-    c.residuals = residualsOf(c.data, c.fit);
+    rig.targetCovariance = targetCovarianceOf(data, rig, std);
+    RigCalibration c = fittedRig(rig, data, SQUARE);
+    c.options = options;
     return c;
 }
 

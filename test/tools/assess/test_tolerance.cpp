@@ -3,8 +3,7 @@
 
 // What a wrong value does to measured points, against calibrations from observations that are wrong in that way.
 #include "assess/tolerance.hpp"
-#include "calibrate/image_fit.hpp"
-#include "paper_rig.hpp"
+#include "fitted_rig.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -16,8 +15,7 @@ namespace {
 RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
 {
     scenes::Random random(1010);
-    RigData data;
-    data.imageSize[0] = Size(1280, 1024);
+    RigData data = dataOf(rig);
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
@@ -29,14 +27,7 @@ RigData pairsMovedBy(const RigModel& rig, const Vec3d& shift)
 
 RigCalibration calibrated(const RigModel& rig, const Vec3d& shift)
 {
-    RigCalibration c;
-    c.square = 39.;
-    c.data = pairsMovedBy(rig, shift);
-    c.start = rig;
-    c.lensSources.resize(1);
-    c.fit = fitImages(c.data, rig, allViews(c.data), 0);
-    c.residuals = residualsOf(c.data, c.fit);
-    return c;
+    return fittedRig(rig, pairsMovedBy(rig, shift));
 }
 
 } // namespace
@@ -78,27 +69,20 @@ TEST_CASE("What a nudge between direct and glass images does is told, and is muc
 TEST_CASE("What a wrong square and a bent board do is told", "[tolerance]")
 {
     const RigModel rig = paperRig(2);
-    RigCalibration right;
-    right.square = 39.;
-    right.data.cameraCount = 2;
-    right.data.imageSize[0] = right.data.imageSize[1] = Size(1280, 1024);
+    RigData data = dataOf(rig), ofBent = data;
     std::vector<Point3d> bent = board(6, 5);        // as seen: 0.1 mm from corner to middle
     for (Point3d& X : bent)
         X.z = 0.1*(1. - (X.x*X.x + X.y*X.y)/(97.5*97.5 + 78.*78.));
-    RigData ofBent = right.data;
     scenes::Random random(1020);
     for (int i = 0; i < 8; i++)
     {
         const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
         const Vec3d rvec = random.vector(0.4);
-        right.data.views.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
+        data.views.push_back(observe(rig, board(6, 5), rvec, tvec, true, 0., random));
         ofBent.views.push_back(observe(rig, bent, rvec, tvec, true, 0., random));
         ofBent.views.back().objectPoints = board(6, 5);        // taken for flat
     }
-    right.start = rig;
-    right.lensSources.resize(2);
-    right.fit = fitImages(right.data, rig, allViews(right.data), 0);
-    right.residuals = residualsOf(right.data, right.fit);
+    const RigCalibration right = fittedRig(rig, data);
     const std::vector<Tolerance> tolerances = analyseTolerances(right, 1., true);
     REQUIRE(tolerances.size() >= 2);
     const Tolerance &square = tolerances[tolerances.size() - 2], &bow = tolerances.back();

@@ -1,0 +1,36 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// A rig fitted to what it sees, as refract_calib hands it to what judges it.
+#ifndef REFRACT_TEST_TOOLS_FITTED_RIG_HPP
+#define REFRACT_TEST_TOOLS_FITTED_RIG_HPP
+
+#include "assess/rig_calibration.hpp"
+#include "calibrate/image_fit.hpp"
+#include "paper_rig.hpp"
+
+//! Fitted from the rig itself, which knows all that is given; lengths in mm.
+inline tools::RigCalibration fittedRig(const tools::RigModel& rig, const tools::RigData& data, double square = 39.)
+{
+    tools::RigCalibration c;
+    c.square = square;
+    c.unit = "mm";
+    c.data = data;
+    c.start = rig;
+    c.lensSources.resize(data.cameraCount);
+    c.fit = tools::fitImages(c.data, rig, tools::allViews(c.data), 0);
+    c.residuals = tools::residualsOf(c.data, c.fit);
+    return c;
+}
+
+//! Without images yet.
+inline tools::RigData dataOf(const tools::RigModel& rig)
+{
+    tools::RigData data;
+    data.cameraCount = (int)rig.cameras.size();
+    for (int k = 0; k < data.cameraCount; k++)
+        data.imageSize[k] = rig.cameras[k]->imageSize();
+    return data;
+}
+
+#endif // REFRACT_TEST_TOOLS_FITTED_RIG_HPP
