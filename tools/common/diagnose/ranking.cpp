@@ -1,0 +1,46 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/ranking.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace tools {
+
+namespace {
+
+const double VERY_STRONG = 10.;         // difference of two criteria
+// Corners err a little together: two that remove nearly the same of a contradiction are as good.
+const double AS_GOOD_SHARE = 0.05;
+
+} // namespace
+
+std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise)
+{
+    double variance = asGiven.squares/observations;
+    for (const Hypothesis& h : tried)
+        variance = std::min(variance, h.squares/std::max(1, observations - h.parameters));
+    variance = std::max(variance, noise*noise);
+    if (!(variance > 0.) || !std::isfinite(variance))
+        return {};
+    const auto criterion = [&](const Hypothesis& h) { return h.squares/variance + h.parameters*std::log((double)observations); };
+    std::vector<Hypothesis> ranked = tried;
+    std::stable_sort(ranked.begin(), ranked.end(), [&](const Hypothesis& a, const Hypothesis& b) { return criterion(a) < criterion(b); });
+    const double gained = ranked.empty() ? 0. : criterion(asGiven) - criterion(ranked[0]);
+    if (!(gained > VERY_STRONG))
+        return {};
+    const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, AS_GOOD_SHARE*gained) : VERY_STRONG;
+    const double worst = criterion(ranked[0]) + margin;
+    ranked.erase(std::find_if(ranked.begin(), ranked.end(), [&](const Hypothesis& h) { return !(criterion(h) <= worst); }), ranked.end());
+    return ranked;
+}
+
+std::string joinedByOr(const std::vector<Hypothesis>& explanations)
+{
+    std::string text;
+    for (const Hypothesis& h : explanations)
+        text += (text.empty() ? "" : "; or ") + h.sentence;
+    return text;
+}
+
+} // namespace tools
