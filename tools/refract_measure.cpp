@@ -299,17 +299,6 @@ void sayUncovered(const Options& options, const Calibration& calibration, const 
                      "calibration as exact");
 }
 
-//! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
-std::string cellOf(const std::string& text)
-{
-    if (text.find_first_of(", ;\t\"\n\r") == std::string::npos)
-        return text;
-    std::string cell = "\"";
-    for (char c : text)
-        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return cell + "\"";
-}
-
 std::string csvOf(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& measurements, size_t cameras)
 {
     const cv::Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());

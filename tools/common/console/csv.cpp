@@ -135,4 +135,14 @@ cv::Point2d CsvTable::pixelOrNone(const Row& row, const std::string& u, const st
     return pixel;
 }
 
+std::string cellOf(const std::string& text)
+{
+    if (text.find_first_of(", ;\t\"\n\r") == std::string::npos)
+        return text;
+    std::string cell = "\"";
+    for (char c : text)
+        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
+}
+
 } // namespace tools

@@ -44,6 +44,9 @@ private:
     std::vector<Row> rows_;
 };
 
+//! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
+std::string cellOf(const std::string& text);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_CSV_HPP

@@ -4,9 +4,9 @@
 #include "measure/measurement.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/point_derivatives.hpp"
+#include "measure/target_pose.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
-#include <opencv2/calib3d.hpp>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -21,26 +21,9 @@ namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 
-//! Of lens and window of camera 1, also out of that of a rig; zero where the file has none.
-MatrixXd covarianceOfCamera1(const Calibration& calibration, Eigen::Index parameters)
-{
-    if (calibration.covariance.empty())
-        return MatrixXd::Zero(parameters, parameters);
-    return toEigen(calibration.covariance).topLeftCorner(parameters, parameters);
-}
-
 Vec3d deviations(const MatrixXd& covariance)
 {
     return Vec3d(std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2)));
-}
-
-//! Standard deviation of a pixel coordinate from what a pose leaves.
-double residualSigma(const std::vector<Point2d>& seenPixels, const std::vector<Point2d>& predicted)
-{
-    double squares = 0;
-    for (size_t i = 0; i < seenPixels.size(); i++)
-        squares += std::pow(norm(seenPixels[i] - predicted[i]), 2);
-    return std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
 }
 
 } // namespace
@@ -126,48 +109,23 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
     return result;
 }
 
-/* The pose of least squares: dpose = K^+ (du - A dp), K: pixels by pose. */
 Measurement measureTarget(const Calibration& calibration, const std::vector<Point3d>& objectPoints,
                           const std::vector<Point2d>& pixels, double pixelSigma)
 {
-    const auto& camera = calibration.cameras[0].camera;
-    Vec3d rvec, tvec;
-    if (!refract::refractiveSolvePnP(objectPoints, pixels, camera, rvec, tvec))
-        throw Failure("no pose of the target explains its points: check --size and --square");
-    std::vector<Point3d> seenPoints;
-    std::vector<Point2d> seenPixels, predicted;
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
-        {
-            seenPoints.push_back(objectPoints[i]);
-            seenPixels.push_back(pixels[i]);
-        }
+    const TargetPose pose = poseOfTarget(calibration, objectPoints, pixels);
     Measurement result;
-    refract::refractiveProjectPoints(seenPoints, rvec, tvec, camera, predicted);
-    const double residual = residualSigma(seenPixels, predicted);
-    if (!(residual <= pixelSigma))
-        result.noise = residual;
-    if (residual > pixelSigma)
-        pixelSigma = residual;
-    const PointDerivatives d = differentiatePoints(camera, seenPoints, rvec, tvec);
-    const MatrixXd inverse = (d.byPose.transpose()*d.byPose).inverse();
-    const MatrixXd byParameters = inverse*d.byPose.transpose()*d.byParameters;
-    const MatrixXd ofPose = pixelSigma*pixelSigma*inverse
-        + byParameters*covarianceOfCamera1(calibration, byParameters.cols())*byParameters.transpose();
-
-    Matx33d R;
-    Mat jacobian;                               // 3x9: by rvec, of R row by row
-    Rodrigues(rvec, R, jacobian);
-    const MatrixXd dR = toEigen(jacobian);
+    if (!(pose.residual <= pixelSigma))
+        result.noise = pose.residual;
+    if (pose.residual > pixelSigma)
+        pixelSigma = pose.residual;
+    const MatrixXd C = covarianceOfCamera1(calibration, pose.byParameters.cols());
+    const MatrixXd ofPose = pixelSigma*pixelSigma*pose.byNoise + pose.byParameters*C*pose.byParameters.transpose();
+    const Matx33d R = pose.rotation();
     result.pixels = {pixels};
     for (const Point3d& point : objectPoints)
     {
-        const Vec3d X(point);
-        result.points.push_back(Point3d(R*X + tvec));
-        MatrixXd byPose(3, 6);
-        byPose.rightCols(3).setIdentity();
-        for (int row = 0; row < 3; row++)
-            byPose.block(row, 0, 1, 3) = (dR.middleCols(3*row, 3)*Eigen::Vector3d(X[0], X[1], X[2])).transpose();
+        const MatrixXd byPose = pose.differentiatePoint(point);
+        result.points.push_back(Point3d(R*Vec3d(point) + pose.tvec));
         result.sigma.push_back(deviations(byPose*ofPose*byPose.transpose()));
         result.status.push_back(refract::REFRACT_OK);
     }

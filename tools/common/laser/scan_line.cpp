@@ -1,0 +1,202 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "laser/scan_line.hpp"
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int SHORTEST = 8;                 // columns of a piece of a line
+const int GAP = 2;                      // columns without a point within a piece
+const double STEP = 1.5;                // pixels from a column to the next
+const double CLEARLY = 1.5;             // times as strong as another line in the same column
+const size_t ENOUGH = 20;               // residuals to estimate a noise from
+
+//! A piece of a line: points in neighbouring columns.
+struct Piece
+{
+    std::vector<int> points, columns;
+    double strength = 0.;
+};
+
+//! Whether depth moves the line along the image's columns more than along its rows.
+bool movesAlongColumns(const Calibration& calibration, const Sheet& sheet)
+{
+    const Ptr<RefractiveCamera>& camera = calibration.cameras[0].camera;
+    const Size size = camera->imageSize();
+    std::vector<Point2d> pixels;
+    for (int i = 1; i < 8; i++)
+        for (int j = 1; j < 8; j++)
+        {
+            const Point2d p(size.width*i/8., size.height*j/8.);
+            pixels.insert(pixels.end(), {p, p + Point2d(1., 0.), p + Point2d(0., 1.)});
+        }
+    std::vector<Point3d> points;
+    refractivePointsOnPlane(pixels, points, camera, sheet.plane);
+    double alongX = 0., alongY = 0.;
+    for (size_t i = 0; i < points.size(); i += 3)
+    {
+        const double x = std::abs(points[i + 1].z - points[i].z)/points[i].z, y = std::abs(points[i + 2].z - points[i].z)/points[i].z;
+        if (x == x && y == y)
+        {
+            alongX += x/(x + y);
+            alongY += y/(x + y);
+        }
+    }
+    return alongY >= alongX;
+}
+
+std::vector<RidgePoint> atDepth(const std::vector<RidgePoint>& ridges, const Calibration& calibration, const Sheet& sheet, const Vec2d& depth)
+{
+    std::vector<Point2d> pixels;
+    for (const RidgePoint& r : ridges)
+        pixels.push_back(r.pixel);
+    std::vector<Point3d> points;
+    if (!pixels.empty())
+        refractivePointsOnPlane(pixels, points, calibration.cameras[0].camera, sheet.plane);
+    std::vector<RidgePoint> kept;
+    for (size_t i = 0; i < ridges.size(); i++)
+        if (points[i].z >= depth[0] && points[i].z <= depth[1])     // false for NaN
+            kept.push_back(ridges[i]);
+    return kept;
+}
+
+//! Points linked to pieces, from column to column.
+std::vector<Piece> piecesOf(const std::vector<RidgePoint>& ridges, bool byColumns)
+{
+    std::map<int, std::vector<int>> columns;
+    const auto along = [&](int i) { return byColumns ? ridges[i].pixel.x : ridges[i].pixel.y; };
+    const auto across = [&](int i) { return byColumns ? ridges[i].pixel.y : ridges[i].pixel.x; };
+    for (int i = 0; i < (int)ridges.size(); i++)
+        columns[cvRound(along(i))].push_back(i);
+    std::vector<Piece> pieces, open;
+    const auto close = [&](int before) {
+        for (size_t k = 0; k < open.size();)
+            if (open[k].columns.back() < before)
+            {
+                pieces.push_back(open[k]);
+                open.erase(open.begin() + k);
+            }
+            else
+                k++;
+    };
+    for (const auto& entry : columns)
+    {
+        close(entry.first - GAP - 1);
+        for (int i : entry.second)
+        {
+            Piece* nearest = nullptr;
+            double least = INFINITY;
+            for (Piece& piece : open)
+            {
+                const int columnsAway = entry.first - piece.columns.back();
+                const double away = std::abs(across(i) - across(piece.points.back()));
+                if (columnsAway > 0 && away <= STEP*columnsAway && away < least)
+                {
+                    least = away;
+                    nearest = &piece;
+                }
+            }
+            if (!nearest)
+            {
+                open.emplace_back();
+                nearest = &open.back();
+            }
+            nearest->points.push_back(i);
+            nearest->columns.push_back(entry.first);
+        }
+    }
+    close(INT_MAX);
+    pieces.erase(std::remove_if(pieces.begin(), pieces.end(), [](const Piece& p) { return (int)p.points.size() < SHORTEST; }), pieces.end());
+    for (Piece& piece : pieces)
+    {
+        std::vector<double> strengths;
+        for (int i : piece.points)
+            strengths.push_back(ridges[i].curvature);
+        std::nth_element(strengths.begin(), strengths.begin() + strengths.size()/2, strengths.end());
+        piece.strength = strengths[strengths.size()/2];
+    }
+    return pieces;
+}
+
+//! The point of the strongest piece in each column, -1 where there is no strongest.
+std::map<int, int> strongestOf(const std::vector<Piece>& pieces)
+{
+    std::map<int, std::vector<std::pair<double, int>>> candidates;
+    for (const Piece& piece : pieces)
+        for (size_t k = 0; k < piece.points.size(); k++)
+            candidates[piece.columns[k]].push_back({piece.strength, piece.points[k]});
+    std::map<int, int> strongest;
+    for (auto& entry : candidates)
+    {
+        std::sort(entry.second.rbegin(), entry.second.rend());
+        const bool clear = entry.second.size() == 1 || entry.second[0].first > CLEARLY*entry.second[1].first;
+        strongest[entry.first] = clear ? entry.second[0].second : -1;
+    }
+    return strongest;
+}
+
+/** Errors over those of white noise, by how far a point is from the middle of two others: their variances add up to 1.5 of one. Where the
+surface bends, that is seen too, so the median. */
+double noiseOfPieces(const std::vector<RidgePoint>& ridges, const std::vector<Piece>& pieces, bool byColumns, double scale)
+{
+    const int apart = std::max(1, (int)std::ceil(independentAfter(scale)));
+    std::vector<double> ratios;
+    for (const Piece& piece : pieces)
+        for (int k = apart; k + apart < (int)piece.points.size(); k++)
+        {
+            const RidgePoint &p = ridges[piece.points[k]], &a = ridges[piece.points[k - apart]], &b = ridges[piece.points[k + apart]];
+            const double t = (byColumns ? (p.pixel.x - a.pixel.x)/(b.pixel.x - a.pixel.x) : (p.pixel.y - a.pixel.y)/(b.pixel.y - a.pixel.y));
+            const Point2d off = p.pixel - (a.pixel + t*(b.pixel - a.pixel));
+            const double variance = p.sigma*p.sigma + std::pow((1. - t)*a.sigma, 2) + std::pow(t*b.sigma, 2);
+            ratios.push_back(std::abs(Vec2d(off).dot(p.across))/std::sqrt(variance));
+        }
+    if (ratios.size() < ENOUGH)
+        return 1.;
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+    return ratios[ratios.size()/2]/0.6745;
+}
+
+} // namespace
+
+ScanLine findScanLine(const Mat& signal, const Calibration& calibration, const Sheet& sheet, const Vec2d& depth)
+{
+    const std::vector<RidgePoint> ridges = atDepth(findRidges(signal, sheet.scale, noiseOf(signal)), calibration, sheet, depth);
+    const bool byColumns = movesAlongColumns(calibration, sheet);
+    const std::vector<Piece> pieces = piecesOf(ridges, byColumns);
+    ScanLine line;
+    std::vector<Piece> used;
+    const std::map<int, int> strongest = strongestOf(pieces);
+    for (const Piece& piece : pieces)
+    {
+        Piece part;
+        for (size_t k = 0; k < piece.points.size(); k++)
+            if (strongest.at(piece.columns[k]) == piece.points[k])
+            {
+                part.points.push_back(piece.points[k]);
+                part.columns.push_back(piece.columns[k]);
+            }
+        used.push_back(part);
+    }
+    line.noise = noiseOfPieces(ridges, used, byColumns, sheet.scale);
+    for (const auto& entry : strongest)
+    {
+        if (entry.second < 0)
+        {
+            line.ambiguous++;
+            continue;
+        }
+        line.points.push_back(ridges[entry.second]);
+        line.points.back().sigma *= line.noise;
+    }
+    return line;
+}
+
+} // namespace tools

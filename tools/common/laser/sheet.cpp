@@ -1,0 +1,146 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "laser/sheet.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "console/failure.hpp"
+#include "console/file_output.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/point_derivatives.hpp"
+#include "measure/target_pose.hpp"
+#include <opencv2/core/persistence.hpp>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double IN_SHEET = 0.01;           // sine of the angle between a ray and the sheet
+
+//! Of lens and window, to know a camera by.
+std::vector<double> parametersOf(const RefractiveCamera& camera)
+{
+    std::vector<double> values = camera.lensParameters();
+    const GlassWindow w = camera.window();
+    values.insert(values.end(), {w.normal[0], w.normal[1], w.normal[2], w.distance, w.innerIndex, w.outerIndex});
+    values.insert(values.end(), w.thickness.begin(), w.thickness.end());
+    values.insert(values.end(), w.index.begin(), w.index.end());
+    for (const Vec2d& wedge : w.wedge)
+        values.insert(values.end(), {wedge[0], wedge[1]});
+    return values;
+}
+
+bool areSame(const std::vector<double>& a, const std::vector<double>& b)
+{
+    if (a.size() != b.size())
+        return false;
+    for (size_t i = 0; i < a.size(); i++)
+        if (!(std::abs(a[i] - b[i]) <= 1e-12*std::max(1., std::abs(a[i]))))
+            return false;
+    return true;
+}
+
+} // namespace
+
+Sheet readSheet(const std::string& filename, const Calibration& calibration)
+{
+    FileStorage fs;
+    try
+    {
+        fs.open(filename, FileStorage::READ);
+    }
+    catch (const cv::Exception&) {}
+    if (!fs.isOpened())
+        throw Failure("cannot read '" + filename + "': it must be what refract_laser --sheet-out wrote");
+    Sheet sheet;
+    std::vector<double> camera;
+    std::vector<double> plane, depth;
+    std::string colour;
+    fs["sheet_plane"] >> plane;
+    fs["covariance"] >> sheet.covariance;
+    fs["by_parameters"] >> sheet.byParameters;
+    fs["line_scale_px"] >> sheet.scale;
+    fs["line_noise"] >> sheet.lineNoise;
+    fs["laser"] >> colour;
+    fs["depth"] >> depth;
+    fs["unit"] >> sheet.unit;
+    fs["camera_parameters"] >> camera;
+    if (plane.size() != 4 || sheet.covariance.size() != Size(4, 4) || sheet.byParameters.rows != 4 || !(sheet.scale > 0.) ||
+        depth.size() != 2)
+        throw Failure("'" + filename + "' is not a sheet of light: it must be what refract_laser --sheet-out wrote");
+    sheet.plane = Vec4d(plane.data());
+    sheet.depth = Vec2d(depth.data());
+    sheet.colour = laserColourOf(colour);
+    if (std::abs(norm(Vec3d(plane.data())) - 1.) > 1e-9)
+        throw Failure("'" + filename + "': the normal of sheet_plane is not a unit vector");
+    if (!areSame(camera, parametersOf(*calibration.cameras[0].camera))
+        || sheet.byParameters.cols != columnsOf(*calibration.cameras[0].camera).end)
+        throw Failure("'" + filename + "' was calibrated with another camera calibration: calibrate the sheet again with this one "
+                      "(--sheet-out)");
+    return sheet;
+}
+
+void writeSheet(const std::string& filename, const Sheet& sheet, const Calibration& calibration)
+{
+    writeStorage(filename, ".yml", [&](FileStorage& fs) {
+        fs << "sheet_plane" << std::vector<double>(sheet.plane.val, sheet.plane.val + 4);
+        fs << "covariance" << sheet.covariance << "by_parameters" << sheet.byParameters;
+        fs << "line_scale_px" << sheet.scale << "line_noise" << sheet.lineNoise << "laser" << laserColourNames()[sheet.colour];
+        fs << "depth" << std::vector<double>(sheet.depth.val, sheet.depth.val + 2);
+        fs << "unit" << sheet.unit << "camera_parameters" << parametersOf(*calibration.cameras[0].camera);
+        fs << "command" << sheet.command << "refract_version" << REFRACT_VERSION << "calibration_time" << sheet.time;
+    });
+}
+
+/* X with projection u and n . X = d:     [G; n^T] dX = [du - A dp; dd - X^T dn]     G: pixel by point, A: pixel by lens and window */
+Measurement measureOnSheet(const Calibration& calibration, const Sheet& sheet, const std::vector<RidgePoint>& line)
+{
+    const auto& camera = calibration.cameras[0].camera;
+    std::vector<Point2d> pixels;
+    for (const RidgePoint& r : line)
+        pixels.push_back(r.pixel);
+    Measurement result;
+    result.pixels = {pixels};
+    if (line.empty())
+        return result;
+    Mat origins, directions;
+    refractiveUnprojectPoints(pixels, origins, directions, camera);
+    refractivePointsOnPlane(pixels, result.points, camera, sheet.plane, result.status);
+    const Vec3d n(sheet.plane[0], sheet.plane[1], sheet.plane[2]);
+    const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
+    const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
+    const MatrixXd ofSheet = toEigen(sheet.covariance), byParameters = toEigen(sheet.byParameters);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (size_t i = 0; i < line.size(); i++)
+    {
+        const Vec3d direction = directions.at<Vec3d>((int)i);
+        if (result.status[i] == REFRACT_OK && std::abs(n.dot(direction)) < IN_SHEET)
+            result.status[i] = REFRACT_PARALLEL_RAYS;
+        if (result.status[i] != REFRACT_OK)
+        {
+            result.points[i] = Point3d(none, none, none);
+            result.sigma.push_back(Vec3d::all(none));
+            continue;
+        }
+        const Point3d& X = result.points[i];
+        const Eigen::RowVector4d byPlane(-X.x, -X.y, -X.z, 1.);
+        Eigen::Matrix3d M;
+        M << d.byPose.block(2*i, 3, 2, 3), n[0], n[1], n[2];
+        MatrixXd rows(3, C.rows());
+        rows << -d.byParameters.middleRows(2*i, 2), byPlane*byParameters;
+        MatrixXd V = rows*C*rows.transpose();
+        const Eigen::Vector2d across(line[i].across[0], line[i].across[1]);
+        V.topLeftCorner(2, 2) += std::pow(line[i].sigma, 2)*across*across.transpose();
+        V(2, 2) += (byPlane*ofSheet*byPlane.transpose())(0, 0);
+        const Eigen::Matrix3d inverse = M.inverse(), ofPoint = inverse*V*inverse.transpose();
+        result.sigma.emplace_back(std::sqrt(ofPoint(0, 0)), std::sqrt(ofPoint(1, 1)), std::sqrt(ofPoint(2, 2)));
+    }
+    return result;
+}
+
+} // namespace tools

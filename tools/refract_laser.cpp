@@ -1,0 +1,403 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// The manual: what --help prints first.
+static const char MANUAL[] = R"(Calibrates a sheet of laser light behind windows, and measures with it and one camera.
+
+  refract_laser calib.yml 'boards/*.png' --size=6x5 --square=39 --sheet-out=sheet.yml       the sheet, from boards with the line on them
+  refract_laser calib.yml 'scan/*.png' --sheet=sheet.yml --out=points.csv --cloud=cloud.ply       points on the line of each image
+
+The sheet: take ten or more images of a board with the line across it, through the window, at several distances and tilts. The pose of
+each board is that of its corners, so the line must leave enough of them alone. The sheet is a plane in the scene's medium, in the frame
+of camera 1. Edges of the board are lines too: the line is the one that lies on the same sheet in most images.
+
+--laser says the line's colour: its excess over the two other colours is looked at, which white and black do not have. With
+--laser-off='GLOB', images of the same names without the laser, the difference is looked at.
+
+points.csv: image,id,u1,v1,x,y,z,sx,sy,sz,status, one row a point of the line, about one a column of the image (a row, where the line
+runs down the image). s* is one standard deviation, from the line's own noise, the sheet's covariance and that of calib.yml; nan where
+there is no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 7: the ray lies in the sheet).
+
+Exit code: 0 done; 1 could not do it: no line, too few boards, lines that do not determine a sheet; 2 done, but the limit --max-rms is not
+met, or the boards contradict the sheet.)";
+
+#include "laser/scan_line.hpp"
+#include "laser/sheet_fit.hpp"
+#include "calibrate/units.hpp"
+#include "console/cli.hpp"
+#include "console/csv.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/progress.hpp"
+#include "console/table.hpp"
+#include "report/drawing.hpp"
+#include "report/plot.hpp"
+#include "stereo/cloud_file.hpp"
+#include "target/detected_images.hpp"
+#include <opencv2/imgproc.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <sstream>
+
+using namespace cv::refract;
+using namespace tools;
+namespace fs = std::filesystem;
+
+namespace {
+
+const double FIRST_SCALE = 1.5;         // px, of a line of which nothing is known
+const double SAME_SCALE = 1.2;          // ratio below which lines need not be looked for again
+const double CONTRADICTED = 2.;         // error of held-out boards over stated
+
+struct Options
+{
+    std::string calibration, images, off, laser = "green", sheet, sheetOut, out, cloud, pictures, profile, depth, unit;
+    TargetOptions target;
+    double maxRms = 0.;
+
+    bool calibrates() const { return !sheetOut.empty(); }
+};
+
+void addOptions(CLI::App& app, Options& o)
+{
+    app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
+    app.add_option("IMAGES", o.images, "images with the line: a quoted glob")->required();
+    o.target.addTo(app, false);
+    app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view; --size counts all its corners");
+    app.add_option("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")->check(CLI::IsMember(unitNames()));
+    app.add_option("--laser", o.laser, "colour of the line; any: the brightest line")->check(CLI::IsMember(laserColourNames()))
+        ->capture_default_str();
+    app.add_option("--laser-off", o.off, "images of the same names without the laser: a quoted glob");
+    CLI::Option* sheetOut = app.add_option("--sheet-out", o.sheetOut, "calibrate the sheet, and write it (.yml, .xml, .json)");
+    CLI::Option* sheet = app.add_option("--sheet", o.sheet, "measure with this sheet")->excludes(sheetOut);
+    app.add_option("--max-rms", o.maxRms, "limit: RMS distance of held-out lines from the sheet")->check(moreThanZero())->needs(sheetOut);
+    app.add_option("--out", o.out, "points.csv to write")->needs(sheet);
+    app.add_option("--cloud", o.cloud, "PLY file to write: the points of all images, with colours and +-")->needs(sheet);
+    app.add_option("--profile", o.profile, "SVG file to write: x and z of the points (needs gnuplot)")->needs(sheet);
+    app.add_option("--depth", o.depth, "NEAR,FAR: z of the scene; other points are left out")->needs(sheet);
+    app.add_option("--picture-dir", o.pictures, "folder for pictures of the lines that were found");
+}
+
+//! An image, and what of it is the laser.
+class LaserImages
+{
+public:
+    LaserImages(const Options& o, LaserColour colour) : colour_(colour)
+    {
+        if (o.off.empty())
+            return;
+        for (const std::string& path : expandGlob(o.off))
+            off_[stemOf(path)] = path;
+    }
+
+    cv::Mat signal(const cv::Mat& image, const std::string& path) const
+    {
+        if (colour_ != LASER_ANY && image.channels() == 1)
+            throw Failure("'" + path + "' is a grey image, which has no colours: give --laser=any");
+        if (off_.empty())
+            return laserSignal(image, colour_);
+        const auto off = off_.find(stemOf(path));
+        if (off == off_.end())
+            throw Failure("no image of --laser-off has the name of '" + path + "'");
+        const cv::Mat without = readImage(off->second);
+        if (without.size() != image.size() || without.type() != image.type())
+            throw Failure("'" + off->second + "' and '" + path + "' differ in size or kind: take both with the same camera");
+        return laserSignal(image, colour_, without);
+    }
+
+private:
+    LaserColour colour_;
+    std::map<std::string, std::string> off_;
+};
+
+std::vector<BoardImage> findBoards(const Calibration& calibration, const Target& target, const DetectedImages& set,
+                                   const LaserImages& laser, double scale, Progress& progress)
+{
+    std::vector<BoardImage> boards(set.images.size());
+    std::vector<std::exception_ptr> errors(set.images.size());
+    cv::parallel_for_(cv::Range(0, (int)boards.size()), [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; i++)
+        {
+            const DetectedImage& image = set.images[i];
+            try
+            {
+                boards[i] = findLinesOnBoard(image.stem, calibration, target, image.points,
+                                             laser.signal(readImage(image.path), image.path), scale);
+            }
+            catch (...)
+            {
+                errors[i] = std::current_exception();
+            }
+            progress.step();
+        }
+    }, (double)boards.size());
+    for (const std::exception_ptr& error : errors)
+        if (error)
+            std::rethrow_exception(error);
+    return boards;
+}
+
+double scaleOf(const std::vector<BoardImage>& boards, const SheetFit& fit, const DetectedImages& set, const LaserImages& laser)
+{
+    std::vector<double> scales;
+    for (const LineOnBoard& line : fit.lines)
+    {
+        const std::string& path = set.images[line.image].path;
+        std::vector<cv::Point2d> pixels;
+        for (int i : line.points)
+            pixels.push_back(boards[line.image].points[i].ridge.pixel);
+        scales.push_back(scaleOfLine(laser.signal(readImage(path), path), pixels));
+    }
+    std::nth_element(scales.begin(), scales.begin() + scales.size()/2, scales.end());
+    return scales[scales.size()/2];
+}
+
+void drawLine(const Options& o, const cv::Mat& image, const std::string& stem, const std::vector<RidgePoint>& line)
+{
+    cv::Mat picture;
+    image.convertTo(picture, CV_8U, image.depth() == CV_16U ? 1./256. : 1.);
+    if (picture.channels() == 1)
+        cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
+    for (const RidgePoint& p : line)
+        cv::circle(picture, cv::Point(cvRound(4*p.pixel.x), cvRound(4*p.pixel.y)), 4, cv::Scalar(0, 0, 255), -1, cv::LINE_AA, 2);
+    makeFolder(o.pictures);
+    writeImage((fs::path(o.pictures)/(stem + ".png")).string(), picture);
+}
+
+std::vector<RidgePoint> ridgesOf(const BoardImage& board, const LineOnBoard& line)
+{
+    std::vector<RidgePoint> ridges;
+    for (int i : line.points)
+        ridges.push_back(board.points[i].ridge);
+    return ridges;
+}
+
+//! Bent lines on flat boards: the sheet is no plane.
+std::string bendNotice(const SheetFit& fit, const std::string& unit)
+{
+    const double SURE = 4.;
+    double sum = 0., weight = 0., largest = 0.;
+    for (const LineOnBoard& line : fit.lines)
+    {
+        sum += line.bend/(line.bendSigma*line.bendSigma);
+        weight += 1./(line.bendSigma*line.bendSigma);
+        largest = std::max(largest, std::abs(line.bend));
+    }
+    if (!(std::abs(sum) > SURE*std::sqrt(weight)))
+        return "";
+    return format("the lines on the boards are bent, by %.2g %s on average and at most %.2g: the sheet is not quite a plane (refracted "
+                  "at a window that it does not cross straight), or the boards are not flat", std::abs(sum/weight), unit.c_str(), largest);
+}
+
+void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet, const std::string& unit)
+{
+    const cv::Mat& C = sheet.covariance;
+    const double tilt = std::sqrt(C.at<double>(0, 0) + C.at<double>(1, 1) + C.at<double>(2, 2))*180/CV_PI;
+    double rms = 0.;
+    for (const LineOnBoard& line : fit.lines)
+        rms += line.rmsPx*line.rmsPx/fit.lines.size();
+    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f %s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
+                        sheet.plane[3], unit.c_str())
+              << format("  +- %.3f deg, at z %.4g to %.4g %s; %zu of %zu boards\n", tilt, sheet.depth[0], sheet.depth[1], unit.c_str(),
+                        fit.lines.size(), boards.size())
+              << format("  lines: %.3f px off straight (RMS), profile %.1f px wide (standard deviation)\n", std::sqrt(rms), sheet.scale)
+              << format("  boards' poses: errors %.1f times those of the corners' noise\n", fit.poseNoise)
+              << format("Each board held out: %.3f %s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
+                        fit.heldOutRms(), unit.c_str(), fit.heldOutRatio());
+}
+
+int calibrateSheet(const Options& o, const Calibration& calibration, const Command& command)
+{
+    if (!o.target.given())
+        throw Failure("a sheet is calibrated with a board: give --size and --square");
+    const Target target(o.target);
+    requireSameUnit(calibration, target.square(), o.unit);
+    const DetectedImages set = readDetectedImages(o.images, &target, calibration.cameras[0].camera->imageSize(), command.quiet(),
+                                                  calibration.channel);
+    for (const std::string& path : set.withoutTarget)
+        command.warn("skipped, as the target was not found: " + path);
+    const LaserColour colour = laserColourOf(o.laser);
+    const LaserImages laser(o, colour);
+    Progress progress("looking for lines", 2*(int)set.images.size(), command.quiet());
+    const double sigma = pixelSigmaOf(calibration);
+    std::vector<BoardImage> boards = findBoards(calibration, target, set, laser, FIRST_SCALE, progress);
+    SheetFit fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., FIRST_SCALE);
+    const double scale = scaleOf(boards, fit, set, laser);
+    if (std::max(scale/FIRST_SCALE, FIRST_SCALE/scale) > SAME_SCALE)
+    {
+        boards = findBoards(calibration, target, set, laser, scale, progress);
+        fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., scale);
+    }
+    Sheet& sheet = fit.sheet;
+    sheet.colour = colour;
+    sheet.unit = calibration.unit;
+    sheet.command = command.line();
+    std::vector<std::string> inputs = set.files;
+    inputs.push_back(o.calibration);
+    sheet.time = timeOfFiles(inputs);
+    for (int m : fit.without)
+        command.warn("'" + boards[m].name + "' is left out: no line of its board lies on the sheet of the others");
+    const std::string bend = bendNotice(fit, sheet.unit);
+    if (!bend.empty())
+        command.warn(bend);
+    if (!o.pictures.empty())
+        for (const LineOnBoard& line : fit.lines)
+            drawLine(o, readImage(set.images[line.image].path), boards[line.image].name, ridgesOf(boards[line.image], line));
+    writeSheet(o.sheetOut, sheet, calibration);
+    if (!command.quiet())
+        printSheet(fit, boards, sheet, sheet.unit);
+    const bool overLimit = o.maxRms > 0. && !(fit.heldOutRms() <= o.maxRms), contradicted = fit.heldOutRatio() > CONTRADICTED;
+    if (overLimit)
+        command.warn(format("limit not met: held-out boards are %.3g %s from the sheet, more than --max-rms=%g", fit.heldOutRms(),
+                            sheet.unit.c_str(), o.maxRms));
+    if (contradicted)
+        command.warn(format("held-out boards are %.1f times as far from the sheet as the +- says: some boards moved, are not flat, or lens, "
+                            "window or sheet are not those of the calibration", fit.heldOutRatio()));
+    return overLimit || contradicted ? LIMIT_NOT_MET : DONE;
+}
+
+//! The points of one image.
+struct Scan
+{
+    std::string name;
+    ScanLine line;
+    Measurement measured;
+};
+
+cv::Vec2d depthOf(const Options& o)
+{
+    const double inf = std::numeric_limits<double>::infinity();
+    if (o.depth.empty())
+        return cv::Vec2d(0., inf);
+    const std::vector<double> numbers = parseNumbers(o.depth, "--depth");
+    if (numbers.size() != 2 || !(numbers[0] > 0) || !(numbers[1] > numbers[0]))
+        throw Failure("--depth=" + o.depth + ": give two depths, NEAR,FAR");
+    return cv::Vec2d(numbers[0], numbers[1]);
+}
+
+std::string csvOf(const std::vector<Scan>& scans)
+{
+    std::ostringstream csv;
+    csv.precision(12);
+    csv << "image,id,u1,v1,x,y,z,sx,sy,sz,status\n";
+    for (const Scan& scan : scans)
+        for (size_t i = 0; i < scan.line.points.size(); i++)
+        {
+            const Measurement& m = scan.measured;
+            csv << cellOf(scan.name) << ',' << i;
+            for (double number : {m.pixels[0][i].x, m.pixels[0][i].y, m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0],
+                                  m.sigma[i][1], m.sigma[i][2]})
+                std::isnan(number) ? csv << ",nan" : csv << ',' << number;
+            csv << ',' << (int)m.status[i] << '\n';
+        }
+    return csv.str();
+}
+
+void addToCloud(const Scan& scan, const cv::Mat& image, Cloud& cloud)
+{
+    cv::Mat shown;
+    image.convertTo(shown, CV_8U, image.depth() == CV_16U ? 1./256. : 1.);
+    for (size_t i = 0; i < scan.line.points.size(); i++)
+    {
+        if (scan.measured.status[i] != REFRACT_OK)
+            continue;
+        const cv::Point at(cvRound(scan.line.points[i].pixel.x), cvRound(scan.line.points[i].pixel.y));
+        const cv::Vec3b bgr = shown.channels() == 3 ? shown.at<cv::Vec3b>(at) : cv::Vec3b::all(shown.at<uchar>(at));
+        const cv::Point3d& X = scan.measured.points[i];
+        cloud.push_back({cv::Vec3f((float)X.x, (float)X.y, (float)X.z), cv::Vec3f(scan.measured.sigma[i]), cv::Vec3b(bgr[2], bgr[1], bgr[0])});
+    }
+}
+
+std::string profileOf(const std::vector<Scan>& scans, const std::string& unit)
+{
+    Plot plot(900, 400);
+    std::vector<std::vector<double>> rows;
+    const double gap = std::numeric_limits<double>::quiet_NaN();
+    for (const Scan& scan : scans)
+    {
+        for (const cv::Point3d& X : scan.measured.points)
+            rows.push_back({X.x, X.z});
+        rows.push_back({gap, gap});
+    }
+    plot.data("profile", rows);
+    plot << "set grid\nset yrange [] reverse\nset xlabel 'x, " << unit << "'\nset ylabel 'z, " << unit << "'\n"
+         << "plot $profile using 1:2 with points pt 7 ps 0.25 notitle\n";
+    return plot.svg();
+}
+
+int measureWithSheet(const Options& o, const Calibration& calibration, const Command& command)
+{
+    const Sheet sheet = readSheet(o.sheet, calibration);
+    const cv::Vec2d depth = depthOf(o);
+    const LaserImages laser(o, sheet.colour);
+    const std::vector<std::string> paths = expandGlob(o.images);
+    std::vector<Scan> scans;
+    Cloud cloud;
+    int points = 0, ambiguous = 0;
+    double sigma = 0.;
+    Progress progress("measuring", (int)paths.size(), command.quiet());
+    for (const std::string& path : paths)
+    {
+        const cv::Mat image = readImage(path);
+        requireSize(image, path, calibration.cameras[0].camera->imageSize());
+        Scan scan;
+        scan.name = stemOf(path);
+        scan.line = findScanLine(laser.signal(image, path), calibration, sheet, depth);
+        scan.measured = measureOnSheet(calibration, sheet, scan.line.points);
+        if (scan.line.points.empty())
+            command.warn("no line was found in '" + path + "'");
+        for (size_t i = 0; i < scan.line.points.size(); i++)
+            if (scan.measured.status[i] == REFRACT_OK)
+            {
+                points++;
+                sigma += cv::norm(scan.measured.sigma[i], cv::NORM_L2SQR);
+            }
+        ambiguous += scan.line.ambiguous;
+        if (!o.pictures.empty())
+            drawLine(o, image, scan.name, scan.line.points);
+        if (!o.cloud.empty())
+            addToCloud(scan, image, cloud);
+        scans.push_back(scan);
+        progress.step();
+    }
+    if (!points)
+        throw Failure("no point of a line could be measured: is the line in the images, and of the colour of the sheet's calibration?");
+    if (!o.out.empty())
+        writeText(o.out, csvOf(scans));
+    if (!o.cloud.empty())
+        writeCloud(o.cloud, cloud, calibration.unit);
+    if (!o.profile.empty())
+        writeText(o.profile, profileOf(scans, calibration.unit));
+    if (!command.quiet())
+        std::cout << format("%d points in %zu image%s, +- %.3g %s (RMS of one standard deviation, 3-D)\n", points, paths.size(),
+                            paths.size() == 1 ? "" : "s", std::sqrt(sigma/points), calibration.unit.c_str())
+                  << (ambiguous ? format("%d columns left out, where two lines are about as strong\n", ambiguous) : std::string());
+    return DONE;
+}
+
+void checkOptions(const Options& o, const std::string& settings)
+{
+    if (o.sheet.empty() == o.sheetOut.empty())
+        throw Failure("give --sheet-out=FILE to calibrate the sheet, or --sheet=FILE to measure with it");
+    if (!o.profile.empty())
+        Plot::checkAvailable();
+    checkOutputs({{"--sheet-out", o.sheetOut, OUTPUT_CALIBRATION}, {"--out", o.out, OUTPUT_TEXT}, {"--cloud", o.cloud, OUTPUT_TEXT},
+                  {"--profile", o.profile, OUTPUT_TEXT}},
+                 {o.calibration, o.images, o.off, o.sheet, settings});
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        const Options options = parsed(command, addOptions);
+        checkOptions(options, command.settings());
+        const Calibration calibration = readCalibration(options.calibration);
+        requireWindows(calibration, options.calibration, false, "");
+        warnOfContradictions(calibration, options.calibration, command);
+        return options.calibrates() ? calibrateSheet(options, calibration, command) : measureWithSheet(options, calibration, command);
+    });
+}
