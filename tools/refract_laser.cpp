@@ -56,6 +56,7 @@ struct Options
     std::string calibration, images, off, laser = "green", sheet, sheetOut, out, cloud, pictures, profile, depth, unit;
     TargetOptions target;
     double maxRms = 0.;
+    bool noWindow = false;
 
     bool calibrates() const { return !sheetOut.empty(); }
 };
@@ -77,6 +78,7 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--cloud", o.cloud, "PLY file to write: the points of all images, with colours and +-")->needs(sheet);
     app.add_option("--profile", o.profile, "SVG file to write: x and z of the points (needs gnuplot)")->needs(sheet);
     app.add_option("--depth", o.depth, "NEAR,FAR: z of the scene; other points are left out")->needs(sheet);
+    app.add_flag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
     app.add_option("--picture-dir", o.pictures, "folder for pictures of the lines that were found");
 }
 
@@ -396,7 +398,7 @@ int main(int argc, char** argv)
         const Options options = parsed(command, addOptions);
         checkOptions(options, command.settings());
         const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, false, "");
+        requireWindows(calibration, options.calibration, options.noWindow);
         warnOfContradictions(calibration, options.calibration, command);
         return options.calibrates() ? calibrateSheet(options, calibration, command) : measureWithSheet(options, calibration, command);
     });

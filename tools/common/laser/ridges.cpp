@@ -12,8 +12,9 @@ namespace tools {
 
 namespace {
 
-const double SIGNIFICANT = 4.;          // standard deviations of the second derivative
+const double SIGNIFICANT = 5.;          // standard deviations of the second derivative
 const double BOTH_SIDES = 0.3;          // of the larger fall beside the line
+const int NEWTON_STEPS = 2;
 const double WITHIN = 0.5;              // of a pixel: there the point belongs to it
 const double SCALES[] = {0.8, 1.1, 1.5, 2., 2.8, 4., 5.6};
 
@@ -70,6 +71,30 @@ struct Derivatives
     }
 };
 
+//! The first derivative along a direction, at any place: an interpolated one is off by hundredths of a pixel where lines are narrow.
+double derivativeAlong(const Mat& signal, double scale, const Vec2d& direction, const Point2d& at)
+{
+    const int radius = (int)std::ceil(4*scale), left = cvRound(at.x) - radius, top = cvRound(at.y) - radius, count = 2*radius + 1;
+    std::vector<double> gx(count), gy(count);
+    for (int i = 0; i < count; i++)
+    {
+        gx[i] = std::exp(-0.5*std::pow((left + i - at.x)/scale, 2));
+        gy[i] = std::exp(-0.5*std::pow((top + i - at.y)/scale, 2));
+    }
+    double sum = 0., weights = 0.;
+    for (int i = 0; i < count; i++)
+    {
+        const float* row = signal.ptr<float>(std::clamp(top + i, 0, signal.rows - 1));
+        for (int k = 0; k < count; k++)
+        {
+            const double g = gy[i]*gx[k], along = direction[0]*(left + k - at.x) + direction[1]*(top + i - at.y);
+            weights += g;
+            sum += along*g*row[std::clamp(left + k, 0, signal.cols - 1)];
+        }
+    }
+    return sum/(weights*scale*scale);
+}
+
 //! The signal falls on both sides, and by about as much: at a step it falls on one.
 bool fallsOnBothSides(const Mat& smooth, const Point2d& pixel, const Vec2d& across, double scale)
 {
@@ -87,7 +112,7 @@ std::vector<RidgePoint> findRidges(const Mat& signal, double scale, double noise
 {
     const Derivatives d(signal, scale);
     const double ofFirst = noise/(std::sqrt(8*CV_PI)*scale*scale), ofSecond = noise*std::sqrt(3/(16*CV_PI))/(scale*scale*scale);
-    const int border = (int)std::ceil(2*scale);
+    const int border = (int)std::ceil(3*scale);           // beyond the image nothing is known
     Mat smooth;
     GaussianBlur(signal, smooth, Size(), 0.7*scale);
     std::vector<RidgePoint> points;
@@ -98,8 +123,12 @@ std::vector<RidgePoint> findRidges(const Mat& signal, double scale, double noise
             const double least = d.across(row, column, n);
             if (!(-least > SIGNIFICANT*ofSecond))
                 continue;
-            const double t = -(d.x.at<float>(row, column)*n[0] + d.y.at<float>(row, column)*n[1])/least;
-            const Point2d pixel(column + t*n[0], row + t*n[1]);
+            // Where the first derivative is zero, by Newton: half a pixel away it is no longer linear.
+            const Point2d middle(column, row);
+            double t = -(d.x.at<float>(row, column)*n[0] + d.y.at<float>(row, column)*n[1])/least;
+            for (int step = 0; step < NEWTON_STEPS && std::abs(t) < 1.; step++)
+                t -= derivativeAlong(signal, scale, n, middle + t*Point2d(n))/least;
+            const Point2d pixel = middle + t*Point2d(n);
             if (std::abs(t*n[0]) <= WITHIN && std::abs(t*n[1]) <= WITHIN && fallsOnBothSides(smooth, pixel, n, scale))
                 points.push_back({pixel, n, -least, ofFirst/-least});
         }
@@ -146,6 +175,27 @@ double scaleOfLine(const Mat& signal, const std::vector<Point2d>& pixels)
     }
     std::nth_element(scaleAt.begin(), scaleAt.begin() + scaleAt.size()/2, scaleAt.end());
     return scaleAt[scaleAt.size()/2];
+}
+
+double excessNoise(const std::vector<double>& residuals, const std::vector<double>& variances)
+{
+    const double MEDIAN = 0.6745, LARGEST = 5.;
+    const auto isEnough = [&](double excess) {
+        std::vector<double> ratios;
+        for (size_t i = 0; i < residuals.size(); i++)
+            ratios.push_back(std::abs(residuals[i])/std::sqrt(variances[i] + excess*excess));
+        std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+        return ratios[ratios.size()/2] <= MEDIAN;
+    };
+    if (residuals.empty() || isEnough(0.))
+        return 0.;
+    double low = 0., high = LARGEST;
+    for (int i = 0; i < 30; i++)
+    {
+        const double middle = 0.5*(low + high);
+        (isEnough(middle) ? high : low) = middle;
+    }
+    return high;
 }
 
 } // namespace tools

@@ -35,6 +35,10 @@ double noiseOf(const cv::Mat& signal);
 @param pixels on the line. @return px, of a table of scales; 0 if there are no points */
 double scaleOfLine(const cv::Mat& signal, const std::vector<cv::Point2d>& pixels);
 
+/** The standard deviation, px, that white noise leaves out of the points' errors (speckle, texture): with it, the median of the residuals
+is what their variances say. 0: none. @param variances by white noise */
+double excessNoise(const std::vector<double>& residuals, const std::vector<double>& variances);
+
 //! How far points must be along the line for their errors to be independent.
 inline double independentAfter(double scale) { return 3.*scale; }
 

@@ -126,42 +126,63 @@ std::vector<Piece> piecesOf(const std::vector<RidgePoint>& ridges, bool byColumn
     return pieces;
 }
 
-//! The point of the strongest piece in each column, -1 where there is no strongest.
+//! Of each column the pieces that have a point there, the strongest first.
+std::map<int, std::vector<std::pair<double, int>>> rankedByColumn(const std::vector<Piece>& pieces)
+{
+    std::map<int, std::vector<std::pair<double, int>>> columns;
+    for (size_t k = 0; k < pieces.size(); k++)
+        for (int column : pieces[k].columns)
+            columns[column].push_back({pieces[k].strength, (int)k});
+    for (auto& entry : columns)
+        std::sort(entry.second.rbegin(), entry.second.rend());
+    return columns;
+}
+
+bool isClear(const std::vector<std::pair<double, int>>& ranked)
+{
+    return ranked.size() == 1 || ranked[0].first > CLEARLY*ranked[1].first;
+}
+
+//! A reflection runs beside a stronger line: where that ends, it is a reflection still.
+void dropReflections(std::vector<Piece>& pieces)
+{
+    std::vector<size_t> beaten(pieces.size(), 0);
+    for (const auto& entry : rankedByColumn(pieces))
+        for (size_t k = 1; k < entry.second.size() && isClear(entry.second); k++)
+            beaten[entry.second[k].second]++;
+    std::vector<Piece> kept;
+    for (size_t k = 0; k < pieces.size(); k++)
+        if (2*beaten[k] < pieces[k].columns.size())
+            kept.push_back(pieces[k]);
+    pieces = kept;
+}
+
+//! The piece of each column that is clearly the strongest, -1 where none is.
 std::map<int, int> strongestOf(const std::vector<Piece>& pieces)
 {
-    std::map<int, std::vector<std::pair<double, int>>> candidates;
-    for (const Piece& piece : pieces)
-        for (size_t k = 0; k < piece.points.size(); k++)
-            candidates[piece.columns[k]].push_back({piece.strength, piece.points[k]});
     std::map<int, int> strongest;
-    for (auto& entry : candidates)
-    {
-        std::sort(entry.second.rbegin(), entry.second.rend());
-        const bool clear = entry.second.size() == 1 || entry.second[0].first > CLEARLY*entry.second[1].first;
-        strongest[entry.first] = clear ? entry.second[0].second : -1;
-    }
+    for (const auto& entry : rankedByColumn(pieces))
+        strongest[entry.first] = isClear(entry.second) ? entry.second[0].second : -1;
     return strongest;
 }
 
-/** Errors over those of white noise, by how far a point is from the middle of two others: their variances add up to 1.5 of one. Where the
-surface bends, that is seen too, so the median. */
-double noiseOfPieces(const std::vector<RidgePoint>& ridges, const std::vector<Piece>& pieces, bool byColumns, double scale)
+/** Of the points beyond white noise, by how far each is from the line through two others. Where the surface bends, that is seen too.
+@param usual where there are too few */
+double noiseOfPieces(const std::vector<RidgePoint>& ridges, const std::vector<Piece>& pieces, bool byColumns, double scale, double usual)
 {
     const int apart = std::max(1, (int)std::ceil(independentAfter(scale)));
-    std::vector<double> ratios;
+    std::vector<double> residuals, variances;
     for (const Piece& piece : pieces)
         for (int k = apart; k + apart < (int)piece.points.size(); k++)
         {
             const RidgePoint &p = ridges[piece.points[k]], &a = ridges[piece.points[k - apart]], &b = ridges[piece.points[k + apart]];
-            const double t = (byColumns ? (p.pixel.x - a.pixel.x)/(b.pixel.x - a.pixel.x) : (p.pixel.y - a.pixel.y)/(b.pixel.y - a.pixel.y));
+            const double t = byColumns ? (p.pixel.x - a.pixel.x)/(b.pixel.x - a.pixel.x) : (p.pixel.y - a.pixel.y)/(b.pixel.y - a.pixel.y);
+            const double weight = std::sqrt(1. + (1. - t)*(1. - t) + t*t);      // three points of equal noise
             const Point2d off = p.pixel - (a.pixel + t*(b.pixel - a.pixel));
-            const double variance = p.sigma*p.sigma + std::pow((1. - t)*a.sigma, 2) + std::pow(t*b.sigma, 2);
-            ratios.push_back(std::abs(Vec2d(off).dot(p.across))/std::sqrt(variance));
+            residuals.push_back(Vec2d(off).dot(p.across)/weight);
+            variances.push_back((p.sigma*p.sigma + std::pow((1. - t)*a.sigma, 2) + std::pow(t*b.sigma, 2))/(weight*weight));
         }
-    if (ratios.size() < ENOUGH)
-        return 1.;
-    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
-    return ratios[ratios.size()/2]/0.6745;
+    return residuals.size() < ENOUGH ? usual : excessNoise(residuals, variances);
 }
 
 } // namespace
@@ -170,32 +191,32 @@ ScanLine findScanLine(const Mat& signal, const Calibration& calibration, const S
 {
     const std::vector<RidgePoint> ridges = atDepth(findRidges(signal, sheet.scale, noiseOf(signal)), calibration, sheet, depth);
     const bool byColumns = movesAlongColumns(calibration, sheet);
-    const std::vector<Piece> pieces = piecesOf(ridges, byColumns);
+    std::vector<Piece> pieces = piecesOf(ridges, byColumns);
+    dropReflections(pieces);
     ScanLine line;
-    std::vector<Piece> used;
     const std::map<int, int> strongest = strongestOf(pieces);
-    for (const Piece& piece : pieces)
+    for (const auto& entry : strongest)
+        line.ambiguous += entry.second < 0;
+    for (size_t k = 0; k < pieces.size(); k++)
     {
         Piece part;
-        for (size_t k = 0; k < piece.points.size(); k++)
-            if (strongest.at(piece.columns[k]) == piece.points[k])
+        for (size_t i = 0; i < pieces[k].points.size(); i++)
+            if (strongest.at(pieces[k].columns[i]) == (int)k)
             {
-                part.points.push_back(piece.points[k]);
-                part.columns.push_back(piece.columns[k]);
+                part.points.push_back(pieces[k].points[i]);
+                part.columns.push_back(pieces[k].columns[i]);
             }
-        used.push_back(part);
+        pieces[k] = part;
     }
-    line.noise = noiseOfPieces(ridges, used, byColumns, sheet.scale);
-    for (const auto& entry : strongest)
-    {
-        if (entry.second < 0)
+    line.noise = noiseOfPieces(ridges, pieces, byColumns, sheet.scale, sheet.lineNoise);
+    for (const Piece& piece : pieces)
+        for (int i : piece.points)
         {
-            line.ambiguous++;
-            continue;
+            line.points.push_back(ridges[i]);
+            line.points.back().sigma = std::hypot(ridges[i].sigma, line.noise);
         }
-        line.points.push_back(ridges[entry.second]);
-        line.points.back().sigma *= line.noise;
-    }
+    const auto along = [&](const RidgePoint& p) { return byColumns ? p.pixel.x : p.pixel.y; };
+    std::sort(line.points.begin(), line.points.end(), [&](const RidgePoint& a, const RidgePoint& b) { return along(a) < along(b); });
     return line;
 }
 

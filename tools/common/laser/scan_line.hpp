@@ -14,7 +14,7 @@ struct ScanLine
 {
     std::vector<RidgePoint> points;
     int ambiguous = 0;          //!< columns left out, as two lines are about as strong
-    double noise = 1.;          //!< errors of the points over those of white noise; sigma has it
+    double noise = 0.;          //!< px, of the points beyond white noise; their sigma has it
 };
 
 //! @param depth of the scene; points of other depths are none. Infinity: not known

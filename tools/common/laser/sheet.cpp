@@ -65,7 +65,7 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     fs["covariance"] >> sheet.covariance;
     fs["by_parameters"] >> sheet.byParameters;
     fs["line_scale_px"] >> sheet.scale;
-    fs["line_noise"] >> sheet.lineNoise;
+    fs["line_noise_px"] >> sheet.lineNoise;
     fs["laser"] >> colour;
     fs["depth"] >> depth;
     fs["unit"] >> sheet.unit;
@@ -90,7 +90,7 @@ void writeSheet(const std::string& filename, const Sheet& sheet, const Calibrati
     writeStorage(filename, ".yml", [&](FileStorage& fs) {
         fs << "sheet_plane" << std::vector<double>(sheet.plane.val, sheet.plane.val + 4);
         fs << "covariance" << sheet.covariance << "by_parameters" << sheet.byParameters;
-        fs << "line_scale_px" << sheet.scale << "line_noise" << sheet.lineNoise << "laser" << laserColourNames()[sheet.colour];
+        fs << "line_scale_px" << sheet.scale << "line_noise_px" << sheet.lineNoise << "laser" << laserColourNames()[sheet.colour];
         fs << "depth" << std::vector<double>(sheet.depth.val, sheet.depth.val + 2);
         fs << "unit" << sheet.unit << "camera_parameters" << parametersOf(*calibration.cameras[0].camera);
         fs << "command" << sheet.command << "refract_version" << REFRACT_VERSION << "calibration_time" << sheet.time;

@@ -19,7 +19,7 @@ struct Sheet
     cv::Mat covariance;         //!< 4x4, of the plane, by noise alone
     cv::Mat byParameters;       //!< 4 rows
     double scale = 0.;          //!< px, of the line's profile
-    double lineNoise = 1.;      //!< errors of the line's points over those of white noise
+    double lineNoise = 0.;      //!< px, of the line's points beyond white noise
     LaserColour colour = LASER_ANY;
     cv::Vec2d depth;            //!< of the points that it was calibrated with
     std::string unit;

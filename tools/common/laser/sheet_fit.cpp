@@ -8,6 +8,7 @@
 #include "measure/point_derivatives.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -56,14 +57,14 @@ struct PlaneBasis
 //! The points of a line, by what their distances e from the sheet depend on.
 struct LineRows
 {
-    VectorXd e, sigma;          //!< sigma: of e, by white noise of the image
+    VectorXd e, sigma;          //!< sigma: of e, by the line's own noise
     VectorXd along;             //!< position on the line, from its middle
     MatrixXd byPlane, byPose, byParameters;     //!< byPose: by errors of the board's corners; byParameters with the pose
     MatrixXd ofPose;            //!< 6x6, covariance of the pose
 };
 
 LineRows rowsOf(const Calibration& calibration, const BoardImage& image, const std::vector<int>& points, const Vec4d& plane,
-                double pixelSigma)
+                double lineNoise, double pixelSigma)
 {
     const PlaneBasis basis(plane);
     const int count = (int)points.size();
@@ -92,7 +93,7 @@ LineRows rowsOf(const Calibration& calibration, const BoardImage& image, const s
         const BoardPoint& p = image.points[points[k]];
         const Vec3d X(p.inCamera);
         rows.e[k] = basis.normal.dot(X) - plane[3];
-        rows.sigma[k] = std::abs(basis.normal.dot(p.byAcross))*p.ridge.sigma;
+        rows.sigma[k] = std::abs(basis.normal.dot(p.byAcross))*std::hypot(p.ridge.sigma, lineNoise);
         rows.along[k] = direction.dot(X - middle);
         rows.byPlane.row(k) = basis.derivative(p.inCamera);
         // X = R X_board + t, and X_board stays on the pixel: G dX = du - A dp
@@ -112,14 +113,13 @@ struct ReducedLine
     MatrixXd byPlane, byParameters;
     Eigen::Matrix2d ofNoise, ofPose;
 
-    ReducedLine(const LineRows& rows, double noise)
+    explicit ReducedLine(const LineRows& rows)
     {
         MatrixXd D(rows.e.size(), 2);
         D << VectorXd::Ones(rows.e.size()), rows.along;
         const VectorXd weights = rows.sigma.cwiseAbs2().cwiseInverse();
         ofNoise = (D.transpose()*weights.asDiagonal()*D).inverse();
         const MatrixXd reduce = ofNoise*D.transpose()*weights.asDiagonal();
-        ofNoise *= noise*noise;
         e = reduce*rows.e;
         byPlane = reduce*rows.byPlane;
         byParameters = reduce*rows.byParameters;
@@ -256,18 +256,19 @@ std::vector<int> pointsOnSheet(const BoardImage& image, const Vec4d& plane, doub
     return points.size() < FEWEST ? std::vector<int>() : points;
 }
 
-//! Errors of the points over those that white noise makes.
+//! What the points are off a straight line, and what of that is not white noise.
 void judgeStraightness(const BoardImage& image, const Vec4d& plane, LineOnBoard& line)
 {
     const std::vector<double> rest = straightResiduals(image, line.points, plane);
-    double squares = 0., ofNoise = 0.;
+    std::vector<double> variances;
+    double squares = 0.;
     for (size_t k = 0; k < rest.size(); k++)
     {
         squares += rest[k]*rest[k];
-        ofNoise += std::pow(rest[k]/image.points[line.points[k]].ridge.sigma, 2);
+        variances.push_back(std::pow(image.points[line.points[k]].ridge.sigma, 2));
     }
     line.rmsPx = std::sqrt(squares/rest.size());
-    line.noise = std::sqrt(ofNoise/(rest.size() - 2.));
+    line.noise = excessNoise(rest, variances);
 }
 
 //! Of a parabola through the points.
@@ -276,7 +277,7 @@ void judgeBend(const LineRows& rows, LineOnBoard& line)
     const double half = rows.along.cwiseAbs().maxCoeff();
     MatrixXd D(rows.e.size(), 3);
     D << VectorXd::Ones(rows.e.size()), rows.along/half, (rows.along/half).cwiseAbs2();
-    const VectorXd weights = (line.noise*rows.sigma).cwiseAbs2().cwiseInverse();
+    const VectorXd weights = rows.sigma.cwiseAbs2().cwiseInverse();
     const MatrixXd covariance = (D.transpose()*weights.asDiagonal()*D).inverse();
     line.bend = -(covariance*D.transpose()*weights.asDiagonal()*rows.e)[2];
     line.bendSigma = std::sqrt(covariance(2, 2));
@@ -333,8 +334,8 @@ SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& cali
                 continue;
             }
             judgeStraightness(images[m], plane, line);
-            rows.push_back(rowsOf(calibration, images[m], line.points, plane, pixelSigma));
-            reduced.emplace_back(rows.back(), line.noise);
+            rows.push_back(rowsOf(calibration, images[m], line.points, plane, line.noise, pixelSigma));
+            reduced.emplace_back(rows.back());
             fit.lines.push_back(line);
         }
         if (reduced.size() < 2)
@@ -367,7 +368,7 @@ SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& cali
         const VectorXd e = rows[m].e + rows[m].byPlane*others.step;
         line.heldOut.rms = std::sqrt(e.squaredNorm()/e.size());
         const MatrixXd byParameters = rows[m].byParameters + rows[m].byPlane*others.byParameters;
-        const double variance = (line.noise*rows[m].sigma).squaredNorm()
+        const double variance = rows[m].sigma.squaredNorm()
             + fit.poseNoise*fit.poseNoise*(rows[m].byPose*rows[m].ofPose*rows[m].byPose.transpose()).trace()
             + (rows[m].byPlane*others.covariance*rows[m].byPlane.transpose()).trace()
             + (byParameters*C*byParameters.transpose()).trace();

@@ -25,7 +25,7 @@ struct LineOnBoard
     int image;                          //!< index of the BoardImage
     std::vector<int> points;            //!< of it
     double rmsPx = 0.;                  //!< off a straight line on the board
-    double noise = 1.;                  //!< errors of the points over those of white noise
+    double noise = 0.;                  //!< px, of the points beyond white noise
     double bend = 0., bendSigma = 0.;   //!< distance of its middle from the line through its ends
     HeldOutLine heldOut = {};
 };
