@@ -16,6 +16,7 @@ int refract_calib_main(int argc, char** argv);
 int refract_check_main(int argc, char** argv);
 int refract_epilines_main(int argc, char** argv);
 int refract_export_main(int argc, char** argv);
+int refract_laser_main(int argc, char** argv);
 int refract_measure_main(int argc, char** argv);
 int refract_simulate_main(int argc, char** argv);
 int refract_stereo_main(int argc, char** argv);
@@ -28,7 +29,8 @@ namespace {
 
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
     {"refract_board", refract_board_main}, {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main},
-    {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main}, {"refract_measure", refract_measure_main},
+    {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main}, {"refract_laser", refract_laser_main},
+    {"refract_measure", refract_measure_main},
     {"refract_simulate", refract_simulate_main}, {"refract_stereo", refract_stereo_main}, {"refract_undistort", refract_undistort_main}};
 
 const char CAMERA[] = R"(

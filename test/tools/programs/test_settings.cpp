@@ -67,7 +67,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const std::string rig = STEREO + "/rig.yml", file = folder / "run.yml";
     const std::string target = " --size=6x5 --square=39";
     const std::string tools[] = {"refract_board", "refract_calib", "refract_check", "refract_epilines", "refract_export",
-                                 "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
+                                 "refract_laser", "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
         {"quiet = true\nquiet = false\n", "'quiet' is set twice"},
@@ -113,6 +113,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
             + (folder / "run.png"),
         "refract_export " + calib + " --to=opencv --range=400,800 --out=" + file + " --config=" + file,
         "refract_export " + calib + " --to=colmap --range=400,800 --out-dir=" + d + " --config=" + d + "/cameras.txt",
+        "refract_laser " + calib + " " + left + target + " --sheet-out=" + file + " --config=" + file,
         "refract_measure " + calib + " " + left + " " + right + target + " --pixel-sigma=0.01 --out=" + file + " --config=" + file,
         "refract_simulate " + rig + " --out-dir=" + d + " --config=" + d + "/truth.yml",
         "refract_stereo " + calib + " " + left + " " + right + " --depth=400,900 --out=" + d + "/cloud.ply --config=" + d + "/cloud.ply",

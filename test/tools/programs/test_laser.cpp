@@ -1,0 +1,98 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// refract_laser as a user runs it: real images in water, and what it refuses.
+#include "run_tool.hpp"
+#include <catch2/catch.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <filesystem>
+#include <iostream>
+
+namespace {
+
+double numberAfter(const std::string& text, const std::string& words)
+{
+    const size_t at = text.find(words);
+    return at == std::string::npos ? NAN : std::stod(text.substr(at + words.size()));
+}
+
+} // namespace
+
+TEST_CASE("refract_laser calibrates a sheet in water, real images", "[laser_tool][real]")
+{
+    const std::string data = paths::data() + "/ouc_laser3d";
+    if (!std::filesystem::exists(data))
+    {
+        WARN("SKIPPED: no " << data);
+        return;
+    }
+    const TemporaryFolder folder;
+    const ToolResult camera = runTool("refract_calib --size=8x7 --partial --square=33.8 --direct='" + data + "/air/*.png' --glass='" + data
+        + "/water/*.png' --unpaired --outer-index=1.333 --free=distance --no-cross-validation --quiet --out=" + (folder / "calib.yml"));
+    CAPTURE(camera.err);
+    REQUIRE(camera.code == 0);
+    const std::string board = " --size=8x7 --partial --square=33.8 ";
+    const ToolResult sheet = runTool("refract_laser " + (folder / "calib.yml") + " '" + data + "/water/*.png'" + board
+        + "--picture-dir=" + (folder / "pictures") + " --sheet-out=" + (folder / "sheet.yml"));
+    CAPTURE(sheet.out, sheet.err);
+    REQUIRE(sheet.code == 0);
+    const double rms = numberAfter(sheet.out, "Each board held out: "), ratio = numberAfter(sheet.out, "(RMS),\n  ");
+    std::cout << "[numbers] ouc_laser3d, water: sheet of light, each board held out " << rms << " mm RMS, " << ratio << " x stated\n";
+    CHECK(mentions(sheet.out, "12 of 13 boards"));
+    CHECK(rms < 0.5);
+    CHECK(ratio > 0.8);
+    CHECK(ratio < 1.25);
+    CHECK(std::filesystem::exists(folder / "pictures/bc1.png"));
+
+    // The points of a board that was measured with the sheet.
+    const ToolResult points = runTool("refract_laser " + (folder / "calib.yml") + " '" + data + "/water/bc1.png' --sheet="
+        + (folder / "sheet.yml") + " --out=" + (folder / "points.csv") + " --cloud=" + (folder / "cloud.ply"));
+    CAPTURE(points.err);
+    CHECK(points.code == 0);
+    CHECK(readFile(folder / "points.csv").compare(0, 38, "image,id,u1,v1,x,y,z,sx,sy,sz,status\nbc") == 0);
+    CHECK(mentions(readFile(folder / "cloud.ply"), "property float sx"));
+    CHECK_FALSE(mentions(points.out, "nan"));
+
+    const ToolResult limit = runTool("refract_laser " + (folder / "calib.yml") + " '" + data + "/water/*.png'" + board
+        + "--max-rms=0.01 --quiet --sheet-out=" + (folder / "sheet2.yml"));
+    CHECK(limit.code == 2);
+    CHECK(mentions(limit.err, "limit not met"));
+    CHECK(readFile(folder / "sheet2.yml").size() > 100);        // written all the same
+
+    // A line that is an edge of the board: red light is not there.
+    const ToolResult red = runTool("refract_laser " + (folder / "calib.yml") + " '" + data + "/water/bc[12].png'" + board
+        + "--laser=red --quiet --sheet-out=" + (folder / "sheet3.yml"));
+    CHECK(red.code != 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "sheet3.yml"));
+}
+
+TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
+{
+    const TemporaryFolder folder;
+    writeFile(folder / "calib.yml", "%YAML:1.0\n---\nimage_width: 64\nimage_height: 48\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
+        "   dt: d\n   data: [ 80, 0, 32, 0, 80, 24, 0, 0, 1 ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n"
+        "   data: [ 0, 0, 0, 0 ]\nglass_window:\n   normal: [ 0., 0., 1. ]\n   distance: 10.\n   thickness: [ 5. ]\n   index: [ 1.5 ]\n"
+        "   inner_index: 1.\n   outer_index: 1.333\n");
+    cv::imwrite(folder / "grey.png", cv::Mat(48, 64, CV_8U, cv::Scalar(20)));
+    cv::imwrite(folder / "colour.png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(20, 20, 20)));
+    writeFile(folder / "sheet.yml", "%YAML:1.0\n---\nplane: 1\n");
+    const std::string calib = "refract_laser " + (folder / "calib.yml") + " ", colour = "'" + (folder / "colour.png") + "' ";
+    const struct { std::string arguments, sentence; } cases[] = {
+        {colour, "--sheet-out"},
+        {colour + "--sheet-out=" + (folder / "s.yml"), "--size and --square"},
+        {colour + "--size=4x3 --square=5 --sheet-out=" + (folder / "s.txt"), ".yml"},
+        {colour + "--size=4x3 --square=5 --sheet-out=" + (folder / "s.yml"), "not found in any image"},
+        {colour + "--sheet=" + (folder / "none.yml"), "cannot read"},
+        {colour + "--sheet=" + (folder / "sheet.yml"), "not a sheet of light"},
+        {colour + "--sheet=" + (folder / "sheet.yml") + " --sheet-out=" + (folder / "s.yml"), "--sheet-out"},
+        {colour + "--laser=violet --sheet=" + (folder / "sheet.yml"), "--laser"},
+        {"'" + (folder / "no*.png") + "' --sheet=" + (folder / "sheet.yml"), "sheet"}};
+    for (const auto& c : cases)
+    {
+        const ToolResult result = runTool(calib + c.arguments);
+        CAPTURE(c.arguments, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, c.sentence));
+        CHECK_FALSE(std::filesystem::exists(folder / "s.yml"));
+    }
+}
