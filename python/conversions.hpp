@@ -149,8 +149,10 @@ static bool pyopencv_to(PyObject* o, std::vector<double>& v, const ArgInfo& info
         failmsg("%s is an array of more than one dimension; it must be a list or an array of numbers", info.name);
         return false;
     }
+    v.clear();
     m.convertTo(m, CV_64F);
-    v.assign(m.begin<double>(), m.end<double>());
+    if (!m.empty())
+        v.assign(m.begin<double>(), m.end<double>());
     return true;
 }
 
@@ -213,6 +215,15 @@ static bool pyopencv_to(PyObject* o, float& value, const ArgInfo& info)
         return false;
     value = (float)number;
     return true;
+}
+
+//! A path's own exception (an interruption, too) goes on as it is.
+static bool pyopencv_to(PyObject* o, String& value, const ArgInfo& info)
+{
+    PySafeObject path(o && info.pathlike && !PyUnicode_Check(o) && PyObject_HasAttrString(o, "__fspath__") ? PyOS_FSPath(o) : NULL);
+    if (!path && PyErr_Occurred())
+        return false;
+    return pyopencv_to<String>(path ? (PyObject*)path : o, value, info);
 }
 
 //! A tuple, a list or an array of two integers.

@@ -32,7 +32,6 @@ from os import PathLike
 from typing import Any, Final, Literal, overload
 
 from opencv_refract.typing import Array, Arrays, Integers, Number, Numbers, Views
-from opencv_refract._values import StrictFlags
 
 __version__: Final[str]
 
@@ -153,7 +152,8 @@ def class_of(info, texts):
 def package(generator, header, texts):
     names, code = [], HEAD
     for name, constants in enumerators(header).items():
-        code += f"class {name}({BASES.get(name, 'IntEnum')}):\n" + block(texts[name][0], "    ")
+        base = BASES.get(name, "IntEnum").replace("StrictFlags", "IntFlag")
+        code += f"class {name}({base}):\n" + block(texts[name][0], "    ")
         code += "".join(f"    {constant} = {value}\n" + block(texts[f"{name}.{constant}"][0], "    ")
                         for constant, value in constants.items()) + "\n"
         code += "".join(f"{constant}: Final = {name}.{constant}\n" for constant in constants) + "\n"
