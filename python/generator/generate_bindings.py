@@ -23,11 +23,6 @@ import stubs
 
 TEXTS = {}      # of the header, by name
 
-WINDOW_SIGNATURE = """GlassWindow(normal=(0.0, 0.0, 1.0), thickness=(), index=(), distance=0.0, outerIndex=1.0, *, \
-innerIndex=1.0, wedge=(), wavelength=0.0, materials=())
---
-
-"""
 WINDOW_MADE = """
 
 GlassWindow() is no window; GlassWindow(normal, thickness, index) a pane; lists of thicknesses and indices are layers, from the
@@ -149,7 +144,7 @@ def main(generator, output, persistence, header, *custom_headers):
     (output / "__init__.pyi").write_text(stubs.package(generator, header, TEXTS))
     (output / "class_texts.h").write_text("".join(
         f"static const char* const TEXT_OF_{name} = {quoted(text)};\n"
-        for name, text in [("GlassWindow", WINDOW_SIGNATURE + TEXTS["GlassWindow"][0] + WINDOW_MADE),
+        for name, text in [("GlassWindow", TEXTS["GlassWindow"][0] + WINDOW_MADE),
                            ("RefractiveCamera", TEXTS["RefractiveCamera"][0]), ("FileStorage", "A file: see cv2.FileStorage."),
                            ("FileNode", "A node of a file: see cv2.FileNode.")]))
 

@@ -82,7 +82,9 @@ def enumerations(header, texts):
         code += "\n\n" + "@strict\n"*(base == "StrictFlags") + f"class {name}({base}):\n" + block(texts[name][0], "    ")
         code += "".join(f"    {constant} = {value}\n" for constant, value in constants.items())
         code += "\n\n" + "".join(f"{name}.{constant}.__doc__ = {texts[f'{name}.{constant}'][0]!r}\n" for constant in constants)
-    return code + f"\n\nALL = ({', '.join(found)})\n"
+    exported = [*found, *(constant for constants in found.values() for constant in constants)]
+    code += "\n\n" + "".join(f"{constant} = {name}.{constant}\n" for name, constants in found.items() for constant in constants)
+    return code + f"\nALL = ({', '.join(found)})\n__all__ = {exported!r}\n"
 
 
 def type_of(argument):

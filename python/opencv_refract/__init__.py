@@ -15,17 +15,18 @@ from . import _native
 from ._native import *      # noqa: F401,F403  the calls, the two classes, error
 from ._native import __version__    # noqa: F401
 from . import _enumerations
-from ._enumerations import *        # noqa: F401,F403
+from ._enumerations import *        # noqa: F401,F403  in place of plain numbers
 from . import _classes      # noqa: F401  which gives the two classes what C++ has no word for
 
 _native._use_flags(_enumerations.GlassCalibrationFlags)
 for _enumeration in _enumerations.ALL:
-    globals().update(_enumeration.__members__)      # in place of plain numbers
     for _member in _enumeration:
         _enumeration.__doc__ += f"\n\n{_member.name} = {int(_member)}: {_member.__doc__}"
     _enumeration.__module__ = __name__
 
-__all__ = [_name for _name in globals() if not _name.startswith("_")] + ["__version__"]
+# Static methods are there as functions too, RefractiveCamera_create, for programs of old.
+__all__ = ["__version__"] + [_name for _name, _thing in globals().items() if not _name.startswith(("_", "RefractiveCamera_"))
+                             and not isinstance(_thing, type(_sys))]
 
 _cv2 = _sys.modules.get("cv2")      # _native has imported it, if it is installed
 if _cv2 is not None and not hasattr(_cv2, "refract"):   # an OpenCV that was built with the module has its own

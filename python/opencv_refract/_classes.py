@@ -3,6 +3,7 @@
 
 """What GlassWindow and RefractiveCamera have in Python and not in C++: repr, equality, copies, fields that cannot be misread."""
 import copyreg
+import inspect
 
 from . import _native
 from ._values import Values
@@ -84,10 +85,19 @@ def equality(made, values):
     made.__hash__ = None        # they can change
 
 
+def signature_of_window():
+    """Of GlassWindow(...): older Pythons lose what an extension says of a type."""
+    none = _native.GlassWindow()
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Signature([inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD if i < 5 else keyword,
+                                                default=getattr(none, name)) for i, name in enumerate(WINDOW_FIELDS)])
+
+
 for name in WINDOW_FIELDS:
     field(name, getattr(_native.GlassWindow, name))
 equality(_native.GlassWindow, window_values)
 equality(_native.RefractiveCamera, camera_values)
+_native.GlassWindow.__signature__ = signature_of_window()
 _native.GlassWindow.__repr__ = window_text
 _native.RefractiveCamera.__repr__ = camera_text
 copyreg.pickle(_native.GlassWindow, lambda window: (window_of, window_values(window)))

@@ -7,6 +7,7 @@ import multiprocessing
 import pydoc
 import time
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -292,13 +293,21 @@ def test_every_name_has_its_text():
 
 def test_help_tells_fields_and_their_order():
     text = pydoc.render_doc(refract.GlassWindow, renderer=pydoc.plaintext)
-    for part in ("GlassWindow(normal=", "unit, camera coordinates", "from the camera outwards", "radians along e1", "atWavelength"):
+    for part in ("GlassWindow(", "normal=[0.0, 0.0, 1.0]", "unit, camera coordinates", "from the camera outwards", "radians along e1", "atWavelength"):
         assert part in text, part
     text = pydoc.render_doc(refract.RefractiveCamera, renderer=pydoc.plaintext)
     for part in ("create(cameraMatrix, distCoeffs, window=None)", "a copy: see setWindow", "What the rows of stdDeviations", "0x0 where"):
         assert part in text, part
     text = pydoc.render_doc(refract.GlassCalibrationFlags, renderer=pydoc.plaintext)
     assert "GLASS_FREE_WEDGE = 16777216: wedge of every layer" in text
+
+
+def test_stubs_name_what_there_is():
+    stub = Path(refract.__file__).with_suffix(".pyi").read_text()
+    named = eval(stub[stub.rindex("__all__ = ") + len("__all__ = "):])
+    assert sorted(named) == sorted(refract.__all__)
+    for name in named:
+        assert hasattr(refract, name), name
 
 
 def test_signatures(rig):
