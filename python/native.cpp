@@ -1,8 +1,9 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// The extension opencv_refract._native: what OpenCV's generator wrote for refract.hpp, with the conversions of OpenCV's
-// own cv2 (cv2_convert, cv2_numpy, cv2_util), in a module of its own. It stands in the place of OpenCV's cv2.cpp.
+// The extension opencv_refract._native: what OpenCV's generator wrote for refract.hpp, with the conversions of OpenCV's own cv2
+// (cv2_convert, cv2_numpy, cv2_util) and ours (conversions.hpp), in a module of its own. It stands in the place of OpenCV's
+// cv2.cpp. Arguments are checked in calls.hpp.
 
 #define PY_ARRAY_UNIQUE_SYMBOL opencv_ARRAY_API     // before NumPy's headers, shared with cv2_convert.cpp, cv2_numpy.cpp
 
@@ -17,47 +18,6 @@
 #define MODULESTR "opencv_refract"
 
 using namespace cv;
-
-/* Arrays of the other byte order, and views into packed records, are copied first: the conversions of cv2 take them as if they
-were native and aligned. Every conversion of the generated code to the types below comes here. */
-template<typename Conversion>
-static bool convert(PyObject* o, const ArgInfo& info, Conversion conversion)
-{
-    if (!o || !PyArray_Check(o) || PyArray_ISBEHAVED_RO((PyArrayObject*)o))
-        return conversion(o);
-    if (info.outputarg)
-    {
-        failmsg("%s is written to; its numbers must be aligned and in this machine's byte order", info.name);
-        return false;
-    }
-    PySafeObject copy(PyArray_FROM_OF(o, NPY_ARRAY_ALIGNED | NPY_ARRAY_NOTSWAPPED));
-    return copy && conversion(copy);
-}
-
-static bool pyopencv_to(PyObject* o, Mat& m, const ArgInfo& info)
-{
-    return convert(o, info, [&](PyObject* array) { return pyopencv_to<Mat>(array, m, info); });
-}
-
-template<int n>
-static bool pyopencv_to(PyObject* o, Vec<double, n>& v, const ArgInfo& info)
-{
-    return convert(o, info, [&](PyObject* array) { return pyopencv_to<double, n>(array, v, info); });
-}
-
-template<typename T>
-static bool toNumbers(PyObject* o, std::vector<T>& v, const ArgInfo& info)
-{
-    if (o && PyArray_Check(o) && PyArray_NDIM((PyArrayObject*)o) == 0)      // it has no stride, which cv2 reads
-    {
-        failmsg("%s is a single number; it must be a list or an array of them", info.name);
-        return false;
-    }
-    return convert(o, info, [&](PyObject* array) { return pyopencv_to<T>(array, v, info); });
-}
-
-static bool pyopencv_to(PyObject* o, std::vector<double>& v, const ArgInfo& info) { return toNumbers(o, v, info); }
-static bool pyopencv_to(PyObject* o, std::vector<int>& v, const ArgInfo& info) { return toNumbers(o, v, info); }
 
 typedef std::vector<Mat> vector_Mat;
 typedef std::vector<vector_Mat> vector_vector_Mat;
@@ -84,6 +44,8 @@ static bool addObject(PyObject* module, const char* name, PyObject* object)
     return false;
 }
 
+static void blame(const char* name);
+
 //! Allocates and constructs at once, so that no object without contents can be had. NULL and an exception on failure.
 template<typename Self>
 static PyObject* make(int (*constructor)(Self*, PyObject*, PyObject*), PyTypeObject* type, PyObject* args, PyObject* keywords)
@@ -93,6 +55,7 @@ static PyObject* make(int (*constructor)(Self*, PyObject*, PyObject*), PyTypeObj
     if (!self || (constructor((Self*)self, args, keywords) == 0 && !PyErr_Occurred()))
         return self;
     Py_DECREF(self);
+    blame(getPyObjectNameAttr((PyObject*)type).c_str());
     return NULL;
 }
 
@@ -116,10 +79,10 @@ template<destructor generated> static void destroy(PyObject* self)
 
 //! A type that none can be derived from: the generated destructor frees what it takes for an object without attributes.
 static PyObject* makeType(PyType_Spec& spec, destructor destruct, reprfunc repr, PyGetSetDef* fields, PyMethodDef* methods,
-                          newfunc maker)
+                          newfunc maker, const char* text)
 {
     PyType_Slot slots[] = { { Py_tp_dealloc, (void*)destruct }, { Py_tp_repr, (void*)repr }, { Py_tp_getset, fields },
-                            { Py_tp_methods, methods }, { Py_tp_new, (void*)maker }, { 0, NULL } };
+                            { Py_tp_methods, methods }, { Py_tp_new, (void*)maker }, { Py_tp_doc, (void*)text }, { 0, NULL } };
     spec.slots = slots;
     spec.flags = Py_TPFLAGS_DEFAULT;
     return PyType_FromSpec(&spec);
@@ -132,10 +95,33 @@ static PyObject* makeType(PyType_Spec& spec, destructor destruct, reprfunc repr,
 #include "pyopencv_generated_types.h"
 #undef CVPY_TYPE
 #include "pyopencv_custom_headers.h"
+#include "class_texts.h"
+#include "calls.hpp"
+#include "conversions.hpp"
+
+// As that of cv2_util.hpp, but what is raised has no path of the machine that compiled this, and attributes of its own.
+#undef ERRWRAP2
+#define ERRWRAP2(expr) \
+    try \
+    { \
+        PyAllowThreads allowThreads; \
+        expr; \
+    } \
+    catch (const cv::Exception& e) \
+    { \
+        raise(e); \
+        return 0; \
+    } \
+    catch (const std::exception& e) \
+    { \
+        raise(e.what(), Error::StsError); \
+        return 0; \
+    }
 
 #include "pyopencv_generated_types_content.h"
 #include "pyopencv_generated_funcs.h"
 #include "pyopencv_generated_modules_content.h"
+#include "window.hpp"
 
 static bool addFunctionsAndConstants(PyObject* module, PyMethodDef* methods, const ConstDef* constants)
 {
@@ -165,7 +151,8 @@ static PyObject* errorType()
     PyErr_Clear();
     PyObject* const attributes = Py_BuildValue("{s:O,s:O,s:O,s:O,s:O,s:O}", "file", Py_None, "func", Py_None, "line",
                                                Py_None, "code", Py_None, "msg", Py_None, "err", Py_None);
-    PyObject* const error = attributes ? PyErr_NewException(MODULESTR ".error", NULL, attributes) : NULL;
+    PyObject* const error = attributes ? PyErr_NewExceptionWithDoc(MODULESTR ".error", "A wrong argument, or data without an "
+                                                                         "answer: err says what, code is OpenCV's.", NULL, attributes) : NULL;
     Py_XDECREF(attributes);
     return error;
 }
@@ -181,7 +168,7 @@ static bool fill(PyObject* m)
 #define CVPY_TYPE(EXPORT_NAME, CLASS_ID, _1, _2, _3, CONSTRUCTOR, _4) \
     pyopencv_##CLASS_ID##_TypePtr = makeType(pyopencv_##CLASS_ID##_Spec, destroy<pyopencv_##CLASS_ID##_dealloc>, \
                                              pyopencv_##CLASS_ID##_repr, pyopencv_##CLASS_ID##_getseters, \
-                                             pyopencv_##CLASS_ID##_methods, makerOf<CONSTRUCTOR>()); \
+                                             pyopencv_##CLASS_ID##_methods, makerOf<CONSTRUCTOR>(), TEXT_OF_##EXPORT_NAME); \
     Py_XINCREF(pyopencv_##CLASS_ID##_TypePtr);      /* one of the module, one of this variable */ \
     if (!addObject(m, #EXPORT_NAME, pyopencv_##CLASS_ID##_TypePtr)) \
         return false;
@@ -193,9 +180,19 @@ static bool fill(PyObject* m)
         && addObject(m, "__version__", PyUnicode_FromString(REFRACT_VERSION));
 }
 
+//! The package's enumeration of flags, which calls take and return.
+static PyObject* useFlags(PyObject*, PyObject* type)
+{
+    Py_INCREF(type);        // as long as the process
+    flagsType = type;
+    Py_RETURN_NONE;
+}
+
+static PyMethodDef ownMethods[] = { { "_use_flags", useFlags, METH_O, "" }, { NULL, NULL, 0, NULL } };
+
 static PyModuleDef moduleDefinition =
 {
-    PyModuleDef_HEAD_INIT, "_native", "Cameras behind a flat window: the bindings of cv::refract.", -1, NULL
+    PyModuleDef_HEAD_INIT, "_native", "Cameras behind a flat window: the bindings of cv::refract.", -1, ownMethods
 };
 
 PyMODINIT_FUNC PyInit__native()

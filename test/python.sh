@@ -70,5 +70,11 @@ else
   check opencv4
   environment opencv5
   "$work/opencv5/bin/pip" install -q 'opencv-python-headless>=5,<6' pytest
+  # shellcheck disable=SC2086  # two options
   check opencv5 $samples
+  # The types, in the eyes of the checkers that this was written with: a later one may want something else.
+  environment types
+  "$work/types/bin/pip" install -q mypy==2.4.1 pyright==1.1.414 opencv-python-headless==5.0.0.93 numpy==2.4.6 matplotlib==3.11.2
+  "$work/types/bin/pip" install -q --no-deps --force-reinstall "$work"/wheel/*.whl
+  "$work/types/bin/python" python/tests/check_types.py
 fi

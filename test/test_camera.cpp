@@ -8,9 +8,11 @@
 
 #include <opencv2/core/utils/filesystem.hpp>
 
+#include <atomic>
 #include <fcntl.h>
 #include <fstream>
 #include <sys/stat.h>
+#include <thread>
 #include <type_traits>
 #include <unistd.h>
 
@@ -321,10 +323,38 @@ TEST_CASE("A camera that cannot be saved leaves nothing", "[camera]")
     const std::string folder = cv::tempfile(".folder");
     REQUIRE(cv::utils::fs::createDirectory(folder));
     CHECK_THAT(thrown([&] { camera->save(folder); }), Contains(folder));
-    std::vector<String> left;
-    cv::utils::fs::glob(folder.substr(0, folder.rfind('/')), "*.part.folder", left);
-    CHECK(left.empty());
+    const std::filesystem::path path(folder);
+    for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+        if (entry.path() != path)
+            CHECK_THAT(entry.path().filename().string(), !Contains(path.filename().string()));
     cv::utils::fs::remove_all(folder);
+}
+
+TEST_CASE("A file that several write at the same time is whole for who reads it", "[camera]")
+{
+    const TemporaryFolder folder;
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d::eye(), noArray(), someWindow());
+    const std::string path = folder / "camera.yml";
+    camera->save(path);
+    std::atomic<int> failed(0), writing(2);
+    const auto writer = [&]
+    {
+        for (int i = 0; i < 300; i++)
+            failed += !thrown([&] { camera->save(path); }).empty();
+        writing--;
+    };
+    std::thread first(writer), second(writer);
+    int reads = 0;
+    while (writing > 0 || reads == 0)
+    {
+        failed += !thrown([&] { RefractiveCamera::read(path); }).empty();
+        reads++;
+    }
+    first.join();
+    second.join();
+    printNumber("reads of a file that two threads write 600 times, failed of " + std::to_string(reads), failed, "");
+    CHECK(failed == 0);
+    CHECK(std::distance(std::filesystem::directory_iterator(std::filesystem::path(path).parent_path()), {}) == 1);
 }
 
 TEST_CASE("A camera is saved where a link leads, into a pipe, and not over a read-only file", "[camera]")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import opencv_refract as refract
+from opencv_refract._classes import WINDOW_FIELDS
 
 K = np.array([[1000., 0, 640], [0, 1000, 480], [0, 0, 1]])
 
@@ -220,7 +221,7 @@ def test_windows_and_cameras_are_copied_and_pickled(copied):
     window.wavelength, window.materials = 550., ["air", "N-BK7", "water"]
     for made in (window, refract.GlassWindow()):
         back = copied(made)
-        for name in refract._WINDOW_FIELDS:
+        for name in WINDOW_FIELDS:
             assert list(np.ravel(getattr(back, name))) == list(np.ravel(getattr(made, name)))
     for camera in (refract.RefractiveCamera.create(K, np.array([-0.1, 1/3, 0, 0]), window),
                    refract.RefractiveCamera.createFisheye(K, np.array([-0.1, 1/3, 0, 0]), window)):

@@ -25,6 +25,21 @@ def page(tmp_path, monkeypatch):
     return run
 
 
+def test_howto_python(page, capsys):
+    page("howto_python.md")
+    assert capsys.readouterr().out == "REFRACT_BEHIND_WINDOW\n"
+
+
+def test_howto_bundle(page):
+    names = page("howto_bundle.md")
+    assert names["points"].shape == (150, 1, 3)
+
+
+def test_no_page_is_forgotten():
+    pages = {path.name for path in (ROOT / "doc").glob("*.md") if "```python" in path.read_text()}
+    assert pages == {"python_first.md", "howto_python.md", "howto_bundle.md"}
+
+
 def test_python_first(page, capsys):
     names = page("python_first.md")
     assert capsys.readouterr().out.endswith("[ True  True]\n")

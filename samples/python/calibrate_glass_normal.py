@@ -13,6 +13,7 @@ DATA = os.path.join(os.path.dirname(__file__), "..", "data", "stereo")
 
 def find_corners(name):
     image = cv2.imread(os.path.join(DATA, name), cv2.IMREAD_GRAYSCALE)
+    assert image is not None, "cannot read " + name
     found, corners = cv2.findChessboardCornersSB(image, (6, 5), flags=cv2.CALIB_CB_ACCURACY)
     assert found, "no chessboard found in " + name
     return corners

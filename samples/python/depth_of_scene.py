@@ -22,10 +22,12 @@ K1, D1 = (rig.getNode("camera1").getNode(key).mat() for key in ("camera_matrix",
 K2, D2 = (rig.getNode("camera2").getNode(key).mat() for key in ("camera_matrix", "distortion_coefficients"))
 R, T = rig.getNode("R").mat(), rig.getNode("T").mat()
 left, right = cv2.imread(LEFT), cv2.imread(RIGHT)
-size = left.shape[1::-1]
+if left is None or right is None:
+    sys.exit(f"cannot read {LEFT} and {RIGHT}")
+size = left.shape[1], left.shape[0]
 
 R1, R2, P1, P2, Q, _, _ = cv2.stereoRectify(K1, D1, K2, D2, size, R, T, flags=0)
-matcher = cv2.StereoSGBM_create(minDisparity=-112, numDisparities=272, blockSize=5, P1=200, P2=800, disp12MaxDiff=1,
+matcher = cv2.StereoSGBM.create(minDisparity=-112, numDisparities=272, blockSize=5, P1=200, P2=800, disp12MaxDiff=1,
                                 preFilterCap=31, uniquenessRatio=10, speckleWindowSize=100, speckleRange=2,
                                 mode=cv2.STEREO_SGBM_MODE_SGBM_3WAY)
 maps1 = cv2.initUndistortRectifyMap(K1, D1, R1, P1, size, cv2.CV_16SC2)

@@ -23,11 +23,13 @@ camera1 = refract.RefractiveCamera.read(os.path.join(DATA, "truth.yml"), "camera
 camera2 = refract.RefractiveCamera.read(os.path.join(DATA, "truth.yml"), "camera2")
 R, T = rig.getNode("R").mat(), rig.getNode("T").mat()
 left, right = cv2.imread(LEFT), cv2.imread(RIGHT)
-size = left.shape[1::-1]
+if left is None or right is None:
+    sys.exit(f"cannot read {LEFT} and {RIGHT}")
+size = left.shape[1], left.shape[0]
 
-_, R1, R2, P1, P2, Q, _, _ = refract.refractiveStereoRectify(camera1, camera2, R, T, size, (400, 1300), flags=0)
-depth1 = depth2 = 600.
-matcher = cv2.StereoSGBM_create(minDisparity=-112, numDisparities=272, blockSize=5, P1=200, P2=800, disp12MaxDiff=1,
+R1, R2, P1, P2, Q = refract.refractiveStereoRectify(camera1, camera2, R, T, size, (400, 1300), flags=0)[1:6]
+depth1 = depth2 = np.array([600.])
+matcher = cv2.StereoSGBM.create(minDisparity=-112, numDisparities=272, blockSize=5, P1=200, P2=800, disp12MaxDiff=1,
                                 preFilterCap=31, uniquenessRatio=10, speckleWindowSize=100, speckleRange=2,
                                 mode=cv2.STEREO_SGBM_MODE_SGBM_3WAY)
 for step in (1, 2):     # first for a plane, then for the depths found

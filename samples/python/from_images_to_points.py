@@ -49,8 +49,10 @@ def find_corners(folder):
     """Corners of every image of a folder, by name."""
     corners = {}
     for path in sorted(glob.glob(os.path.join(DATA, folder, "*.*"))):
-        found, points = cv2.findChessboardCornersSB(cv2.imread(path, cv2.IMREAD_GRAYSCALE), SIZE,
-                                                    flags=cv2.CALIB_CB_ACCURACY)
+        image = cv2.imread(path, cv2.IMREAD_GRAYSCALE)
+        if image is None:
+            sys.exit("cannot read " + path)
+        found, points = cv2.findChessboardCornersSB(image, SIZE, flags=cv2.CALIB_CB_ACCURACY)
         if not found:
             sys.exit("no chessboard found in " + path)
         corners[os.path.splitext(os.path.basename(path))[0]] = points
@@ -70,7 +72,8 @@ boards = [BOARD.astype(np.float32)]*len(direct[0])
 views = [[points.astype(np.float32) for points in camera.values()] for camera in direct]
 lenses = [cv2.calibrateCamera(boards, v, (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3] for v in views]
 (K1, D1), (K2, D2) = lenses
-rms, *_, R, T, _, _ = cv2.stereoCalibrate(boards, *views, K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)
+stereo = cv2.stereoCalibrate(boards, views[0], views[1], K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)
+rms, R, T = stereo[0], stereo[5], stereo[6]
 print(f"two cameras, {np.linalg.norm(T):.2f} mm apart, {rms:.3f} px RMS")
 
 # %% [markdown]
@@ -81,9 +84,10 @@ print(f"two cameras, {np.linalg.norm(T):.2f} mm apart, {rms:.3f} px RMS")
 windows = []
 for (K, D), without, through in zip(lenses, direct, glass):
     pairs = [without[name] for name in through], list(through.values())
-    _, normal, *_ = refract.calibrateGlassNormal(*pairs, K, D)
+    normal = refract.calibrateGlassNormal(*pairs, K, D)[1]
     start = refract.GlassWindow(normal, THICKNESS, INDEX)
-    rms, window, *_, deviations, _, _, _ = refract.calibrateGlassExtended([BOARD]*len(through), *pairs, K, D, start)
+    fit = refract.calibrateGlassExtended([BOARD]*len(through), *pairs, K, D, start)
+    rms, window, deviations = fit[0], fit[1], fit[4]
     at = 4 + D.size     # the normal's place among the parameters
     print(f"normal {np.round(window.normal, 4)}, {np.degrees(np.arccos(window.normal[2])):.2f} degrees from the axis, "
           f"+- {np.degrees(np.linalg.norm(deviations[at:at + 3])/np.sqrt(2)):.3f} degrees; {rms:.3f} px RMS")
@@ -138,7 +142,8 @@ finish(figure, "epipolar_curves.png")
 
 # %%
 def length_errors(cameras, name):
-    points, status = refract.triangulateRefractive(*cameras, R, T, measure[0][name], measure[1][name])
+    first, second = cameras
+    points, status = refract.triangulateRefractive(first, second, R, T, measure[0][name], measure[1][name])
     from_first = np.linalg.norm(points[1:, 0] - points[0, 0], axis=1)
     return from_first - np.linalg.norm(BOARD[1:] - BOARD[0], axis=1)
 

@@ -18,13 +18,15 @@ import opencv_refract as refract
 
 DATA = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(__file__), "..", "data", "stereo")
 SIZE, SQUARE = (6, 5), 39.
-BOARD = np.float32([(SQUARE*x, SQUARE*y, 0) for y in range(SIZE[1]) for x in range(SIZE[0])])
+BOARD = np.array([(SQUARE*x, SQUARE*y, 0) for y in range(SIZE[1]) for x in range(SIZE[0])], np.float32)
 
 
 def corners(folder):
     found = []
     for name in sorted(glob.glob(os.path.join(DATA, folder, "*.*"))):
         image = cv2.imread(name, cv2.IMREAD_GRAYSCALE)
+        if image is None:
+            sys.exit("cannot read " + name)
         ok, points = cv2.findChessboardCornersSB(image, SIZE, flags=cv2.CALIB_CB_ACCURACY)
         if not ok:
             sys.exit("no chessboard found in " + name)
@@ -53,7 +55,7 @@ boards = [BOARD]*len(air1)
 single = [[view.astype(np.float32) for view in views] for views in (air1, air2)]
 K1, D1 = cv2.calibrateCamera(boards, single[0], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
 K2, D2 = cv2.calibrateCamera(boards, single[1], (1280, 1024), None, None, flags=cv2.CALIB_FIX_K3)[1:3]
-R, T, E, F = cv2.stereoCalibrate(boards, *single, K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)[5:9]
+R, T, E, F = cv2.stereoCalibrate(boards, single[0], single[1], K1, D1, K2, D2, (1280, 1024), flags=cv2.CALIB_FIX_INTRINSIC)[5:9]
 w1, w2 = (refract.calibrateGlass([BOARD]*6, air, glass, K, D, refract.GlassWindow((0, 0, 1), 20, 1.5437))[1]
           for air, glass, K, D in ((air1[-6:], corners("glass1"), K1, D1), (air2[-6:], corners("glass2"), K2, D2)))
 P1, P2 = K1 @ np.eye(3, 4), K2 @ np.hstack((R, T))
@@ -66,7 +68,7 @@ for left, right in zip(corners("measure1"), corners("measure2")):
 
     lengths += [np.linalg.norm(points[1:] - points[0], axis=-1).ravel() - np.linalg.norm(BOARD[1:] - BOARD[0], axis=1)]
     beside += [distance(curve, partner) for curve, partner in zip(curves, partners)]
-    _, rvec, tvec = cv2.solvePnP(BOARD, u1, K1, None)
+    rvec, tvec = cv2.solvePnP(BOARD, u1, K1, None)[1:]
     fit += [np.linalg.norm(cv2.projectPoints(BOARD, rvec, tvec, K1, None)[0] - u1, axis=2)]
 
 print(f"lengths on the board: {rms(lengths):.3f} mm RMS error")

@@ -15,6 +15,7 @@ SIZE, SQUARE = (6, 5), 39.
 
 def find_corners(name):
     image = cv2.imread(os.path.join(DATA, name), cv2.IMREAD_GRAYSCALE)
+    assert image is not None, "cannot read " + name
     found, corners = cv2.findChessboardCornersSB(image, SIZE, flags=cv2.CALIB_CB_ACCURACY)
     assert found, "no chessboard found in " + name
     return corners

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "camera/storage.hpp"
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #ifdef _WIN32
@@ -98,12 +99,17 @@ Mat readStoredMatrix(const FileNode& map, const char* key, const String& filenam
     return m;
 }
 
-//! path/name.yml -> path/name.part.yml: the extension chooses FileStorage's format.
+//! path/name.yml -> path/.part1234-0.name.yml, of each writer another: the extension chooses FileStorage's format.
 static String partName(const String& filename)
 {
-    const size_t slash = filename.find_last_of("/\\"), dot = filename.rfind('.');
-    const bool hasExtension = dot != String::npos && (slash == String::npos || dot > slash);
-    return hasExtension ? filename.substr(0, dot) + ".part" + filename.substr(dot) : filename + ".part";
+    static std::atomic<unsigned> writers(0);
+#ifdef _WIN32
+    const unsigned long process = GetCurrentProcessId();
+#else
+    const unsigned long process = (unsigned long)getpid();
+#endif
+    const size_t slash = filename.find_last_of("/\\"), name = slash == String::npos ? 0 : slash + 1;
+    return filename.substr(0, name) + format(".part%lu-%u.", process, writers++) + filename.substr(name);
 }
 
 //! In one step where the system has one.

@@ -1,0 +1,104 @@
+# This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+# SPDX-License-Identifier: Apache-2.0
+
+"""What GlassWindow and RefractiveCamera have in Python and not in C++: repr, equality, copies, fields that cannot be misread."""
+import copyreg
+import inspect
+
+from . import _native
+from ._values import Values
+
+WINDOW_FIELDS = ("normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge", "wavelength", "materials")
+SEQUENCES = ("normal", "thickness", "index", "wedge", "materials")
+
+
+def as_values(read):
+    """A list of numbers, of pairs or of texts, that cannot be changed in place: to change it in the window, set the field."""
+    def values(window):
+        return Values(item if isinstance(item, (str, tuple)) else tuple(map(float, item)) if hasattr(item, "__len__") else float(item)
+                      for item in read(window))
+    return values
+
+
+def field(name, of_c):
+    def write(window, value):
+        if value is None:
+            raise _native.error(f"GlassWindow.{name} cannot be None")
+        try:
+            of_c.__set__(window, value)
+        except (TypeError, ValueError) as why:
+            raise _native.error(f"GlassWindow.{name}: {str(why).replace('value ', 'the value ', 1)}") from None
+
+    read = of_c.__get__
+    setattr(_native.GlassWindow, name, property(as_values(read) if name in SEQUENCES else read, write, doc=of_c.__doc__))
+
+
+def window_values(window):
+    return tuple(getattr(window, name) for name in WINDOW_FIELDS)
+
+
+def window_of(*values):
+    window = _native.GlassWindow()
+    for name, value in zip(WINDOW_FIELDS, values):
+        setattr(window, name, value)
+    return window
+
+
+def window_text(window):
+    """As it is made; fields with the values of no window are left out."""
+    none = _native.GlassWindow()
+    given = [(name, getattr(window, name)) for name in WINDOW_FIELDS]
+    parts = [f"{name}={tuple(value) if name == 'normal' else value!r}" for name, value in given
+             if value != getattr(none, name) or (name in ("normal", "thickness", "index") and window != none)]
+    return f"GlassWindow({', '.join(parts)})"
+
+
+def camera_values(camera):
+    coefficients = camera.distCoeffs()
+    return (camera.lensModel(), camera.cameraMatrix().tolist(), coefficients.ravel().tolist(), camera.imageSize(), camera.window())
+
+
+def camera_text(camera):
+    size = "x".join(map(str, camera.imageSize()))
+    names, numbers = camera.parameterNames(), camera.lensParameters().ravel()
+    lens = ", ".join(f"{name}={number:.10g}" for name, number in zip(names, numbers))
+    points = "" if len(numbers) >= 4 + camera.distCoeffs().size else f", {camera.distCoeffs().size} control points"
+    image = f", image {size}" if size != "0x0" else ""
+    return f"<RefractiveCamera {camera.lensModel()}: {lens}{points}{image}, {camera.window()!r}>"
+
+
+def camera_of(text):
+    file = _native.FileStorage(text, _native.FileStorage_READ | _native.FileStorage_MEMORY)
+    return _native.RefractiveCamera.read(file.getNode("camera"))
+
+
+def camera_file(camera):
+    file = _native.FileStorage(".yml", _native.FileStorage_WRITE | _native.FileStorage_MEMORY)
+    camera.write(file, "camera")
+    return file.releaseAndGetString()
+
+
+def equality(made, values):
+    def equal(self, other):
+        return values(self) == values(other) if isinstance(other, made) else NotImplemented
+    made.__eq__ = equal
+    made.__hash__ = None        # they can change
+
+
+def signature_of_window():
+    """Of GlassWindow(...): older Pythons lose what an extension says of a type."""
+    none = _native.GlassWindow()
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Signature([inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD if i < 5 else keyword,
+                                                default=getattr(none, name)) for i, name in enumerate(WINDOW_FIELDS)])
+
+
+for name in WINDOW_FIELDS:
+    field(name, getattr(_native.GlassWindow, name))
+equality(_native.GlassWindow, window_values)
+equality(_native.RefractiveCamera, camera_values)
+_native.GlassWindow.__signature__ = signature_of_window()
+_native.GlassWindow.__repr__ = window_text
+_native.RefractiveCamera.__repr__ = camera_text
+copyreg.pickle(_native.GlassWindow, lambda window: (window_of, window_values(window)))
+copyreg.pickle(_native.RefractiveCamera, lambda camera: (camera_of, (camera_file(camera),)))

@@ -1,0 +1,58 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// GlassWindow(...) with all fields: C++ has a constructor for one pane only.
+#pragma once
+
+static bool numberOrList(PyObject* o, std::vector<double>& v, const char* name)
+{
+    v.assign(1, 0.);
+    return isNumber(o) ? pyopencv_to(o, v[0], ArgInfo(name, 0)) : pyopencv_to(o, v, ArgInfo(name, 0));
+}
+
+static bool fillWindow(refract::GlassWindow& window, PyObject* args, PyObject* keywords)
+{
+    static const char* const NAMES[] = { "normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge",
+                                         "wavelength", "materials", NULL };
+    PyObject *normal = NULL, *thickness = NULL, *index = NULL, *distance = NULL, *outerIndex = NULL, *innerIndex = NULL, *wedge = NULL,
+             *wavelength = NULL, *materials = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|OOOOO$OOOO:GlassWindow", (char**)NAMES, &normal, &thickness, &index, &distance,
+                                     &outerIndex, &innerIndex, &wedge, &wavelength, &materials))
+        return false;
+    if (!normal != !thickness || !thickness != !index)
+        return failmsg("normal, thickness and index belong together; for a surface without a pane both are empty lists");
+    Vec3d n;
+    if (normal && !(pyopencv_to(normal, n, ArgInfo("normal", 0)) && numberOrList(thickness, window.thickness, "thickness")
+                    && numberOrList(index, window.index, "index")))
+        return false;
+    if (!pyopencv_to(distance, window.distance, ArgInfo("distance", 0))
+        || !pyopencv_to(outerIndex, window.outerIndex, ArgInfo("outerIndex", 0))
+        || !pyopencv_to(innerIndex, window.innerIndex, ArgInfo("innerIndex", 0))
+        || !pyopencv_to_safe(wedge, window.wedge, ArgInfo("wedge", 0))
+        || !pyopencv_to(wavelength, window.wavelength, ArgInfo("wavelength", 0))
+        || !pyopencv_to_safe(materials, window.materials, ArgInfo("materials", 0)))
+        return false;
+    try
+    {
+        if (normal)
+            window.normal = refract::GlassWindow(n, 0., 1.).normal;     // normalised, or refused
+        window.check();
+        return true;
+    }
+    catch (const cv::Exception& e)
+    {
+        raise(e);
+        return false;
+    }
+}
+
+static PyObject* makeWindow(PyTypeObject*, PyObject* args, PyObject* keywords)
+{
+    refract::GlassWindow window;
+    if (fillWindow(window, args, keywords))
+        return pyopencv_from(window);
+    blame("GlassWindow");
+    return NULL;
+}
+
+template<> newfunc makerOf<&pyopencv_cv_refract_refract_GlassWindow_GlassWindow>() { return makeWindow; }
