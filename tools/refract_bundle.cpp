@@ -9,8 +9,8 @@
 
 #include <iostream>
 
-static const char MANUAL[] = R"(Calibrates a rig behind its windows from points that several cameras saw, without a target: a waved wand, particles, any
-matches. Cameras, windows, R, T and points are one fit.
+static const char MANUAL[] = R"(Calibrates a rig behind its windows without a target, from points that several cameras saw: the ends of a
+wand that is waved, particles, any matches. Cameras, windows, R, T and points are one fit.
 
   refract_bundle start.yml --points=matches.csv --lengths=lengths.csv --out=calib.yml       a rig that was never calibrated
   refract_bundle calib.yml --points=matches.csv --out=better.yml                            one that was: what it knows has its say
@@ -67,9 +67,10 @@ void addOptions(CLI::App& app, Options& o)
 }
 
 Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings, const Calibration& start,
-                     const Command& command)
+                     const std::string& unit, const Command& command)
 {
     Calibration file = toFile(adjustment, start);
+    file.unit = unit;
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
     file.command = command.line();
@@ -117,7 +118,7 @@ int main(int argc, char** argv)
             writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
         if (!options.summary.empty())
             writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
-        writeCalibration(options.out, resultOf(options, adjustment, findings, file, command));
+        writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
         if (!command.quiet())
             printBundle(std::cout, matches, adjustment, findings, unit);
         if (!findings.limitMet)

@@ -142,7 +142,7 @@ struct Wand
     std::string matches(bool withImages = true) const
     {
         std::ostringstream csv;
-        csv << std::setprecision(10) << (withImages ? "image,id" : "id");
+        csv << std::fixed << std::setprecision(3) << (withImages ? "image,id" : "id");
         for (size_t c = 1; c <= pixels.size(); c++)
             csv << ",u" << c << ",v" << c;
         for (size_t i = 0; i < points.size(); i++)
@@ -453,4 +453,36 @@ TEST_CASE("refract_bundle says what it found in ten lines of 80 columns", "[tool
             CHECK(line.size() <= 80);
         CHECK(bundle(f, "--quiet").out.empty());
     }
+}
+
+// samples/data/wand: what its start.yml thinks, and what is so.
+TEST_CASE("The wand of the guide is made anew", "[.wand-data]")
+{
+    const std::string folder = paths::bundled() + "/wand";
+    Wand wand(0);
+    wand.start = Rig::read(folder + "/start.yml");
+    wand.truth = Rig::read(folder + "/start.yml");
+    wand.random = scenes::Random(1);
+    for (int c = 0; c < 2; c++)
+    {
+        GlassWindow window = wand.truth.cameras[c]->window();
+        window.normal = normalize(window.normal + Vec3d(0.05 - 0.09*c, 0.04 + 0.02*c, 0));
+        window.distance += wand.random.normal(1);
+        window.thickness[0] += wand.random.normal(0.1);
+        window.index[0] += wand.random.normal(0.001);
+        window.wedge = { Vec2d(wand.random.normal(ARC_MINUTE), wand.random.normal(ARC_MINUTE)) };
+        wand.truth.cameras[c]->setWindow(window);
+    }
+    Matx33d turned;
+    Rodrigues(Vec3d(0.01, -0.02, 0.015), turned);
+    wand.truth.Rs[1] = Mat(turned)*wand.truth.Rs[1];
+    wand.truth.Ts[1] += Mat(Vec3d(4, -6, 5));
+    wand.wave(80);
+    wand.pixels[1][2*31] += Point2d(15, 60);       // a glint, taken for the wand's end
+    std::string csv = wand.matches();
+    for (const auto& name : { std::make_pair(std::string(",a,"), std::string(",red,")), { ",b,", ",green," } })
+        for (size_t at = csv.find(name.first); at != std::string::npos; at = csv.find(name.first, at))
+            csv.replace(at, name.first.size(), name.second);
+    writeFile(folder + "/matches.csv", csv);
+    writeRig(folder + "/truth.yml", wand.truth.cameras, wand.truth.Rs, wand.truth.Ts);
 }

@@ -1,7 +1,6 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include <opencv2/refract_bundle_dev.hpp>
 #include "bundle/bundle_adjustment.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -231,7 +230,6 @@ Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start)
     file.sigma = adjustment.fit.sigma;
     file.dof = adjustment.fit.dof;
     file.covariance = adjustment.fit.covariance;
-    file.unit = start.unit;
     file.square = start.square;
     file.channel = start.channel;
     file.label = start.label;

@@ -27,7 +27,7 @@ struct BundleAdjustment
 //! Throws Failure that says what the matches do not determine, or why there is no answer.
 BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust);
 
-//! As a file of it, with the label of the start.
+//! As a file of it, with the label of the start; without its unit.
 Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start);
 
 } // namespace tools

@@ -90,8 +90,9 @@ std::string pointsLine(const BundleAdjustment& adjustment, const std::string& un
             near = std::min(near, adjustment.points[i].z);
             far = std::max(far, adjustment.points[i].z);
         }
-    return format("%d of %zu points, z %.4g to %.4g%s; x, y, z +- %.2g, %.2g, %.2g (median)", adjustment.answers(),
-                  adjustment.points.size(), near, far, unit.empty() ? "" : (" " + unit).c_str(), median(of[0]), median(of[1]), median(of[2]));
+    return format("%d of %zu points, z %.4g to %.4g", adjustment.answers(), adjustment.points.size(), near, far)
+        + (unit.empty() ? "" : " " + unit)
+        + format("; x, y, z +- %.2g, %.2g, %.2g (median)", median(of[0]), median(of[1]), median(of[2]));
 }
 
 std::vector<std::string> namesOf(const Matches& matches, const std::vector<int>& points)
@@ -168,7 +169,8 @@ void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustme
 {
     const int SHOWN = 3, cameras = (int)findings.changes.size();
     const Fit& fit = adjustment.fit;
-    out << findings.verdict() << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
+    out << findings.verdict()
+        << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
     out << fitted("scale: ", {findings.scale}) << "\n";
     out << "found off the start, in degrees and " << (unit.empty() ? "units of length" : unit)
         << (cameras > SHOWN ? ", for the camera that is known least:\n" : ":\n");
