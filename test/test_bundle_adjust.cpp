@@ -371,7 +371,7 @@ TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in 
     CAPTURE(seed());
     Random random(21);
     const RigTruth truth = wandRig(2);
-    const BundleScene scene = makeWandScene(truth, 60, random, 0.1);
+    const BundleScene scene = makeWandScene(truth, 240, random, 0.1);
     const int FREE = GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE, P = 2*(8 + 8) + 6;
     const std::vector<int> ofDistances = { 8 + 3, 16 + 8 + 3 };
     const auto started = [&] { Random start(22); return BundleCall(truth, scene, start, 0.5); };
@@ -390,19 +390,29 @@ TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in 
     for (int i = 32; i < P; i++)
         vague.at<double>(i, i) = 1e8;
     known.run(vague, 0, GLASS_FIX_NORMAL);
-    CHECK(normalError(known, truth, 1) == Approx(normalError(free, truth, 1)).epsilon(1e-3));
-    CHECK(largestDifference(known.Ts[1], free.Ts[1]) < 1e-3*free.deviations.at<double>(35));
-    for (int i = 0; i < P; i++)         // the degrees of freedom differ by what is known
+    // Twelve numbers more that are known are as many degrees of freedom, a percent, by which the pixels weigh more against lengths.
+    for (int i = 0; i < 3; i++)
+    {
+        const double byT = known.Ts[1].at<double>(i) - free.Ts[1].at<double>(i);
+        const double byNormal = known.cameras[1]->window().normal[i] - free.cameras[1]->window().normal[i];
+        CHECK(std::abs(byT) < 0.05*free.deviations.at<double>(35 + i));
+        CHECK(std::abs(byNormal) < 0.05*free.deviations.at<double>(16 + 8 + i));
+    }
+    for (int i = 0; i < P; i++)
     {
         CAPTURE(i);
-        CHECK(known.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)).epsilon(0.05).margin(1e-12));
+        CHECK(known.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)).epsilon(0.02).margin(1e-12));
     }
-    // Known exactly: stays.
-    BundleCall held = started();
+    // Known as well as exactly: stays.
+    Random atTruth(22);
+    BundleCall held(truth, scene, atTruth, 0);
+    Mat exact = Mat::zeros(P, P, CV_64F);
+    for (int i : { 8 + 3, 16 + 8 + 3, 32, 33, 34, 35, 36, 37 })
+        exact.at<double>(i, i) = i < 32 || i > 34 ? 1e-8 : 1e-14;
     const Mat before = held.Ts[1].clone();
-    held.run(1e-16*vague, 0, GLASS_FIX_NORMAL);
-    CHECK(largestDifference(held.Ts[1], before) < 1e-3);
-    CHECK(held.deviations.at<double>(35) < 2e-4);
+    held.run(exact, 0, GLASS_FIX_NORMAL);
+    CHECK(largestDifference(held.Ts[1], before) < 5e-4);
+    CHECK(held.deviations.at<double>(35) == Approx(1e-4).epsilon(0.01));
     // The covariance of the free fit, from which another one starts: half the variances, with the correlations.
     BundleCall again = started();
     again.cameras = free.cameras;
@@ -446,7 +456,8 @@ TEST_CASE("An error that all lengths share is in every length, however many ther
         const double alone = own.pointDeviations.at<double>((int)i, 2);
         const double expected = std::sqrt(alone*alone + std::pow(SHARED*scene.points[i].z, 2));
         CAPTURE(i, alone);
-        CHECK(shared.pointDeviations.at<double>((int)i, 2) == Approx(expected).epsilon(0.1));
+        if (std::isfinite(own.points[i].x))
+            CHECK(shared.pointDeviations.at<double>((int)i, 2) == Approx(expected).epsilon(0.1));
     }
 }
 

