@@ -59,7 +59,7 @@ void addOptions(CLI::App& app, Options& o)
     o.bundle.std.addTo(app, false);
     app.add_option("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)")->check(CLI::IsMember(unitNames()));
     app.add_flag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
-    app.add_flag("!--no-robust", o.robust, "every match is right: leave none out");
+    app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "every match is right; by default wrong ones are left out");
     app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--points-out", o.pointsOut, "points.csv to write");
     app.add_option("--summary", o.summary, "JSON file with all that is said, and more");
