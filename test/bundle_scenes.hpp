@@ -150,6 +150,14 @@ struct BundleCall
                                                    covariance, pointDeviations, perViewErrors, inliers, flags, poseCovariances);
     }
 
+    //! With what is known of the rig, and of an error that all lengths share.
+    double run(const cv::Mat& rigCovariance, double lengthScaleStd, int flags)
+    {
+        return cv::refract::refractiveBundleAdjust(images, cameras, windows, Rs, Ts, rvecs, tvecs, points, lengths, deviations,
+                                                   covariance, pointDeviations, perViewErrors, inliers, rigCovariance, lengthScaleStd,
+                                                   flags, poseCovariances);
+    }
+
     std::vector<std::vector<cv::Mat> > images;
     std::vector<cv::Vec4d> lengths;
     std::vector<cv::Ptr<RefractiveCamera> > cameras;

@@ -365,3 +365,124 @@ TEST_CASE("What is wrong with the arguments, and what nothing determines, is sai
     BundleCall little(truth, makeWandScene(truth, 2, few, 0.1), few);
     CHECK_THAT(thrown([&] { little.run(R_T | GLASS_FREE_DISTANCE); }), Contains("fewer than are needed"));
 }
+
+TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in between as information adds up", "[bundle][prior]")
+{
+    CAPTURE(seed());
+    Random random(21);
+    const RigTruth truth = wandRig(2);
+    const BundleScene scene = makeWandScene(truth, 240, random, 0.1);
+    const int FREE = GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE, P = 2*(8 + 8) + 6;
+    const std::vector<int> ofDistances = { 8 + 3, 16 + 8 + 3 };
+    const auto started = [&] { Random start(22); return BundleCall(truth, scene, start, 0.5); };
+    BundleCall free = started();
+    free.run(FREE);
+    REQUIRE(free.covariance.rows == P);
+    // Known next to nothing: as free. The normal's prior has rank 2.
+    Mat vague = Mat::zeros(P, P, CV_64F);
+    BundleCall known = started();
+    for (int c = 0; c < 2; c++)
+    {
+        const Vec3d n = known.cameras[c]->window().normal;
+        Mat(1e2*(Matx33d::eye() - n*n.t())).copyTo(vague(Rect(16*c + 8, 16*c + 8, 3, 3)));
+        vague.at<double>(ofDistances[c], ofDistances[c]) = 1e8;
+    }
+    for (int i = 32; i < P; i++)
+        vague.at<double>(i, i) = 1e8;
+    known.run(vague, 0, GLASS_FIX_NORMAL);
+    // Twelve numbers more that are known are as many degrees of freedom, a percent, by which the pixels weigh more against lengths.
+    for (int i = 0; i < 3; i++)
+    {
+        const double byT = known.Ts[1].at<double>(i) - free.Ts[1].at<double>(i);
+        const double byNormal = known.cameras[1]->window().normal[i] - free.cameras[1]->window().normal[i];
+        CHECK(std::abs(byT) < 0.05*free.deviations.at<double>(35 + i));
+        CHECK(std::abs(byNormal) < 0.05*free.deviations.at<double>(16 + 8 + i));
+    }
+    for (int i = 0; i < P; i++)
+    {
+        CAPTURE(i);
+        CHECK(known.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)).epsilon(0.02).margin(1e-12));
+    }
+    // Known as well as exactly: stays.
+    Random atTruth(22);
+    BundleCall held(truth, scene, atTruth, 0);
+    Mat exact = Mat::zeros(P, P, CV_64F);
+    for (int i : { 8 + 3, 16 + 8 + 3, 32, 33, 34, 35, 36, 37 })
+        exact.at<double>(i, i) = i < 32 || i > 34 ? 1e-8 : 1e-14;
+    const Mat before = held.Ts[1].clone();
+    held.run(exact, 0, GLASS_FIX_NORMAL);
+    CHECK(largestDifference(held.Ts[1], before) < 5e-4);
+    CHECK(held.deviations.at<double>(35) == Approx(1e-4).epsilon(0.01));
+    // The covariance of the free fit, from which another one starts: half the variances, with the correlations.
+    BundleCall again = started();
+    again.cameras = free.cameras;
+    again.Rs = free.Rs;
+    again.Ts = free.Ts;
+    again.run(free.covariance, 0, GLASS_FIX_NORMAL);
+    for (int i = 0; i < P; i++)
+    {
+        CAPTURE(i);
+        CHECK(again.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)*std::sqrt(0.5)).epsilon(0.1).margin(1e-12));
+    }
+}
+
+TEST_CASE("An error that all lengths share is in every length, however many there are", "[bundle][prior]")
+{
+    CAPTURE(seed());
+    const double SHARED = 2e-3;
+    Random random(23);
+    const RigTruth truth = wandRig(3);
+    const BundleScene scene = makeWandScene(truth, 60, random, 0.1);
+    const auto fitted = [&](double shared)
+    {
+        Random start(24);
+        BundleCall call(truth, scene, start, 0.5);
+        call.run(Mat(), shared, GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+        return call;
+    };
+    const BundleCall own = fitted(0), shared = fitted(SHARED);
+    const int P = (int)own.deviations.total();
+    REQUIRE((int)shared.deviations.total() == P);
+    // Nearly all lengths of the problem scale with those that are given; thickness is given by itself.
+    for (int i = 0; i < 3; i++)
+    {
+        const double T = own.Ts[2].at<double>(i), alone = own.deviations.at<double>(P - 3 + i);
+        const double expected = std::sqrt(alone*alone + std::pow(SHARED*T, 2));
+        CHECK(shared.deviations.at<double>(P - 3 + i) == Approx(expected).epsilon(0.1));
+        CHECK(shared.Ts[2].at<double>(i) == Approx(T).epsilon(1e-4).margin(0.05));
+    }
+    for (size_t i = 0; i < scene.points.size(); i += 7)
+    {
+        const double alone = own.pointDeviations.at<double>((int)i, 2);
+        const double expected = std::sqrt(alone*alone + std::pow(SHARED*scene.points[i].z, 2));
+        CAPTURE(i, alone);
+        if (std::isfinite(own.points[i].x))
+            CHECK(shared.pointDeviations.at<double>((int)i, 2) == Approx(expected).epsilon(0.1));
+    }
+}
+
+TEST_CASE("What is no covariance of the rig is refused by name", "[bundle][prior]")
+{
+    Random random(25);
+    const RigTruth truth = wandRig(2);
+    const BundleScene scene = makeWandScene(truth, 20, random, 0.1);
+    const int P = 2*(8 + 8) + 6;
+    const auto fault = [&](const Mat& covariance, double shared)
+    {
+        Random start(26);
+        BundleCall call(truth, scene, start, 0.5);
+        return thrown([&] { call.run(covariance, shared, GLASS_FREE_EXTRINSICS); });
+    };
+    using Catch::Contains;
+    CHECK_THAT(fault(Mat::eye(P + 1, P + 1, CV_64F), 0), Contains("it must be 38x38"));
+    Mat bad = Mat::eye(P, P, CV_64F);
+    bad.at<double>(3, 3) = NaN;
+    CHECK_THAT(fault(bad, 0), Contains("rigCovariance has numbers that are not finite"));
+    bad.at<double>(3, 3) = -1;
+    CHECK_THAT(fault(bad, 0), Contains("the variance -1 in row 3"));
+    bad.at<double>(3, 3) = 1;
+    bad.at<double>(3, 4) = bad.at<double>(4, 3) = 2;
+    CHECK_THAT(fault(bad, 0), Contains("rigCovariance is no covariance"));
+    CHECK_THAT(fault(Mat(), -1), Contains("lengthScaleStd is -1"));
+    CHECK_THAT(fault(Mat(), NaN), Contains("lengthScaleStd"));
+}

@@ -12,6 +12,7 @@
 of their own, with a small file of each kind; arguments that could lead out of it are not tried. */
 
 int refract_board_main(int argc, char** argv);
+int refract_bundle_main(int argc, char** argv);
 int refract_calib_main(int argc, char** argv);
 int refract_check_main(int argc, char** argv);
 int refract_epilines_main(int argc, char** argv);
@@ -28,10 +29,11 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
-    {"refract_board", refract_board_main}, {"refract_calib", refract_calib_main}, {"refract_check", refract_check_main},
-    {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main}, {"refract_laser", refract_laser_main},
-    {"refract_measure", refract_measure_main},
-    {"refract_simulate", refract_simulate_main}, {"refract_stereo", refract_stereo_main}, {"refract_undistort", refract_undistort_main}};
+    {"refract_board", refract_board_main}, {"refract_bundle", refract_bundle_main}, {"refract_calib", refract_calib_main},
+    {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main},
+    {"refract_laser", refract_laser_main},
+    {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main}, {"refract_stereo", refract_stereo_main},
+    {"refract_undistort", refract_undistort_main}};
 
 const char CAMERA[] = R"(
   image_width: 32
@@ -60,7 +62,7 @@ public:
         fs::create_directory("work");       // one deeper than what is removed at the end
         fs::current_path("work");
         const std::string head = "%YAML:1.0\n---\n", pair = head + "camera1:" + CAMERA + "camera2:" + CAMERA + POSE;
-        std::string one = CAMERA, vnl = "# filename x y\n", points = "u,v\n";
+        std::string one = CAMERA, vnl = "# filename x y\n", points = "u,v\n", matches = "id,u1,v1,u2,v2\n";
         for (size_t at = one.find("\n  "); at != std::string::npos; at = one.find("\n  ", at))
             one.erase(at + 1, 2);
         for (const char* image : {"a", "b"})
@@ -68,8 +70,11 @@ public:
                 vnl += cv::format("%s.png %d %d\n", image, 8 + 5*(i % 3), 6 + 4*(i/3));
         for (int i = 0; i < 3; i++)
             points += cv::format("%d,%d\n", 8 + i, 9);
+        for (int i = 0; i < 12; i++)
+            matches += cv::format("%d,%d,%d,%d,%d\n", i, 8 + 5*(i % 4), 6 + 4*(i/4), 3 + 5*(i % 4), 6 + 4*(i/4));
         files_ = {{"pair.yml", pair}, {"one.yml", head + one}, {"rig.yml", pair + RENDERING}, {"corners.vnl", vnl},
-                  {"points.txt", points}, {"run.toml", "size = \"3x3\"\nsquare = [20]\n"}};
+                  {"points.txt", points}, {"matches.csv", matches}, {"lengths.csv", "id1,id2,length,std\n0,3,40,0.1\n4,9,30,0.1\n"},
+                  {"run.toml", "size = \"3x3\"\nsquare = [20]\n"}};
         std::vector<uchar> image;
         cv::imencode(".png", cv::Mat(24, 32, CV_8U, cv::Scalar(90)), image);
         files_["a.png"] = files_["b.png"] = std::string(image.begin(), image.end());

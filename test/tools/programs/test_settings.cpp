@@ -66,7 +66,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const std::string calib = STEREO + "/truth.yml", left = STEREO + "/measure1/z600_1.jpg", right = STEREO + "/measure2/z600_1.jpg";
     const std::string rig = STEREO + "/rig.yml", file = folder / "run.yml";
     const std::string target = " --size=6x5 --square=39";
-    const std::string tools[] = {"refract_board", "refract_calib", "refract_check", "refract_epilines", "refract_export",
+    const std::string tools[] = {"refract_board", "refract_bundle", "refract_calib", "refract_check", "refract_epilines", "refract_export",
                                  "refract_laser", "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},

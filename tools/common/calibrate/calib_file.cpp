@@ -322,8 +322,10 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
         if (!calibration.contradictions.empty())
             fs << "contradictions" << calibration.contradictions;
         writeLabel(fs, calibration.label);
+        if (!calibration.unit.empty())
+            fs << "unit" << calibration.unit;
         if (calibration.square > 0)
-            fs << "unit" << calibration.unit << "target_square" << calibration.square;
+            fs << "target_square" << calibration.square;
         if (calibration.channel != BRIGHTNESS)
             fs << "channel" << nameOf(calibration.channel);
         writeCameras(fs, calibration);

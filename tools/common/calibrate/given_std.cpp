@@ -50,7 +50,7 @@ bool GivenStd::ofWindow() const
     return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0.;
 }
 
-void GivenStdOptions::addTo(CLI::App& app)
+void GivenStdOptions::addTo(CLI::App& app, bool ofTarget)
 {
     std::fill(said_, said_ + COUNT, std::numeric_limits<double>::quiet_NaN());
     const auto add = [&](const char* name, int which, const std::string& about) {
@@ -63,10 +63,18 @@ void GivenStdOptions::addTo(CLI::App& app)
     add("--distance-std", DISTANCE, "the same of --distance (default: 1 mm)");
     add("--wedge-std", WEDGE, "the same of the angle between the faces of each layer, about 0, in arc minutes: polished optics 0.2, plate "
         "glass 1 to 3 (default: 1)");
-    add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
-    add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
-        "along each axis, one standard deviation (default: 0.02 mm)");
+    if (ofTarget)
+    {
+        add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
+        add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
+            "along each axis, one standard deviation (default: 0.02 mm)");
+    }
     app.add_flag("--exact", exact_, "what is given is exact, where none of these options says another thing (simulated images)");
+}
+
+bool GivenStdOptions::isSaid() const
+{
+    return exact_ || std::any_of(said_, said_ + COUNT, [](double std) { return !std::isnan(std); });
 }
 
 GivenStd GivenStdOptions::of(const GivenValues& v) const

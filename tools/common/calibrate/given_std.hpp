@@ -54,7 +54,9 @@ struct GivenValues
 class GivenStdOptions
 {
 public:
-    void addTo(CLI::App& app);
+    //! @param ofTarget also what is known of a board and its placement
+    void addTo(CLI::App& app, bool ofTarget = true);
+    bool isSaid() const;                //!< any of them
     //! What was said; of all else what is usual. Throws Failure where a deviation is said of what there is not.
     GivenStd of(const GivenValues& values) const;
 

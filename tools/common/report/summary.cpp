@@ -359,7 +359,7 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     file.sigma = c.fit.sigma;
     file.dof = c.fit.dof;
     file.covariance = c.fit.covariance;
-    file.unit = c.unit;
+    file.unit = c.square > 0 ? c.unit : "";      // else nobody said what the points are in
     file.square = c.square;
     file.channel = c.options.channel;
     file.label = c.label;

@@ -1454,6 +1454,27 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
 /** @overload
+With what is known of the rig from an earlier calibration, and of the lengths in common.
+@param rigCovariance PxP, in the order of stdDeviations: covariance of the initial values of cameras, Rs and Ts, for example of
+an earlier calibration, as readRig returns it. What has a variance is estimated within it, whatever the flags say; for the rest
+the flags decide. Of a window that cameras share, the rows of its first camera count. noArray(): nothing is known.
+@param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
+times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
+independent.
+The other arguments are as above.
+*/
+CV_EXPORTS_AS(refractiveBundleAdjustPriors) double refractiveBundleAdjust(
+        const std::vector<std::vector<Mat> >& imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        InputOutputArray points3D, InputArray lengths,
+        OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
+        OutputArrayOfArrays inliers, InputArray rigCovariance, double lengthScaleStd, int flags = 0,
+        InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+
+/** @overload
 The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial
 values and results; flags say which are estimated.
 @param imagePoints one array of Mx2 pixels per camera. NaN: the point was not seen.

@@ -201,9 +201,12 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
     return outcome;
 }
 
+//! X = (1 + e) p, with the points p in the unit of the lengths and the error e that these share.
 Mat Covariance::ofPoints() const
 {
     const std::vector<Cluster>& clusters = problem_->scene().clusters();
+    const double scale = problem_->sceneScale();
+    const int error = problem_->targetBlock() < 0 ? -1 : FreeSpace(*problem_).first[problem_->targetBlock()];
     Mat_<double> deviations(problem_->scene().pointCount(), 3, std::numeric_limits<double>::quiet_NaN());
     parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
     {
@@ -213,9 +216,13 @@ Mat Covariance::ofPoints() const
             MatrixXd outer(block.columns.size(), half_.cols());
             for (size_t k = 0; k < block.columns.size(); k++)
                 outer.row(k) = half_.row(block.columns[k]);
-            VectorXd variances = block.half.rowwise().squaredNorm();
+            VectorXd variances = scale*scale*block.half.rowwise().squaredNorm();
+            MatrixXd byOuter = MatrixXd::Zero(clusters[i].size(), half_.cols());
             if (outer.size() > 0)
-                variances += (block.byOuter*outer).rowwise().squaredNorm();
+                byOuter = scale*block.byOuter*outer;
+            if (error >= 0)
+                byOuter += clusters[i].values*half_.row(error);
+            variances += byOuter.rowwise().squaredNorm();
             for (int k = 0; k < clusters[i].size(); k++)
                 deviations(clusters[i].points[k/3], k % 3) = block.isDetermined ? std::sqrt(variance_*variances[k])
                                                                                 : std::numeric_limits<double>::infinity();

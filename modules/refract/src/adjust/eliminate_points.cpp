@@ -61,18 +61,36 @@ void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
         equations.add(products[i], gradients[i], images[i].columns);
 }
 
+void addPrior(const MatrixXd& rows, const VectorXd& residual, int first, NormalEquations& equations)
+{
+    std::vector<int> columns;
+    for (int j = 0; j < rows.cols(); j++)
+        columns.push_back(first + j);
+    equations.add(rows.transpose()*rows, rows.transpose()*residual, columns);
+}
+
 void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& equations)
 {
     for (int block = 0; block < problem.outerCount(); block++)
     {
         const MatrixXd rows = problem.priorRows(block)*space.bases[block];
-        if (rows.rows() == 0)
-            continue;
-        std::vector<int> columns;
-        for (int j = 0; j < rows.cols(); j++)
-            columns.push_back(space.first[block] + j);
-        equations.add(rows.transpose()*rows, rows.transpose()*problem.priorResidual(block), columns);
+        if (rows.rows() > 0)
+            addPrior(rows, problem.priorResidual(block), space.first[block], equations);
     }
+    if (problem.rigPrior().count() == 0)
+        return;
+    const MatrixXd byValues = problem.rigPriorRows();
+    MatrixXd rows(byValues.rows(), 0);
+    int first = 0;
+    for (int block = 0; block < problem.cameraBlockCount(); block++)
+    {
+        const MatrixXd& basis = space.bases[block];
+        rows.conservativeResize(Eigen::NoChange, rows.cols() + basis.cols());
+        if (basis.cols() > 0)       // Eigen has no products of nothing
+            rows.rightCols(basis.cols()) = byValues.middleCols(first, basis.rows())*basis;
+        first += (int)basis.rows();
+    }
+    addPrior(rows, problem.rigPriorResidual(), 0, equations);
 }
 
 //! A cluster without its points.

@@ -142,6 +142,8 @@ bool optimizePoints(Problem& problem, double& squaredError)
     }
     for (int block = 0; block < problem.outerCount(); block++)
         squaredError += problem.priorResidual(block).squaredNorm();
+    if (problem.rigPrior().count() > 0)
+        squaredError += problem.rigPriorResidual().squaredNorm();
     return isPossible;
 }
 

@@ -46,10 +46,19 @@ Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>&
 }
 
 Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
-                 const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags)
+                 const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
+                 const Eigen::MatrixXd& rigCovariance, double lengthScaleSigma)
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
 {
-    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags, Eigen::MatrixXd());
+    Eigen::MatrixXd sharedErrors;           // lengths that are too small by a part are points that are too near by it
+    if (lengthScaleSigma > 0)
+    {
+        sharedErrors = Eigen::MatrixXd::Zero(SharedTargetErrors::COUNT, SharedTargetErrors::COUNT);
+        sharedErrors(0, 0) = lengthScaleSigma*lengthScaleSigma;
+    }
+    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags, sharedErrors);
+    if (rigCovariance.size() > 0)
+        setRigPrior(rigCovariance);
     addImages(viewsOfScene(pixels, pointCount));
     updateCameras();
 }
@@ -92,6 +101,61 @@ void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
                                      { scale, motion, motion, motion, motion, motion, motion }, std::vector<bool>(count, false));
     if (!block.setPrior(covariance))
         CV_Error(Error::StsBadArg, "targetCovariance is not positive definite where it is not 0");
+}
+
+//! Of a window the rows of its owner count; the others follow from them.
+void Problem::setRigPrior(const Eigen::MatrixXd& covariance)
+{
+    std::vector<int> rows;                  // of the covariance, per value
+    std::vector<Eigen::VectorXd> directions;
+    int count = 0;
+    for (int i = 0; i < cameraBlocks_; i++)
+        count += (int)blocks_[i].values.size();
+    Eigen::VectorXd mean(count);
+    for (int i = 0; i < cameraBlocks_; i++)
+    {
+        ParameterBlock& block = blocks_[i];
+        const int first = (int)rows.size(), size = (int)block.values.size(), row = publicRow(block.kind, block.index);
+        mean.segment(first, size) = block.values;
+        for (int k = 0; k < size; k++)
+            rows.push_back(block.kind == ParameterBlock::TARGETS ? -1 : row + k);
+        if (block.kind == ParameterBlock::TARGETS)
+            continue;
+        const bool isNormal = block.kind == ParameterBlock::NORMAL;
+        const double ofNormal = isNormal ? covariance.diagonal().segment<3>(row).sum() : 0;
+        for (int k = 0; k < size; k++)
+            if (isNormal ? ofNormal > 0 : covariance(row + k, row + k) > 0)
+                block.isFree[k] = true;
+        const Eigen::MatrixXd tangents = block.tangentBasis();
+        for (int k = 0; k < tangents.cols(); k++)
+        {
+            const double variance = tangents.col(k).dot(covariance.block(row, row, size, size)*tangents.col(k));
+            if (!(variance > 0))
+                continue;
+            directions.push_back(Eigen::VectorXd::Zero(count));
+            directions.back().segment(first, size) = tangents.col(k);
+        }
+    }
+    Eigen::MatrixXd known(count, directions.size()), ofValues = Eigen::MatrixXd::Zero(count, count);
+    for (size_t k = 0; k < directions.size(); k++)
+        known.col(k) = directions[k];
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++)
+            if (rows[i] >= 0 && rows[j] >= 0)
+                ofValues(i, j) = covariance(rows[i], rows[j]);
+    rigPrior_ = makeRigPrior(mean, known, known.transpose()*ofValues*known);
+}
+
+Eigen::VectorXd Problem::rigPriorResidual() const
+{
+    Eigen::VectorXd change(rigPrior_.mean.size());
+    int first = 0;
+    for (int i = 0; i < cameraBlocks_ && change.size() > 0; i++)
+    {
+        change.segment(first, blocks_[i].values.size()) = blocks_[i].values;
+        first += (int)blocks_[i].values.size();
+    }
+    return rigPriorRows()*(change - rigPrior_.mean);
 }
 
 void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
@@ -391,7 +455,7 @@ Pose Problem::inDirectImages(const Image& image, const Pose& pose) const
 RowMajorMatrix Problem::byScenePoint(const Image& image, const RowMajorMatrix& byPose) const
 {
     const Matx33d R = rotationMatrix(pose(image.view).rvec);
-    return byPose.rightCols<3>()*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
+    return sceneScale()*byPose.rightCols<3>()*Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> >(R.val);
 }
 
 double Problem::squaredPixelError(const Image& image) const
@@ -408,6 +472,8 @@ double Problem::squaredError() const
         sum += squaredPixelError(image);
     for (int block = 0; block < (int)blocks_.size(); block++)
         sum += priorResidual(block).squaredNorm();
+    if (rigPrior_.count() > 0)
+        sum += rigPriorResidual().squaredNorm();
     for (const Cluster& cluster : scene_.clusters())
         sum += cluster.squaredLengthError(pixelSigma_);
     return sum;
@@ -431,7 +497,7 @@ Eigen::VectorXd Problem::priorResidual(int block) const
 
 int Problem::equationCount() const
 {
-    int count = 2*pointCount() + scene_.lengthCount();
+    int count = 2*pointCount() + scene_.lengthCount() + rigPrior_.count();
     for (int block = 0; block < (int)blocks_.size(); block++)
         count += isActive(block) ? (int)blocks_[block].sqrtInformation.rows() : 0;
     return count;

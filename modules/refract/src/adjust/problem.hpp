@@ -8,6 +8,7 @@
 #include "adjust/fit_outcome.hpp"
 #include "adjust/parameter_block.hpp"
 #include "adjust/residual.hpp"
+#include "adjust/rig_prior.hpp"
 #include "adjust/scene.hpp"
 #include "adjust/shared_target_errors.hpp"
 
@@ -79,9 +80,13 @@ public:
     Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
             const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd());
     /** A scene.
-    @param pixels per camera, per view: one per scene point, or none */
+    @param pixels per camera, per view: one per scene point, or none
+    @param rigCovariance of the public parameters, which start where they are known: what has a variance is estimated within it,
+    for the rest the flags decide; empty: nothing is known
+    @param lengthScaleSigma of a relative error that all lengths share; 0: there is none */
     Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
-            const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags);
+            const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
+            const Eigen::MatrixXd& rigCovariance = Eigen::MatrixXd(), double lengthScaleSigma = 0);
     Problem(const Problem&) = delete;
     Problem& operator=(const Problem&) = delete;
 
@@ -117,6 +122,8 @@ public:
     Pose inDirectImages(const Image& image, const Pose& pose) const;
     //! Of SharedTargetErrors; -1: the problem has none.
     int targetBlock() const { return targetBlock_; }
+    //! A scene's points, which are in the unit of the given lengths, are larger by this.
+    double sceneScale() const { return targetErrors_.scale; }
     bool isAdjusted(int view) const { return isSeen_[view] && blocks_[poseBlock(view)].isFree[0]; }
 
     // A scene
@@ -144,6 +151,11 @@ public:
     //! A block's prior counts as so many more residuals. Their derivatives by the block; none where it does not count now.
     Eigen::MatrixXd priorRows(int block) const;
     Eigen::VectorXd priorResidual(int block) const;
+    //! The same of what is known of all cameras together, by the values of the blocks before the poses, one after the other.
+    const RigPrior& rigPrior() const { return rigPrior_; }
+    Eigen::MatrixXd rigPriorRows() const { return pixelSigma_*rigPrior_.sqrtInformation; }
+    Eigen::VectorXd rigPriorResidual() const;
+    int cameraBlockCount() const { return cameraBlocks_; }
 
     //! One image's residuals and their derivatives: by its pose, and by all coordinates of blocksOf().
     struct Derivatives
@@ -171,6 +183,7 @@ private:
     ParameterBlock& addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
                              const std::vector<String>& names, const std::vector<bool>& isFree);
     void addTargetBlock(const Eigen::MatrixXd& covariance);
+    void setRigPrior(const Eigen::MatrixXd& covariance);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
     uchar project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const;
@@ -190,6 +203,7 @@ private:
     int cameraBlocks_;                  //!< and of the targets: those before the poses
     int targetBlock_;
     SharedTargetErrors targetErrors_;
+    RigPrior rigPrior_;
     Scene scene_;
     std::vector<std::vector<Observation> > observations_;
     double pixelSigma_;

@@ -99,12 +99,13 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
         if (seen[i] < 2)
             points[i] = Point3d(NaN, NaN, NaN);
         else if (!std::isfinite(given[i].x))
-            points[i] = sums[i].point();
+            points[i] = Point3d(sums[i].point()/problem.sceneScale());
     for (size_t k = 0; k < places.size(); k++)
     {
         const Image& image = problem.images()[k];
         for (int index : image.points.index)
-            if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k], points[index]))
+            if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k],
+                                                              points[index]*problem.sceneScale()))
                 points[index] = Point3d(NaN, NaN, NaN);
     }
     return points;
@@ -122,7 +123,7 @@ std::vector<Point3d> rayMidpoints(const Problem& problem, int pointCount, const 
     }
     std::vector<Point3d> points;
     for (const RaySum& sum : sums)
-        points.push_back(Point3d(sum.point()));
+        points.push_back(Point3d(sum.point()/problem.sceneScale()));
     return points;
 }
 

@@ -94,6 +94,35 @@ void checkScale(BundleTask& task)
                                    "cameras without GLASS_FREE_EXTRINSICS, or the poses of several views (GLASS_USE_POSES)");
 }
 
+//! PxP, in the order of stdDeviations; or nothing.
+Eigen::MatrixXd readRigCovariance(InputArray covariance, const std::vector<Camera>& cameras)
+{
+    const Mat given = covariance.getMat();
+    if (given.empty())
+        return Eigen::MatrixXd();
+    int count = 6*((int)cameras.size() - 1);
+    for (const Camera& camera : cameras)
+        count += camera.parameterCount();
+    if (given.channels() != 1 || given.rows != count || given.cols != count)
+        CV_Error_(Error::StsBadSize, ("rigCovariance is %dx%d with %d channels; it must be %dx%d (the parameters of each camera, then R "
+                                      "and T of each but the first), or empty", given.rows, given.cols, given.channels(), count, count));
+    Mat_<double> numbers;
+    given.convertTo(numbers, CV_64F);
+    if (!checkRange(numbers))
+        CV_Error(Error::StsBadArg, "rigCovariance has numbers that are not finite");
+    for (int i = 0; i < count; i++)
+        if (numbers(i, i) < 0)
+            CV_Error_(Error::StsBadArg, ("rigCovariance has the variance %g in row %d; it must not be negative", numbers(i, i), i));
+    return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
+}
+
+//! What an earlier calibration knows, and how well the ruler of the lengths is known.
+struct Knowledge
+{
+    InputArray rigCovariance;
+    double lengthScaleStd;
+};
+
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
 {
     PointWriter writer(out, (int)points.size(), 3, depth);
@@ -117,7 +146,7 @@ void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
 BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<RefractiveCamera> >& cameras,
                  const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
                  InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths, int flags,
-                 InputArrayOfArrays poseCovariances, TermCriteria criteria, bool wantsPointDeviations)
+                 InputArrayOfArrays poseCovariances, TermCriteria criteria, const Knowledge& known, bool wantsPointDeviations)
 {
     const int count = (int)cameras.size();
     if (count == 0)
@@ -147,6 +176,10 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     addWedges(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
+    task.rigCovariance = readRigCovariance(known.rigCovariance, rig.cameras);
+    if (!(known.lengthScaleStd >= 0 && std::isfinite(known.lengthScaleStd)))
+        CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative", known.lengthScaleStd));
+    task.lengthScaleSigma = task.lengths.empty() ? 0 : known.lengthScaleStd;
     RigViews views;
     views.object.resize(pixels[0].size());
     for (const PixelViews& ofCamera : pixels)
@@ -156,7 +189,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     BundleFit fit;
     throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
     setCameras(rig, cameras);
-    if (flags & GLASS_FREE_EXTRINSICS)
+    if (count > 1 && ((flags & GLASS_FREE_EXTRINSICS) || task.rigCovariance.size() > 0))
         writeExtrinsicPoses(rig, Rs, Ts);
     writePoints(fit.points, depth, points3D);
     return fit;
@@ -174,6 +207,18 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
                               OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
                               InputArrayOfArrays poseCovariances, TermCriteria criteria)
 {
+    return refractiveBundleAdjust(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations,
+                                  covariance, pointDeviations, perViewErrors, inliers, noArray(), 0., flags, poseCovariances, criteria);
+}
+
+double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
+                              const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                              InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                              InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                              OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
+                              OutputArray perViewErrors, OutputArrayOfArrays inliers, InputArray rigCovariance,
+                              double lengthScaleStd, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
+{
     CV_INSTRUMENT_REGION();
 
     checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
@@ -181,7 +226,7 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
     for (size_t c = 0; c < imagePoints.size(); c++)
         pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str()));
     const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
-                                 poseCovariances, criteria, pointDeviations.needed());
+                                 poseCovariances, criteria, { rigCovariance, lengthScaleStd }, pointDeviations.needed());
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.pointDeviations, pointDeviations);
     writeMasks(fit.inliers, inliers);
@@ -199,7 +244,7 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
     for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints"))
         pixels.push_back(PixelViews(1, ofCamera));
     return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
-                  false).rms;
+                  { noArray(), 0. }, false).rms;
 }
 
 }} // namespace

@@ -59,6 +59,8 @@ void describe(const Problem& problem, BundleFit& fit)
 {
     const int cameras = problem.cameraCount();
     fit.points = problem.scene().points();
+    for (Point3d& point : fit.points)
+        point *= problem.sceneScale();
     fit.perViewErrors = Mat(problem.viewCount(), cameras, CV_64F, Scalar(std::numeric_limits<double>::quiet_NaN()));
     fit.inliers.assign(problem.viewCount()*cameras, Mat());
     double sum = 0;
@@ -73,7 +75,8 @@ void describe(const Problem& problem, BundleFit& fit)
 
 FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
 {
-    Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags);
+    Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags,
+                    task.rigCovariance, task.lengthScaleSigma);
     const FitOutcome outcome = adjust(problem, task);
     if (!outcome.isUsable())
         return outcome;
@@ -82,7 +85,8 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
     const FitOutcome determined = covariance.compute(problem, variance, 0);     // first, as what is undetermined does not converge
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
-    eigen2cv(covariance.ofParameters, fit.covariance);
+    const int count = problem.publicCount() - (problem.targetBlock() < 0 ? 0 : SharedTargetErrors::COUNT);
+    eigen2cv(Eigen::MatrixXd(covariance.ofParameters.topLeftCorner(count, count)), fit.covariance);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     if (task.wantsPointDeviations)
         fit.pointDeviations = covariance.ofPoints();

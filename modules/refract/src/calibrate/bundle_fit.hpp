@@ -17,6 +17,8 @@ struct BundleTask
     std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
     std::vector<PosePrior> posePriors;      //!< of the same
     std::vector<KnownLength> lengths;
+    Eigen::MatrixXd rigCovariance;              //!< of the public parameters, from an earlier calibration; empty: nothing is known
+    double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none
     int flags;
     TermCriteria criteria;
     bool isRigKnown, arePosesKnown;             //!< R and T of several cameras, poses of several views: they tell the scale

@@ -90,6 +90,15 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::
     throwWithoutCeres("refractiveBundleAdjust");
 }
 
+double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::vector<Ptr<RefractiveCamera> >&,
+                              const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
+                              InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray,
+                              OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, InputArray, double, int,
+                              InputArrayOfArrays, TermCriteria)
+{
+    throwWithoutCeres("refractiveBundleAdjust");
+}
+
 double refractiveBundleAdjust(InputArrayOfArrays, const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&,
                               InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, int,
                               TermCriteria)

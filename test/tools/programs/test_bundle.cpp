@@ -1,0 +1,524 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// refract_bundle as a user runs it, on wands that are waved through water before cameras in housings.
+#include "run_tool.hpp"
+#include "scenes.hpp"
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/calib3d.hpp>
+#include <cmath>
+#include <iomanip>
+#include <map>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace {
+
+const double WAND = 200, WAND_STD = 0.5, PIXEL_SIGMA = 0.1, ARC_MINUTE = CV_PI/180/60;
+const Size SIZE(1280, 1024);
+
+struct Rig
+{
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    std::vector<Mat> Rs, Ts;
+    Mat covariance;
+
+    static Rig read(const std::string& file)
+    {
+        Rig rig;
+        std::vector<int> windows;
+        readRig(file, rig.cameras, rig.Rs, rig.Ts, windows, rig.covariance);
+        return rig;
+    }
+    //! All parameters, in the order of the covariance.
+    std::map<std::string, double> parameters() const
+    {
+        std::map<std::string, double> all;
+        for (size_t c = 0; c < cameras.size(); c++)
+        {
+            const GlassWindow w = cameras[c]->window();
+            const std::string camera = std::to_string(c + 1) + " ";
+            for (int i = 0; i < 3; i++)
+                all[camera + "normal[" + std::to_string(i) + "]"] = w.normal[i];
+            all[camera + "distance"] = w.distance;
+            all[camera + "thickness[0]"] = w.thickness[0];
+            Mat rvec;
+            Rodrigues(Rs[c], rvec);
+            for (int i = 0; i < 3 && c > 0; i++)
+            {
+                all[camera + "R" + std::to_string(i)] = rvec.at<double>(i);
+                all[camera + "T" + std::to_string(i)] = Ts[c].at<double>(i);
+            }
+        }
+        return all;
+    }
+    std::map<std::string, double> deviations() const
+    {
+        std::map<std::string, double> all;
+        int row = 0;
+        const auto next = [&] { const double v = covariance.at<double>(row, row); row++; return std::sqrt(std::max(v, 0.)); };
+        for (size_t c = 0; c < cameras.size(); c++)
+            for (const String& name : cameras[c]->parameterNames())
+                all[std::to_string(c + 1) + " " + name] = next();
+        for (size_t c = 1; c < cameras.size(); c++)
+            for (const char* what : { "R", "T" })
+                for (int i = 0; i < 3; i++)
+                    all[std::to_string(c + 1) + " " + what + std::to_string(i)] = next();
+        return all;
+    }
+};
+
+//! Cameras on an arc, turned towards the middle of the tank.
+Rig makeRig(int cameras, const std::vector<GlassWindow>& windows, double turned, double moved)
+{
+    const Matx33d K(1600, 0, 640, 0, 1600, 512, 0, 0, 1);
+    Rig rig;
+    for (int c = 0; c < cameras; c++)
+    {
+        rig.cameras.push_back(RefractiveCamera::create(K, std::vector<double>{ -0.1, 0.05, 0, 0 }, windows[c]));
+        rig.cameras.back()->setImageSize(SIZE);
+        Matx33d R;
+        Rodrigues(Vec3d(0.02*c, 0.35*c + turned*(c > 0), 0.01*c), R);
+        const Vec3d middle(0, 0, 700);
+        rig.Rs.push_back(Mat(R));
+        rig.Ts.push_back(Mat(Vec3d(middle - R*middle + Vec3d(moved, 2*moved, -moved)*(c > 0))));
+    }
+    return rig;
+}
+
+/* The truth, what is thought of it beforehand (as well as the tool's default deviations say), and what the cameras see. */
+struct Wand
+{
+    explicit Wand(unsigned salt, int cameras = 2, int moments = 100, double startOff = 1) : random(salt)
+    {
+        std::vector<GlassWindow> real, thought;
+        for (int c = 0; c < cameras; c++)
+        {
+            GlassWindow window(Vec3d(-0.08 + 0.05*c, 0.1 - 0.04*c, 1), 10, 1.49, 40 + 5*c, 1.333);
+            thought.push_back(window);
+            thought.back().normal = normalize(window.normal + startOff*Vec3d(0.06, -0.05, 0));
+            window.distance += random.normal(1);
+            window.thickness[0] += random.normal(0.1);
+            window.index[0] += random.normal(0.001);
+            window.outerIndex += random.normal(0.001);
+            window.wedge = { Vec2d(random.normal(ARC_MINUTE), random.normal(ARC_MINUTE)) };
+            real.push_back(window);
+        }
+        truth = makeRig(cameras, real, 0, 0);
+        start = makeRig(cameras, thought, 0.03*startOff, 8*startOff);
+        length = WAND + random.normal(WAND_STD);        // not what is engraved on it
+        wave(moments);
+    }
+
+    //! At other moments.
+    void wave(int moments)
+    {
+        points.clear();
+        pixels.clear();
+        for (int moment = 0; moment < moments; moment++)
+        {
+            const Vec3d middle(random.uniform(-100, 100), random.uniform(-80, 80), random.uniform(600, 800));
+            const Vec3d along(random.normal(1), random.normal(1), random.normal(1));
+            points.push_back(Point3d(middle + length/2*normalize(along)));
+            points.push_back(Point3d(middle - length/2*normalize(along)));
+        }
+        const double NaN = std::numeric_limits<double>::quiet_NaN();
+        for (size_t c = 0; c < truth.cameras.size(); c++)
+        {
+            std::vector<Point2d> seen;
+            refractiveProjectPoints(points, truth.Rs[c], truth.Ts[c], truth.cameras[c], seen);
+            for (Point2d& p : seen)
+            {
+                p += Point2d(random.normal(PIXEL_SIGMA), random.normal(PIXEL_SIGMA));
+                if (!(p.x > 0 && p.y > 0 && p.x < SIZE.width - 1 && p.y < SIZE.height - 1))
+                    p = Point2d(NaN, NaN);
+            }
+            pixels.push_back(seen);
+        }
+    }
+
+    std::string matches(bool withImages = true) const
+    {
+        std::ostringstream csv;
+        csv << std::fixed << std::setprecision(3) << (withImages ? "image,id" : "id");
+        for (size_t c = 1; c <= pixels.size(); c++)
+            csv << ",u" << c << ",v" << c;
+        for (size_t i = 0; i < points.size(); i++)
+        {
+            const char* const end = i % 2 ? "b" : "a";
+            csv << "\n" << (withImages ? "m" : "") << i/2 << (withImages ? "," : "") << end;
+            for (const std::vector<Point2d>& ofCamera : pixels)
+                if (ofCamera[i].x == ofCamera[i].x)
+                    csv << "," << ofCamera[i].x << "," << ofCamera[i].y;
+                else
+                    csv << ",,";
+        }
+        return csv.str() + "\n";
+    }
+
+    //! Writes start.yml, matches.csv, lengths.csv.
+    void write(const TemporaryFolder& f) const
+    {
+        writeRig(f / "start.yml", start.cameras, start.Rs, start.Ts);
+        writeFile(f / "matches.csv", matches());
+        writeFile(f / "lengths.csv", format("id1,id2,length,std\na,b,%g,%g\n", WAND, WAND_STD));
+    }
+
+    scenes::Random random;
+    Rig truth, start;
+    double length;
+    std::vector<Point3d> points;
+    std::vector<std::vector<Point2d> > pixels;
+};
+
+std::string commandFor(const TemporaryFolder& f, const std::string& options)
+{
+    return "refract_bundle " + f / "start.yml" + " --points=" + f / "matches.csv --out=" + f / "calib.yml" + " --points-out="
+        + f / "points.csv " + options;
+}
+
+ToolResult bundle(const TemporaryFolder& f, const std::string& options = "")
+{
+    return runTool(commandFor(f, "--lengths=" + f / "lengths.csv " + options));
+}
+
+struct Row
+{
+    std::string image, id;
+    std::vector<double> numbers;        //!< pixels, x, y, z, sx, sy, sz, status
+    double fromEnd(int k) const { return numbers[numbers.size() - k]; }
+    Point3d X() const { return Point3d(fromEnd(7), fromEnd(6), fromEnd(5)); }
+    int status() const { return (int)fromEnd(1); }
+};
+
+std::vector<Row> rowsOf(const std::string& file)
+{
+    std::vector<Row> rows;
+    std::istringstream in(readFile(file));
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line))
+    {
+        std::istringstream cells(line);
+        Row row;
+        std::getline(cells, row.image, ',');
+        std::getline(cells, row.id, ',');
+        while (std::getline(cells, cell, ','))
+            row.numbers.push_back(std::atof(cell.c_str()));
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+} // namespace
+
+TEST_CASE("refract_bundle finds windows and places from a wand, within their +-", "[tools][bundle]")
+{
+    const int trials = scenes::trials(10);
+    double squares = 0, ofPoints = 0, worst = 0;
+    int count = 0, pointCount = 0;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        const Wand wand(100 + trial);
+        const TemporaryFolder f;
+        wand.write(f);
+        const ToolResult result = bundle(f);
+        CAPTURE(scenes::seed(), trial, result.out, result.err);
+        REQUIRE(result.code == 0);
+        const Rig found = Rig::read(f / "calib.yml");
+        const std::map<std::string, double> truth = wand.truth.parameters(), is = found.parameters(), std = found.deviations();
+        for (const auto& parameter : truth)
+        {
+            const double z = (is.at(parameter.first) - parameter.second)/std.at(parameter.first);
+            CAPTURE(parameter.first, parameter.second, is.at(parameter.first), std.at(parameter.first));
+            CHECK(std::abs(z) < 5);
+            if (parameter.first.find("normal[2]") != std::string::npos)
+                continue;
+            squares += z*z;
+            worst = std::max(worst, std::abs(z));
+            count++;
+        }
+        const std::vector<Row> rows = rowsOf(f / "points.csv");
+        REQUIRE(rows.size() == wand.points.size());
+        for (size_t i = 0; i < rows.size(); i++)
+            if (rows[i].status() == 0)
+            {
+                const Point3d off = rows[i].X() - wand.points[i];
+                ofPoints += std::pow(off.x/rows[i].fromEnd(4), 2) + std::pow(off.y/rows[i].fromEnd(3), 2)
+                    + std::pow(off.z/rows[i].fromEnd(2), 2);
+                pointCount += 3;
+            }
+    }
+    const double ratio = std::sqrt(squares/count), pointRatio = std::sqrt(ofPoints/pointCount);
+    WARN("[numbers] refract_bundle, " << trials << " wands, seed " << scenes::seed() << ": error over stated " << ratio << " (worst "
+         << worst << "), of points " << pointRatio);
+    CHECK(ratio > 0.8);
+    CHECK(ratio < 1.25);
+    CHECK(pointRatio > 0.8);
+    CHECK(pointRatio < 1.25);
+}
+
+TEST_CASE("A second bundle, within what the first one knows, is within its +- too", "[tools][bundle]")
+{
+    const int trials = scenes::trials(10);
+    double squares = 0, worst = 0;
+    int count = 0;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        Wand wand(1000 + trial);
+        const TemporaryFolder f;
+        wand.write(f);
+        REQUIRE(bundle(f).code == 0);
+        std::filesystem::rename(f / "calib.yml", f / "start.yml");
+        wand.wave(60);
+        writeFile(f / "matches.csv", wand.matches());
+        const ToolResult result = runTool(commandFor(f, ""));
+        CAPTURE(scenes::seed(), trial, result.out, result.err);
+        REQUIRE(result.code == 0);
+        const Rig found = Rig::read(f / "calib.yml");
+        const std::map<std::string, double> is = found.parameters(), std = found.deviations();
+        for (const auto& parameter : wand.truth.parameters())
+            if (parameter.first.find("normal[2]") == std::string::npos)
+            {
+                const double z = (is.at(parameter.first) - parameter.second)/std.at(parameter.first);
+                squares += z*z;
+                worst = std::max(worst, std::abs(z));
+                count++;
+            }
+    }
+    const double ratio = std::sqrt(squares/count);
+    WARN("[numbers] refract_bundle after refract_bundle, " << trials << " wands, seed " << scenes::seed() << ": error over stated "
+         << ratio << " (worst " << worst << ")");
+    CHECK(ratio > 0.8);
+    CHECK(ratio < 1.25);
+}
+
+TEST_CASE("refract_bundle leaves wrong matches out and names them", "[tools][bundle]")
+{
+    Wand wand(7, 3);
+    for (int i : { 11, 40, 77 })
+        wand.pixels[1][i] = Point2d(40 + 3*i, 900 - 5*i);
+    const TemporaryFolder f;
+    wand.write(f);
+    const ToolResult result = bundle(f, "--summary=" + f / "summary.json");
+    CAPTURE(scenes::seed(), result.out, result.err);
+    REQUIRE(result.code == 0);
+    CHECK(mentions(result.out, "pixels left out: "));
+    const std::map<std::string, double> truth = wand.truth.parameters(), is = Rig::read(f / "calib.yml").parameters();
+    const std::map<std::string, double> std = Rig::read(f / "calib.yml").deviations();
+    for (const auto& parameter : truth)
+        CHECK(std::abs(is.at(parameter.first) - parameter.second) < 5*std.at(parameter.first));
+    // Two cameras are left of such a point; of a pair nothing is.
+    Wand two(8);
+    two.pixels[1][20].y += 50;
+    two.write(f);
+    const ToolResult pair = bundle(f, "--summary=" + f / "summary.json");
+    CAPTURE(pair.out, pair.err);
+    REQUIRE(pair.code == 0);
+    CHECK(mentions(pair.out, "wrong matches: m10 a"));
+    CHECK(rowsOf(f / "points.csv")[20].status() == 9);
+    const nlohmann::json json = nlohmann::json::parse(readFile(f / "summary.json"));
+    CHECK(json["left_out"][0] == "m10 a");
+    CHECK(json["rms"].get<double>() < 0.3);
+    const ToolResult all = bundle(f, "--no-robust --max-rms=0.3");
+    CAPTURE(all.out, all.err);
+    CHECK(all.code == 2);
+    CHECK(mentions(all.err, "limit not met"));
+}
+
+TEST_CASE("refract_measure finds the points that refract_bundle wrote", "[tools][bundle]")
+{
+    Wand wand(9, 3, 60);
+    const TemporaryFolder f;
+    wand.write(f);
+    writeFile(f / "matches.csv", wand.matches(false));          // ids of their own
+    std::string lengths = "id1,id2,length,std\n";
+    for (int moment = 0; moment < 60; moment += 2)              // the other moments are points like any
+        lengths += format("%da,%db,%g,%g\n", moment, moment, WAND, WAND_STD);
+    writeFile(f / "lengths.csv", lengths);
+    const ToolResult result = bundle(f);
+    CAPTURE(scenes::seed(), result.out, result.err);
+    REQUIRE(result.code == 0);
+    const ToolResult measured = runTool("refract_measure " + f / "calib.yml" + " --points=" + f / "matches.csv --out=" + f / "m.csv");
+    CAPTURE(measured.out, measured.err);
+    REQUIRE(measured.code == 0);
+    const std::vector<Row> ours = rowsOf(f / "points.csv"), theirs = rowsOf(f / "m.csv");
+    REQUIRE(ours.size() == theirs.size());
+    int compared = 0;
+    for (size_t i = 0; i < ours.size(); i++)
+    {
+        if (ours[i].status() != 0)
+            continue;
+        const double off = norm(ours[i].X() - theirs[i].X());
+        CAPTURE(ours[i].id, off, ours[i].fromEnd(2));
+        CHECK(ours[i].id == theirs[i].id);
+        // A known length moves its two ends within their noise; the others are where their rays are, to rounding.
+        CHECK(off < (i/2 % 2 ? 1e-4 : 4*ours[i].fromEnd(2)));
+        compared += i/2 % 2;
+    }
+    CHECK(compared > 20);
+    for (const char* tool : { "refract_export %s --to=opencv --range=600,800 --out=%s", "refract_bundle %s --free=none --points=" })
+    {
+        const bool isExport = mentions(tool, "export");
+        const ToolResult again = runTool(isExport ? format(tool, (f / "calib.yml").c_str(), (f / "central.yml").c_str())
+            : "refract_bundle " + f / "calib.yml" + " --points=" + f / "points.csv --out=" + f / "again.yml");
+        CAPTURE(tool, again.out, again.err);
+        CHECK(again.code == 0);
+    }
+}
+
+TEST_CASE("What an earlier calibration knows has its say in refract_bundle, unless it is freed", "[tools][bundle]")
+{
+    const Wand wand(11, 2, 150);
+    const TemporaryFolder f;
+    wand.write(f);
+    const ToolResult first = bundle(f);
+    CAPTURE(scenes::seed(), first.out, first.err);
+    REQUIRE(first.code == 0);
+    const auto sigmaOf = [](const Rig& rig, const char* name) { return rig.deviations().at(name); };
+    const Rig known = Rig::read(f / "calib.yml");
+    std::filesystem::rename(f / "calib.yml", f / "start.yml");
+    // Other moments of the same rig, without a length: its scale stays, its +- shrinks, and the truth is within.
+    Wand later = wand;
+    later.wave(60);
+    writeFile(f / "matches.csv", later.matches());
+    const ToolResult second = runTool(commandFor(f, ""));
+    CAPTURE(second.out, second.err);
+    REQUIRE(second.code == 0);
+    CHECK(mentions(second.out, "scale: T of the start, +- "));
+    const Rig better = Rig::read(f / "calib.yml");
+    CHECK(sigmaOf(better, "1 normal[0]") < sigmaOf(known, "1 normal[0]"));
+    for (const auto& parameter : wand.truth.parameters())
+        CHECK(std::abs(better.parameters().at(parameter.first) - parameter.second) < 5*better.deviations().at(parameter.first));
+    // A window that was taken out meanwhile: contradicted, and found if it is free.
+    Wand moved = wand;
+    GlassWindow window = moved.truth.cameras[1]->window();
+    window.normal = normalize(window.normal + Vec3d(0.03, 0, 0));
+    moved.truth.cameras[1]->setWindow(window);
+    moved.wave(100);
+    writeFile(f / "matches.csv", moved.matches());
+    const ToolResult held = runTool(commandFor(f, ""));
+    CAPTURE(held.out, held.err);
+    CHECK(held.code == 2);
+    CHECK(mentions(held.err, "changed since; explained, with 0."));
+    CHECK(mentions(held.err, "if free: normal"));
+    const ToolResult freed = runTool(commandFor(f, "--free=normal"));
+    CAPTURE(freed.out, freed.err);
+    CHECK(freed.code == 0);
+    const Rig result = Rig::read(f / "calib.yml");
+    CHECK(std::abs(result.cameras[1]->window().normal[0] - window.normal[0]) < 5*sigmaOf(result, "2 normal[0]"));
+}
+
+TEST_CASE("refract_bundle says in one sentence what is wrong with its input", "[tools][bundle]")
+{
+    const Wand wand(13, 2, 30);
+    const TemporaryFolder f;
+    wand.write(f);
+    const std::string matches = wand.matches(), lengths = readFile(f / "lengths.csv"), start = readFile(f / "start.yml");
+    const std::string line1 = matches.substr(0, matches.find('\n') + 1), head = "image,id,u1,v1,u2,v2\n";
+    struct Bad { std::string matches, lengths, options, expected; };
+    const Bad bad[] = {
+        {matches + "m0,a,100,100,200,200\n", lengths, "", "the point 'm0 a' is in line 2 already"},
+        {head + "m0,a,100,100,200,200\nm0,b,2000,100,200,200\n", lengths, "", "(2000, 100) is outside the image of camera 1"},
+        {head + "m0,a,100,,200,200\n", lengths, "", "must both be numbers"},
+        {head + "m0,a,inf,100,200,200\n", lengths, "", "u1 must be a number"},
+        {head + "m0,a,x,100,200,200\n", lengths, "", "u1 must be a number"},
+        {head + "m0,a,nan,nan,200,200\nm0,b,100,100,,\n", lengths, "", "camera 1 has no point in common"},
+        {head, lengths, "", "has no rows"}, {"", lengths, "", "has no rows"},
+        {"id,u1,v1\n1,2,3\n", lengths, "", "no column 'u2'"},
+        {"id,u1,v1,u2,v2,u3,v3\n1,2,3,4,5,6,7\n", lengths, "", "pixels of camera 3"},
+        {"id,u1,v1,u2,v2,w\n1,2,3,4,5,6\n", lengths, "", "the column 'w'"},
+        {head + "m0,a,100,100,200,200\nm0,b,150,100,250,200\n", "id1,id2,length,std\na,b,200,0.1\n", "", "fewer than are needed"},
+        {matches, "id1,id2,length,std\na,c,200,0.1\n", "", "has no point 'c'"},
+        {matches, "id1,id2,length,std\na,a,200,0.1\n", "", "a length is between two points"},
+        {matches, "id1,id2,length,std\na,b,200,0\n", "", "std is 0"}, {matches, "id1,id2,length,std\na,b,-1,0.1\n", "", "length is -1"},
+        {matches, "id1,id2,length,std\na,b,nan,0.1\n", "", "length must be a number"},
+        {matches, "id1,id2,length,std\na,b,0.2,200\n", "", "exchanged"},
+        {matches, "id1,id2,length,std\na,b,200,0.1\nb,a,200,0.1\n", "", "is in line 2 already"},
+        {matches, "id1,id2,length,std\na,b,0.2,0.0001\n", "", "in another unit"},
+        {matches, "image,id1,id2,length,std\nm99,a,b,200,0.1\n", "", "has no image 'm99'"},
+        {matches, "image1,id1,image2,id2,length,U\nm1,a,m1,b,200,0.1\n", "", "no column 'std'"},
+        {matches, "", "", "nothing tells the scale"}, {matches, lengths, "--free=normals", "--free"},
+        {matches, lengths, "--free=none,normal", "leave the other names out"}, {matches, lengths, "--unit=furlong", "--unit"},
+        {matches, lengths, "--max-rms=nan", "--max-rms"}, {matches, lengths, "--no-window", "has a glass_window"},
+        {matches, lengths, "--config=" + f / "none.toml", "no such file"}};
+    for (const Bad& b : bad)
+    {
+        writeFile(f / "matches.csv", b.matches);
+        writeFile(f / "lengths.csv", b.lengths);
+        writeFile(f / "calib.yml", "old");
+        const ToolResult result = b.lengths.empty() ? runTool(commandFor(f, b.options)) : bundle(f, b.options);
+        CAPTURE(b.matches.substr(0, 80), b.lengths, b.options, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, b.expected));
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        CHECK(readFile(f / "calib.yml") == "old");
+    }
+    writeFile(f / "matches.csv", matches);
+    writeFile(f / "lengths.csv", lengths);
+    wand.start.cameras[0]->save(f / "start.yml");
+    const ToolResult one = bundle(f);
+    CAPTURE(one.err);
+    CHECK(one.code == 1);
+    CHECK(mentions(one.err, "has one camera"));
+    writeFile(f / "start.yml", start);
+    const ToolResult loose = bundle(f, "--free=normal,extrinsics,intrinsics,thickness,index,distance,outer-index --exact");
+    CAPTURE(loose.out, loose.err);
+    CHECK(loose.code != 0);
+    const ToolResult over = runTool("refract_bundle " + f / "start.yml" + " --points=" + f / "matches.csv --out=" + f / "start.yml");
+    CHECK(over.code == 1);
+}
+
+TEST_CASE("refract_bundle says what it found in ten lines of 80 columns", "[tools][bundle]")
+{
+    for (int cameras : { 2, 3, 6 })
+    {
+        const Wand wand(17, cameras, 40);
+        const TemporaryFolder f;
+        wand.write(f);
+        const ToolResult result = bundle(f, "--max-rms=1");
+        CAPTURE(cameras, result.out, result.err);
+        CHECK(result.code == 0);
+        CHECK(mentions(result.out, "PASS"));
+        CHECK(std::count(result.out.begin(), result.out.end(), '\n') <= 10);
+        std::istringstream lines(result.out);
+        for (std::string line; std::getline(lines, line); )
+            CHECK(line.size() <= 80);
+        CHECK(bundle(f, "--quiet").out.empty());
+    }
+}
+
+// samples/data/wand: what its start.yml thinks, and what is so.
+TEST_CASE("The wand of the guide is made anew", "[.wand-data]")
+{
+    const std::string folder = paths::bundled() + "/wand";
+    Wand wand(0);
+    wand.start = Rig::read(folder + "/start.yml");
+    wand.truth = Rig::read(folder + "/start.yml");
+    wand.random = scenes::Random(1);
+    wand.length = WAND + (wand.length - WAND)*0.1/WAND_STD;         // this one is known to 0.1 mm
+    for (int c = 0; c < 2; c++)
+    {
+        GlassWindow window = wand.truth.cameras[c]->window();
+        window.normal = normalize(window.normal + Vec3d(0.05 - 0.09*c, 0.04 + 0.02*c, 0));
+        window.distance += wand.random.normal(1);
+        window.thickness[0] += wand.random.normal(0.1);
+        window.index[0] += wand.random.normal(0.001);
+        window.wedge = { Vec2d(wand.random.normal(ARC_MINUTE), wand.random.normal(ARC_MINUTE)) };
+        wand.truth.cameras[c]->setWindow(window);
+    }
+    Matx33d turned;
+    Rodrigues(Vec3d(0.01, -0.02, 0.015), turned);
+    wand.truth.Rs[1] = Mat(turned)*wand.truth.Rs[1];
+    wand.truth.Ts[1] += Mat(Vec3d(4, -6, 5));
+    wand.wave(80);
+    wand.pixels[1][2*31] += Point2d(15, 60);       // a glint, taken for the wand's end
+    std::string csv = wand.matches();
+    for (const auto& name : { std::make_pair(std::string(",a,"), std::string(",red,")), { ",b,", ",green," } })
+        for (size_t at = csv.find(name.first); at != std::string::npos; at = csv.find(name.first, at))
+            csv.replace(at, name.first.size(), name.second);
+    writeFile(folder + "/matches.csv", csv);
+    writeRig(folder + "/truth.yml", wand.truth.cameras, wand.truth.Rs, wand.truth.Ts);
+}

@@ -1,0 +1,239 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "bundle/bundle_adjustment.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "console/failure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+//! The library's error in the tool's words: what was found, then what to do here.
+std::string explained(const CalibrationError& e)
+{
+    const std::string reason = e.reason.empty() ? e.err : e.reason;
+    switch (e.cause)
+    {
+    case CalibrationError::UNDETERMINED:
+        return reason + ". Leave what is known out of --free, or see more: points nearer and farther, in the corners of the images, "
+            "and lengths in all directions";
+    case CalibrationError::NOT_CONVERGED:
+        return "the adjustment came to no end: start nearer to the truth, or leave out of --free what the points hardly tell";
+    case CalibrationError::NO_SCALE:
+        return "nothing tells the scale: no length of --lengths is between two points that two cameras see, by rays that meet beyond the "
+            "windows; are the start and the order of the cameras right?";
+    case CalibrationError::TOO_FEW_INLIERS:
+        return reason + ": are the points matched, are the cameras in the order of the start, and is the start near enough (a few degrees "
+            "and per cent)?";
+    case CalibrationError::TOO_FEW_POINTS:
+        return reason + "; give more points, or more lengths, or free less";
+    case CalibrationError::WINDOW_NOT_SEEN:
+        return format("no point was seen through the window of camera %d", e.camera + 1);
+    case CalibrationError::NO_IMAGE:
+        return reason + "; check the window's distance and thickness, the lens, and the units of the start";
+    default:
+        return e.err;
+    }
+}
+
+//! Squared deviations from what is known, in their standard deviations: (x - x0)^T C^+ (x - x0).
+double squaredPrior(const BundleStart& start, const RigModel& rig)
+{
+    if (start.covariance.empty())
+        return 0.;
+    const Mat change = valuesOf(rig) - valuesOf(start.rig);
+    std::vector<int> known;
+    for (int i = 0; i < change.rows; i++)
+        if (start.covariance.at<double>(i, i) > 0)
+            known.push_back(i);
+    if (known.empty())
+        return 0.;
+    Mat correlation = partOf(start.covariance, known, known), inverse, scaled((int)known.size(), 1, CV_64F);
+    const Mat variances = correlation.diag().clone();
+    for (int i = 0; i < scaled.rows; i++)
+    {
+        scaled.at<double>(i) = change.at<double>(known[i])/std::sqrt(variances.at<double>(i));
+        for (int j = 0; j < scaled.rows; j++)
+            correlation.at<double>(i, j) /= std::sqrt(variances.at<double>(i)*variances.at<double>(j));
+    }
+    invert(correlation, inverse, DECOMP_SVD);
+    return std::max(0., scaled.dot(inverse*scaled));
+}
+
+//! The same of the lengths, with the best of the error that all share.
+double squaredLengths(const GivenLengths& lengths, const std::vector<Point3d>& points, int& count)
+{
+    const std::vector<Vec4d> rows = lengths.rows();
+    const double common = lengths.commonStd();
+    double squares = 0., cross = 0., weight = 1./(common*common);
+    count = 0;
+    for (const Vec4d& row : rows)
+    {
+        const double found = norm(points[(int)row[0]] - points[(int)row[1]]);
+        if (!std::isfinite(found))
+            continue;
+        const double residual = (found - row[2])/row[3], byScale = row[2]/row[3];
+        squares += residual*residual;
+        cross += residual*byScale;
+        weight += byScale*byScale;
+        count++;
+    }
+    return count ? squares - cross*cross/weight : 0.;
+}
+
+//! How many numbers are known beforehand: of a normal two, of a shared window once.
+int countKnown(const BundleStart& start)
+{
+    int count = 0;
+    for (int i = 0; i < start.covariance.rows; i++)
+        count += start.covariance.at<double>(i, i) > 0;
+    for (int c = 0; c < (int)start.rig.cameras.size() && count > 0; c++)
+    {
+        const ParameterColumns at = columnsOf(start.rig, c);
+        const auto variance = [&](int i) { return start.covariance.at<double>(i, i); };
+        if (start.rig.ownsWindow(c))
+            count -= variance(at.normal) + variance(at.normal + 1) + variance(at.normal + 2) > 0;
+        else
+            for (int i = at.normal; i < at.end; i++)
+                count -= variance(i) > 0;
+    }
+    return count;
+}
+
+//! The pixels' standard deviation, and the degrees of freedom that tell it; lengths and what was known are equations, too.
+void setNoise(const BundleStart& start, const GivenLengths& lengths, BundleAdjustment& result)
+{
+    Fit& fit = result.fit;
+    int lengthCount = 0;
+    const double ofLengths = lengths.list.empty() ? 0. : squaredLengths(lengths, result.points, lengthCount);
+    const double ofPrior = squaredPrior(start, fit.rig);
+    const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
+    fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - free;
+    const double pixels = fit.rms*fit.rms*result.usedPixels, left = fit.dof - ofLengths - ofPrior;
+    fit.sigma = std::sqrt(pixels/std::max(left, 1.));
+}
+
+void setPoints(const Matches& matches, const Mat& points3D, const Mat& deviations, const std::vector<Mat>& inliers,
+               BundleAdjustment& result)
+{
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    const int count = (int)matches.names.size();
+    result.used.assign(matches.cameraCount(), std::vector<uchar>(count, 0));
+    for (int c = 0; c < matches.cameraCount(); c++)
+        for (int i = 0; i < count; i++)
+        {
+            result.used[c][i] = inliers[c].at<uchar>(i);
+            result.usedPixels += result.used[c][i];
+            result.seenPixels += matches.seenBy(i) > 1 && matches.pixels[c][i].x == matches.pixels[c][i].x;
+        }
+    for (int i = 0; i < count; i++)
+    {
+        const Vec3d X = points3D.at<Vec3d>(i);
+        const Vec3d s(deviations.ptr<double>(i));
+        const bool found = std::isfinite(X[0]) && std::isfinite(s[0] + s[1] + s[2]);
+        result.points.push_back(found ? Point3d(X) : Point3d(NaN, NaN, NaN));
+        result.sigma.push_back(found ? s : Vec3d::all(NaN));
+        result.status.push_back(found ? (uchar)REFRACT_OK : matches.seenBy(i) < 2 ? (uchar)REFRACT_NOT_FINITE : INCONSISTENT);
+    }
+}
+
+std::vector<double> rmsOfCameras(const Matches& matches, const BundleAdjustment& result)
+{
+    std::vector<double> all;
+    for (int c = 0; c < matches.cameraCount(); c++)
+    {
+        std::vector<Point2d> modelled;
+        const RigidTransform& place = result.fit.rig.extrinsics[c];
+        refractiveProjectPoints(result.points, rotationVector(place.R), place.T, result.fit.rig.cameras[c], modelled);
+        double squares = 0.;
+        int count = 0;
+        for (size_t i = 0; i < modelled.size(); i++)
+            if (result.used[c][i] && seen(modelled[i]))
+            {
+                squares += std::pow(norm(modelled[i] - matches.pixels[c][i]), 2);
+                count++;
+            }
+        all.push_back(count ? std::sqrt(squares/count) : -1.);
+    }
+    return all;
+}
+
+} // namespace
+
+int BundleAdjustment::answers() const
+{
+    return (int)std::count_if(points.begin(), points.end(), [](const Point3d& X) { return X.x == X.x; });
+}
+
+std::vector<int> BundleAdjustment::outliers() const
+{
+    std::vector<int> list;
+    for (int i = 0; i < (int)points.size(); i++)
+        if (status[i] == INCONSISTENT)
+            list.push_back(i);
+    return list;
+}
+
+BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust)
+{
+    BundleAdjustment result;
+    Fit& fit = result.fit;
+    fit.rig = start.rig.clone();
+    std::vector<std::vector<Mat>> pixels;
+    std::vector<Mat> Rs, Ts, inliers;
+    for (int c = 0; c < matches.cameraCount(); c++)
+    {
+        pixels.push_back({Mat(matches.pixels[c], true)});
+        Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
+        Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
+    }
+    Mat points3D, deviations;
+    try
+    {
+        fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
+                                         fit.stdDeviations, fit.covariance, deviations, noArray(), inliers, start.covariance,
+                                         lengths.commonStd(), start.flags | (robust ? GLASS_ROBUST : 0));
+    }
+    catch (const CalibrationError& e)
+    {
+        throw Failure(explained(e));
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(e.err);
+    }
+    for (int c = 1; c < matches.cameraCount(); c++)
+        fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
+    setPoints(matches, points3D, deviations, inliers, result);
+    result.rmsOfCamera = rmsOfCameras(matches, result);
+    setNoise(start, lengths, result);
+    return result;
+}
+
+Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start)
+{
+    Calibration file = calibrationOf(adjustment.fit.rig);
+    for (int c = 0; c < (int)file.cameras.size(); c++)
+    {
+        file.cameras[c].windowStd = windowStd(adjustment.fit, c);
+        file.cameras[c].rms = adjustment.rmsOfCamera[c];
+    }
+    file.rms = adjustment.fit.rms;
+    file.sigma = adjustment.fit.sigma;
+    file.dof = adjustment.fit.dof;
+    file.covariance = adjustment.fit.covariance;
+    file.square = start.square;
+    file.channel = start.channel;
+    file.label = start.label;
+    return file;
+}
+
+} // namespace tools

@@ -1,0 +1,178 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "bundle/bundle_findings.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "calibrate/units.hpp"
+#include "console/failure.hpp"
+#include "console/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double DEGREES = 180./CV_PI;
+
+//! Standard deviation along the worst direction.
+double worstStd(const Mat& covariance, int at)
+{
+    Mat values;
+    eigen(covariance(Rect(at, at, 3, 3)), values);
+    return std::sqrt(std::max(0., values.at<double>(0)));
+}
+
+CameraChange changeOf(const BundleStart& start, const Fit& fit, int c)
+{
+    CameraChange change;
+    const GlassWindow before = start.rig.cameras[c]->window(), now = fit.rig.cameras[c]->window();
+    const double normalStd = worstStd(fit.covariance, columnsOf(fit.rig, c).normal);
+    change.normal = {normalStd > 0., std::atan2(norm(before.normal.cross(now.normal)), before.normal.dot(now.normal))*DEGREES,
+                     normalStd*DEGREES};
+    if (c == 0)
+        return change;
+    const RigidTransform& was = start.rig.extrinsics[c];
+    const RigidTransform& is = fit.rig.extrinsics[c];
+    const int at = extrinsicsColumn(fit.rig, c);
+    const double rStd = worstStd(fit.covariance, at), tStd = worstStd(fit.covariance, at + 3);
+    change.R = {rStd > 0., norm(rotationVector(is.R*was.R.t()))*DEGREES, rStd*DEGREES};
+    change.T = {tStd > 0., norm(is.T - was.T), tStd};
+    return change;
+}
+
+std::string scaleOf(const BundleStart& start, const GivenLengths& lengths, const Fit& fit)
+{
+    if (!lengths.list.empty())
+    {
+        const GivenLength& first = lengths.list.front();
+        const std::string of = lengths.objects == 1 ? format(" of one object, %g +- %g", first.length, first.std)
+                                                    : format(" of %d objects", lengths.objects);
+        return format("%zu length%s", lengths.list.size(), lengths.list.size() == 1 ? "" : "s") + of;
+    }
+    const int at = extrinsicsColumn(fit.rig, 1) + 3;
+    const Vec3d T = start.rig.extrinsics[1].T;
+    if (start.covariance.empty() || !(start.covariance.at<double>(at, at) > 0))
+        return "T of the start, taken as exact (no --lengths)";
+    const Mat direction = Mat(T/norm(T)), C = start.covariance(Rect(at, at, 3, 3));
+    return format("T of the start, +- %.2g %% (no --lengths)", 100.*std::sqrt(direction.dot(C*direction))/norm(T));
+}
+
+//! Standard deviations beyond which a value says next to nothing.
+bool isWeak(const EstimatedParameter& p)
+{
+    if (p.isNormal)
+        return p.std > 2./DEGREES;
+    const auto is = [&p](const char* word) { return p.name.find(word) != std::string::npos; };
+    return is("index") ? p.std > 0.05 : is("wedge") ? p.std > 3*ARC_MINUTE : p.std > 0.25*p.value;
+}
+
+std::string nameOf(const RigModel& rig, int column)
+{
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        if (column < at.end)
+            return format("camera %d's ", c + 1)
+                + (column >= at.normal && column < at.normal + 3 ? "normal" : at.names[column - at.lens]);
+    }
+    const int place = column - extrinsicsColumn(rig, 1);
+    return std::string(place % 6 < 3 ? "R" : "T") + (place < 6 ? "" : std::to_string(place/6 + 2));
+}
+
+/* What was known before and what is found now differ by x - x0, which has the covariance C0 - C. */
+void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings& findings)
+{
+    const double MANY = 5.;
+    const Mat_<double> values = valuesOf(fit.rig), known = valuesOf(start.rig);
+    double worst = 0.;
+    int column = -1;
+    for (int i = 0; i < start.covariance.rows; i++)
+    {
+        const double before = start.covariance.at<double>(i, i), now = fit.covariance.at<double>(i, i);
+        if (!(before > 0))
+            continue;
+        const double change = std::abs(values(i) - known(i));
+        const double ratio = change/std::sqrt(std::max(before - now, 1e-2*before));
+        if (ratio > worst)
+        {
+            worst = ratio;
+            column = i;
+        }
+    }
+    if (worst > MANY)
+        findings.contradictions.push_back(nameOf(fit.rig, column) + format(
+            " is %.0f standard deviations from what the start says: it has changed since, or a given value is wrong", worst));
+}
+
+} // namespace
+
+std::string BundleFindings::verdict() const
+{
+    if (!contradictions.empty())
+        return "NOT USABLE";
+    if (!limitMet)
+        return "LIMIT NOT MET";
+    return weak.empty() ? maxRms > 0. ? "PASS" : "USABLE" : "USABLE, WITH WEAK POINTS";
+}
+
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double startSigma,
+                          double maxRms)
+{
+    const Fit& fit = adjustment.fit;
+    BundleFindings findings;
+    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
+        findings.changes.push_back(changeOf(start, fit, c));
+    findings.scale = scaleOf(start, lengths, fit);
+    for (const EstimatedParameter& p : estimatedWindowParameters(fit))
+        if (isWeak(p))
+            findings.weak.push_back(p.name + " = " + plusMinus(p.value, p.std));
+    const double FEW = 60.;
+    if (fit.dof < FEW)
+        findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
+    findContradictions(start, fit, findings);
+    const double NOISIER = 5.;
+    if (startSigma > 0. && fit.sigma > NOISIER*startSigma)
+        findings.contradictions.push_back(format("the matches are off by %.3g px, where the start was made with %.3g px of noise: "
+                                                 "matches are wrong, or something has changed since", fit.sigma, startSigma));
+    findings.maxRms = maxRms;
+    findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
+    return findings;
+}
+
+std::string explanationOf(const std::vector<std::string>& free, double sigma,
+                          const std::function<BundleAdjustment(const std::vector<std::string>&)>& adjust)
+{
+    const double EXPLAINS = 0.5, AS_GOOD = 1.1;     // of the noise
+    const char* const MAY_CHANGE[] = {"normal", "extrinsics", "intrinsics", "distance", "outer-index", "thickness", "index"};
+    std::vector<std::pair<double, std::string>> explains;
+    for (const std::string name : MAY_CHANGE)
+    {
+        std::vector<std::string> more = free;
+        more.push_back(name);
+        if (std::find(free.begin(), free.end(), name) != free.end())
+            continue;
+        try
+        {
+            const double noise = adjust(more).fit.sigma;
+            if (noise < EXPLAINS*sigma)
+                explains.push_back({noise, name});
+        }
+        catch (const Failure&)              // not of this rig, or not determined: no explanation
+        {
+        }
+    }
+    std::sort(explains.begin(), explains.end());
+    std::string text;
+    for (const auto& one : explains)
+        if (one.first < AS_GOOD*explains.front().first)     // these cannot be told apart
+            text += (text.empty() ? "" : " or ") + one.second;
+    return text.empty() ? text : format("explained, with %.3g px of noise, if free: ", explains.front().first) + text;
+}
+
+} // namespace tools

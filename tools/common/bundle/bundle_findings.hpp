@@ -1,0 +1,50 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_BUNDLE_FINDINGS_HPP
+#define REFRACT_TOOLS_BUNDLE_FINDINGS_HPP
+
+#include "bundle/bundle_adjustment.hpp"
+#include <functional>
+
+namespace tools {
+
+//! How far a camera's window or place is from the start, and how well it is known.
+struct Change
+{
+    bool estimated = false;
+    double by = 0., std = 0.;           //!< of a normal or R degrees, of T lengths; std along the worst direction
+};
+
+struct CameraChange
+{
+    Change normal, R, T;                //!< R and T of the first camera: nothing
+};
+
+//! What is to be thought of an adjustment.
+struct BundleFindings
+{
+    std::vector<CameraChange> changes;  //!< per camera
+    std::string scale;                  //!< what tells it
+    std::vector<std::string> weak;      //!< estimated, but hardly determined: name = value +- std
+    std::vector<std::string> contradictions;    //!< what was known of the start, and is so no longer; a sentence each
+    double maxRms = 0.;                 //!< the limit; 0: none
+    bool limitMet = true;
+
+    bool pass() const { return limitMet && contradictions.empty(); }
+    std::string verdict() const;
+};
+
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double startSigma,
+                          double maxRms);
+
+/** Which of what may change in a rig explains a contradiction, each freed alone beside what is free: the best, and those that are
+as good, with "or". Empty: none does.
+@param sigma the noise as it is
+@param adjust the adjustment with these names free; may throw Failure */
+std::string explanationOf(const std::vector<std::string>& free, double sigma,
+                          const std::function<BundleAdjustment(const std::vector<std::string>&)>& adjust);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_BUNDLE_FINDINGS_HPP

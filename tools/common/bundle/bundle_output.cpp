@@ -1,0 +1,191 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "bundle/bundle_output.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "console/table.hpp"
+
+#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <sstream>
+
+using namespace cv;
+using Json = nlohmann::ordered_json;
+
+namespace tools {
+
+namespace {
+
+const size_t WIDTH = 80;
+
+//! Quoted where readers might split it.
+std::string cellOf(const std::string& text)
+{
+    if (text.find_first_of(", ;\t\"\n\r") == std::string::npos)
+        return text;
+    std::string cell = "\"";
+    for (const char c : text)
+        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
+}
+
+//! As many names as a line holds, and how many more there are.
+std::string fitted(const std::string& head, const std::vector<std::string>& words)
+{
+    std::string line = head;
+    for (size_t i = 0; i < words.size(); i++)
+    {
+        const std::string more = i + 1 < words.size() ? format(", and %zu more", words.size() - i - 1) : "";
+        const std::string next = (i ? ", " : "") + words[i];
+        if (line.size() + next.size() + more.size() > WIDTH)
+            return line + (i ? format(", and %zu more", words.size() - i) : words[i].substr(0, WIDTH - line.size()));
+        line += next;
+    }
+    return line;
+}
+
+std::string changeText(const char* name, const Change& change)
+{
+    return std::string(name) + (change.estimated ? format(" %.3g +- %.2g", change.by, change.std) : " as given");
+}
+
+//! The camera that is known worst, for rigs too large to show all.
+int worstCamera(const BundleFindings& findings)
+{
+    int worst = 0;
+    for (int c = 1; c < (int)findings.changes.size(); c++)
+        if (findings.changes[c].normal.std > findings.changes[worst].normal.std)
+            worst = c;
+    return worst;
+}
+
+std::string cameraLine(const BundleFindings& findings, int c)
+{
+    const CameraChange& change = findings.changes[c];
+    std::string line = format("  camera %d: ", c + 1) + changeText("normal", change.normal);
+    if (c > 0)
+        line += ", " + changeText("R", change.R) + ", " + changeText("T", change.T);
+    return line;
+}
+
+double median(std::vector<double> values)
+{
+    if (values.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+std::string pointsLine(const BundleAdjustment& adjustment, const std::string& unit)
+{
+    std::vector<double> of[3];
+    double near = std::numeric_limits<double>::infinity(), far = -near;
+    for (size_t i = 0; i < adjustment.points.size(); i++)
+        if (adjustment.points[i].x == adjustment.points[i].x)
+        {
+            for (int k = 0; k < 3; k++)
+                of[k].push_back(adjustment.sigma[i][k]);
+            near = std::min(near, adjustment.points[i].z);
+            far = std::max(far, adjustment.points[i].z);
+        }
+    return format("%d of %zu points, z %.4g to %.4g", adjustment.answers(), adjustment.points.size(), near, far)
+        + (unit.empty() ? "" : " " + unit)
+        + format("; x, y, z +- %.2g, %.2g, %.2g (median)", median(of[0]), median(of[1]), median(of[2]));
+}
+
+std::vector<std::string> namesOf(const Matches& matches, const std::vector<int>& points)
+{
+    std::vector<std::string> names;
+    for (const int i : points)
+        names.push_back(matches.names[i].text());
+    return names;
+}
+
+Json jsonOf(const Change& change)
+{
+    if (!change.estimated)
+        return nullptr;
+    return {{"by", change.by}, {"std", change.std}};
+}
+
+Json parametersOf(const std::vector<EstimatedParameter>& list)
+{
+    Json result = Json::object();
+    for (const EstimatedParameter& p : list)
+        result[p.name] = {{"value", p.value}, {"std", p.std}};
+    return result;
+}
+
+} // namespace
+
+std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment, const std::string& image)
+{
+    std::ostringstream csv;
+    csv.precision(12);
+    csv << "image,id";
+    for (int c = 1; c <= matches.cameraCount(); c++)
+        csv << ",u" << c << ",v" << c;
+    csv << ",x,y,z,sx,sy,sz,status\n";
+    for (size_t i = 0; i < matches.names.size(); i++)
+    {
+        const PointName& name = matches.names[i];
+        csv << cellOf(name.image.empty() ? image : name.image) << ',' << cellOf(name.id);
+        std::vector<double> numbers;
+        for (const std::vector<Point2d>& ofCamera : matches.pixels)
+            numbers.insert(numbers.end(), {ofCamera[i].x, ofCamera[i].y});
+        const Point3d X = adjustment.points[i];
+        const Vec3d s = adjustment.sigma[i];
+        numbers.insert(numbers.end(), {X.x, X.y, X.z, s[0], s[1], s[2]});
+        for (const double number : numbers)
+            std::isnan(number) ? csv << ",nan" : csv << ',' << number;
+        csv << ',' << (int)adjustment.status[i] << '\n';
+    }
+    return csv.str();
+}
+
+std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                       const std::string& command, const std::string& unit)
+{
+    Json cameras = Json::array();
+    for (size_t c = 0; c < findings.changes.size(); c++)
+        cameras.push_back({{"rms", adjustment.rmsOfCamera[c]}, {"normal_from_start_deg", jsonOf(findings.changes[c].normal)},
+                           {"R_from_start_deg", jsonOf(findings.changes[c].R)}, {"T_from_start", jsonOf(findings.changes[c].T)}});
+    const Json json = {
+        {"verdict", findings.verdict()}, {"pass", findings.pass()}, {"rms", adjustment.fit.rms}, {"residual_sigma", adjustment.fit.sigma},
+        {"degrees_of_freedom", adjustment.fit.dof}, {"unit", unit}, {"scale", findings.scale},
+        {"points", adjustment.points.size()}, {"points_with_answer", adjustment.answers()},
+        {"pixels", adjustment.seenPixels}, {"pixels_used", adjustment.usedPixels},
+        {"left_out", namesOf(matches, adjustment.outliers())}, {"hardly_determined", findings.weak},
+        {"contradictions", findings.contradictions}, {"cameras", cameras},
+        {"windows", parametersOf(estimatedWindowParameters(adjustment.fit))},
+        {"lenses_and_places", parametersOf(estimatedRigParameters(adjustment.fit))}, {"command", command}};
+    return json.dump(2) + "\n";
+}
+
+void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                 const std::string& unit)
+{
+    const int SHOWN = 3, cameras = (int)findings.changes.size();
+    const Fit& fit = adjustment.fit;
+    out << findings.verdict()
+        << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
+    out << fitted("scale: ", {findings.scale}) << "\n";
+    out << "found off the start (degrees, " << (unit.empty() ? "units of length" : unit)
+        << (cameras > SHOWN ? "), the camera that is known least:\n" : "):\n");
+    for (int c = 0; c < cameras && cameras <= SHOWN; c++)
+        out << cameraLine(findings, c) << "\n";
+    if (cameras > SHOWN)
+        out << cameraLine(findings, worstCamera(findings)) << "\n";
+    out << pointsLine(adjustment, unit) << "\n";
+    if (adjustment.usedPixels < adjustment.seenPixels)
+        out << format("pixels left out: %d of %d\n", adjustment.seenPixels - adjustment.usedPixels, adjustment.seenPixels);
+    const std::vector<int> outliers = adjustment.outliers();
+    if (!outliers.empty())
+        out << fitted("wrong matches: ", namesOf(matches, outliers)) << "\n";
+    if (!findings.weak.empty())
+        out << fitted("hardly determined: ", findings.weak) << "\n";
+}
+
+} // namespace tools

@@ -1,0 +1,26 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_BUNDLE_OUTPUT_HPP
+#define REFRACT_TOOLS_BUNDLE_OUTPUT_HPP
+
+#include "bundle/bundle_findings.hpp"
+#include <iosfwd>
+
+/* What refract_bundle writes and says. */
+namespace tools {
+
+//! points.csv, with the columns of refract_measure. @param image of points without one
+std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment, const std::string& image);
+
+//! All that the terminal says, and more of it.
+std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                       const std::string& command, const std::string& unit);
+
+//! At most ten lines of 80 columns.
+void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                 const std::string& unit);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_BUNDLE_OUTPUT_HPP

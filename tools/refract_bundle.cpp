@@ -1,0 +1,130 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "bundle/bundle_output.hpp"
+#include "calibrate/units.hpp"
+#include "console/cli.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+
+#include <iostream>
+
+static const char MANUAL[] = R"(Calibrates a rig behind its windows without a target, from points that several cameras saw: the ends of a
+wand that is waved, particles, any matches. Cameras, windows, R, T and points are one fit.
+
+  refract_bundle start.yml --points=matches.csv --lengths=lengths.csv --out=calib.yml       a rig that was never calibrated
+  refract_bundle calib.yml --points=matches.csv --out=better.yml                            one that was: what it knows has its say
+  refract_bundle calib.yml --points=matches.csv --free=normal --out=new.yml                 its windows were taken out meanwhile
+
+start.yml: what refract_calib wrote, or lenses, windows and R, T written by hand, within some degrees and per cent
+(doc/howto_bundle.md has one). The cameras do not move.
+
+matches.csv: [image,]id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a camera did not see
+it. The same id with another image is another point: of a wand, image is the moment. What refract_measure wrote will do.
+
+lengths.csv: [image,]id1,id2,length,std, distances between points, with one standard deviation; without image a row is of all images
+that show both points. Rows with equal length and std are one object: its error is one, however many moments there are.
+
+Three kinds of parameters. What --free names starts at the values of start.yml and follows from the matches alone. What has a
+variance in start.yml (what refract_calib wrote has a covariance) is estimated within that; where it has none, thickness, index,
+distance and wedge are known as well as in refract_calib (--thickness-std and its kin). The rest is exact. Default of --free:
+normal,extrinsics for a start without a covariance; nothing for one with.
+
+Scale: of --lengths; without, of T in start.yml, if it is not free.
+
+calib.yml: as refract_calib writes it, for all tools. points.csv (--points-out): as refract_measure writes it; status 9: a wrong match,
+left out; 1: fewer than two cameras saw it. Of a point that two cameras saw, a wrong match along the epipolar curve cannot be seen.
+
+Exit code: 0 done, 1 could not do it, 2 done and written, but a limit is not met, or what start.yml knows is contradicted.)";
+
+namespace {
+
+using namespace tools;
+
+struct Options
+{
+    std::string start, points, lengths, out, pointsOut, summary;
+    BundleOptions bundle;
+    double maxRms = 0.;
+    bool robust = true;
+};
+
+void addOptions(CLI::App& app, Options& o)
+{
+    app.add_option("start.yml", o.start, "the rig to start from")->required();
+    app.add_option("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...")->required();
+    app.add_option("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
+    app.add_option("--free", o.bundle.free, "what the matches alone must tell; none: nothing")->delimiter(',')
+        ->check(CLI::IsMember(freeNames()));
+    o.bundle.std.addTo(app, false);
+    app.add_option("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)")->check(CLI::IsMember(unitNames()));
+    app.add_flag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
+    app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "every match is right; by default wrong ones are left out");
+    app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
+    app.add_option("--points-out", o.pointsOut, "points.csv to write");
+    app.add_option("--summary", o.summary, "JSON file with all that is said, and more");
+    app.add_option("--max-rms", o.maxRms, "limit: RMS over all pixels, px")->check(moreThanZero());
+}
+
+Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings, const Calibration& start,
+                     const std::string& unit, const Command& command)
+{
+    Calibration file = toFile(adjustment, start);
+    file.unit = unit;
+    file.verdict = findings.verdict();
+    file.contradictions = findings.contradictions;
+    file.command = command.line();
+    file.time = timeOfFiles({o.start, o.points, o.lengths});
+    return file;
+}
+
+//! What to free, in the same sentence.
+void explain(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths, const BundleStart& start,
+             const BundleAdjustment& adjustment, BundleFindings& findings)
+{
+    if (findings.contradictions.empty())
+        return;
+    BundleOptions options = o.bundle;
+    const std::string explanation = explanationOf(start.free, adjustment.fit.sigma, [&](const std::vector<std::string>& free) {
+        options.free = free;
+        const BundleStart freer = startOf(file, o.start, options);
+        requireScale(freer, o.start, matches, lengths);
+        return adjustBundle(freer, matches, lengths, o.robust);
+    });
+    findings.contradictions.back() += explanation.empty() ? "; no single name of --free explains it" : "; " + explanation + " (--free)";
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        const Options options = parsed(command, addOptions);
+        checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}, {"--points-out", options.pointsOut, OUTPUT_TEXT},
+                      {"--summary", options.summary, OUTPUT_TEXT}},
+                     {options.start, options.points, options.lengths, command.settings()});
+        const Calibration file = readCalibration(options.start);
+        requireWindows(file, options.start, options.bundle.noWindow);
+        warnOfContradictions(file, options.start, command);
+        const Matches matches = readMatches(options.points, file, options.start);
+        const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
+        const BundleStart start = startOf(file, options.start, options.bundle);
+        requireScale(start, options.start, matches, lengths);
+        const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
+        BundleFindings findings = findingsOf(start, lengths, adjustment, file.sigma, options.maxRms);
+        explain(options, file, matches, lengths, start, adjustment, findings);
+        const std::string unit = !options.bundle.unit.empty() ? options.bundle.unit : file.unit;
+        if (!options.pointsOut.empty())
+            writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
+        if (!options.summary.empty())
+            writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
+        writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
+        if (!command.quiet())
+            printBundle(std::cout, matches, adjustment, findings, unit);
+        if (!findings.limitMet)
+            std::cerr << cv::format("refract_bundle: limit not met: %.3g px RMS, the limit is %g.\n", adjustment.fit.rms, options.maxRms);
+        for (const std::string& sentence : findings.contradictions)
+            std::cerr << "refract_bundle: " << sentence << ".\n";
+        return findings.pass() ? DONE : LIMIT_NOT_MET;
+    });
+}
