@@ -195,6 +195,22 @@ cv::Mat readImage(const std::string& path, bool withAlpha)
     return decode(path, cv::IMREAD_ANYCOLOR);
 }
 
+ImageFacts factsOf(const std::string& path)
+{
+    const cv::Mat image = readImage(path);
+    bool coloured = false;
+    for (int channel : {BLUE, RED})
+    {
+        cv::Mat one, green;
+        if (image.channels() != 3 || coloured)
+            continue;
+        cv::extractChannel(image, one, channel);
+        cv::extractChannel(image, green, GREEN);
+        coloured = cv::norm(one, green, cv::NORM_INF) > 0;
+    }
+    return {image.size(), coloured};
+}
+
 void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated)
 {
     if (!calibrated.empty() && image.size() != calibrated)
