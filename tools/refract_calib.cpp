@@ -376,10 +376,12 @@ void putWatched(const RigImages& watched, const RigSources& left, RigImages& set
 }
 
 //! Those that were watched are there already.
-RigImages readImages(const Options& o, const Target* target, bool quiet, const RigImages& watched, const RigSources& left)
+RigImages readImages(const Options& o, const RigOptions& rig, const Target* target, bool quiet, const RigImages& watched,
+                     const RigSources& left)
 {
     PerCamera<cv::Size> sizes;
-    sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
+    for (int k = 0; k < MAX_CAMERAS; k++)
+        sizes[k] = !o.imageSize.empty() ? parseSize(o.imageSize, "--image-size") : rig.known[k] ? rig.known[k]->imageSize() : cv::Size();
     for (int k = 0; k < MAX_CAMERAS; k++)
         for (const DetectedImages* set : {&watched.direct[k], &watched.glass[k]})
             if (!set->files.empty())
@@ -482,7 +484,7 @@ RigImages watch(const Options& o, const Target* target, const RigCalibration& pr
             try
             {
                 if (!read)
-                    others = readImages(o, target, quiet, {}, left);
+                    others = readImages(o, c.options, target, quiet, {}, left);
                 read = true;
                 RigImages sets = others;
                 putWatched(came, left, sets);
@@ -508,7 +510,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     RigImages watched;
     if (o.watch.given)
         watched = watch(o, target.get(), c, quiet, left);
-    takeImages(o, target.get(), readImages(o, target.get(), quiet, watched, left), c);
+    takeImages(o, target.get(), readImages(o, c.options, target.get(), quiet, watched, left), c);
     if (o.lens == "auto")
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())

@@ -30,7 +30,8 @@ std::string changed(const TemporaryFolder& folder, const std::string& name, cons
 {
     std::filesystem::create_directory(folder/name);
     for (const auto& entry : std::filesystem::directory_iterator(STEREO + "/direct1"))
-        cv::imwrite(folder/(name + "/" + entry.path().filename().string()), change(cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE)));
+        cv::imwrite(folder/(name + "/" + entry.path().filename().string()),
+                    change(cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE)));
     return folder/(name + "/*");
 }
 
@@ -81,7 +82,8 @@ TEST_CASE("Mistakes with images and options are told by their names within secon
     cv::setRNGSeed(27);
     const TemporaryFolder f;
     const std::string good = direct(STEREO + "/direct1/*"), size = " --size=6x5", glass = " --glass='" + STEREO + "/glass1/*'";
-    const std::string half = changed(f, "half", leftHidden), large = changed(f, "large", largeBoard), nothing = changed(f, "nothing", noise);
+    const std::string half = changed(f, "half", leftHidden), large = changed(f, "large", largeBoard);
+    const std::string nothing = changed(f, "nothing", noise);
     const std::string small = changed(f, "small", [](const cv::Mat& image) {
         cv::Mat result;
         cv::resize(image, result, cv::Size(), 0.5, 0.5, cv::INTER_AREA);

@@ -40,7 +40,7 @@ TEST_CASE("refract_calib says of each image that comes what the next should show
         images.push_back(entry.path().string());
     std::sort(images.begin(), images.end());
     REQUIRE(images.size() >= 12);
-    const std::string whole = readFile(images[0]);
+    const std::string whole = readFile(STEREO + "/measure1/z600_1.jpg");
     std::thread camera([&] {
         const auto pause = std::chrono::milliseconds(150);
         writeFile(folder / "direct/00_later.jpg", whole.substr(0, whole.size()/2));       // is complete only later
@@ -112,7 +112,13 @@ TEST_CASE("What --watch cannot watch is refused", "[tools][calib][watch]")
                                      + (folder / "empty/*") + "'");
     CAPTURE(empty.err);
     CHECK(empty.code == 1);
-    CHECK(mentions(empty.err, "shows the target"));
+    CHECK(mentions(empty.err, "no image has come for '" + (folder / "empty/*")));
+    cv::imwrite(folder / "empty/grey.jpg", cv::Mat(480, 640, CV_8U, cv::Scalar(90)));
+    const ToolResult grey = runTool("refract_calib --size=6x5 --square=39 --thickness=20 --index=1.5437 --out=" + (folder / "calib.yml")
+                                    + " --watch --watch-quiet=0.3 --glass='" + (folder / "empty/*") + "'");
+    CAPTURE(grey.out, grey.err);
+    CHECK(mentions(grey.out, "grey.jpg: board not found"));
+    CHECK(mentions(grey.err, "shows the target"));
 }
 
 TEST_CASE("Both cameras and their pairs are watched at once, straight on to the calibration", "[tools][calib][watch]")

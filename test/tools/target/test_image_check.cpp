@@ -3,6 +3,7 @@
 
 // Files that are no images of one camera are refused before anything is searched, and the sentence names the file.
 #include "target/image_check.hpp"
+#include "console/exif.hpp"
 #include "console/failure.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
@@ -58,12 +59,14 @@ const ImageSource DIRECT = {"direct/*", {}, 0, "direct images"}, GLASS = {"glass
 TEST_CASE("Sizes of images are checked, and the one that differs is named", "[image check]")
 {
     const Files f;
-    const std::string a = f.image("a.png", WIDE), b = f.image("b.png", WIDE), small = f.image("c.png", SMALL), tall = f.image("d.png", TALL);
+    const std::string a = f.image("a.png", WIDE), b = f.image("b.png", WIDE), small = f.image("c.png", SMALL);
+    const std::string tall = f.image("d.png", TALL);
     CHECK(said({DIRECT, GLASS}, {{a}, {b}}).empty());
     CHECK(checkImages({DIRECT, GLASS}, {{a}, {}}, BRIGHTNESS, true) == std::vector<cv::Size>{WIDE, cv::Size()});
     expect(said({DIRECT}, {{a, b, small}}), {"'" + small + "' is 32x24", "2 other images are 64x48", "not resized"});
     expect(said({DIRECT}, {{a, tall, b}}), {"'" + tall + "' is 48x64", "exchanged"});
-    expect(said({DIRECT, GLASS}, {{a}, {small}}), {"camera 1: direct images ('" + a + "') are 64x48, glass images ('" + small + "') 32x24"});
+    expect(said({DIRECT, GLASS}, {{a}, {small}}),
+           {"camera 1: direct images ('" + a + "') are 64x48, glass images ('" + small + "') 32x24"});
     ImageSource known = DIRECT;
     known.imageSize = TALL;
     expect(said({known}, {{a, b}}), {"'" + a + "' is 64x48 pixels, not 48x64", "WIDTHxHEIGHT"});
@@ -81,7 +84,7 @@ TEST_CASE("A file that is no image, or cut, is named before sizes", "[image chec
     std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size()/2);
     expect(said({DIRECT}, {{a, small, text}}), {"'" + text + "' is not an image"});
-    expect(said({DIRECT}, {{a, cut}}), {"'" + cut + "'", "cut short"});
+    expect(said({DIRECT}, {{a, cut}}), {"'" + cut + "' is cut short"});
 }
 
 TEST_CASE("A grey image has no channels", "[image check]")
@@ -94,4 +97,19 @@ TEST_CASE("A grey image has no channels", "[image check]")
     const cv::Mat pixels = cv::imread(grey, cv::IMREAD_COLOR);          // the one grey three times
     cv::imwrite(f.folder / "repeated.png", pixels);
     expect(said({DIRECT}, {{f.folder / "repeated.png"}}, RED), {"is a grey image"});
+}
+
+TEST_CASE("EXIF data that ask for a turned picture change no size", "[image check]")
+{
+    using namespace std::string_literals;
+    const Files f;
+    const std::string plain = f.image("plain.jpg", WIDE), turned = f.folder / "turned.jpg";
+    std::ifstream in(plain, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const std::string exif = "Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0"s;     // orientation 6
+    bytes.insert(2, "\xff\xe1\0"s + (char)(exif.size() + 2) + exif);
+    std::ofstream(turned, std::ios::binary) << bytes;
+    REQUIRE(cv::imread(turned).size() == TALL);                 // so do others
+    CHECK(checkImages({DIRECT}, {{plain, turned}}, BRIGHTNESS, true) == std::vector<cv::Size>{WIDE});
+    expect(takeRotationNotice(), {"'" + turned + "' asks for a turned picture", "as they are stored"});
 }

@@ -12,7 +12,7 @@ namespace tools {
 /** Whether the images that came so far are enough: the limits of normals and points are met by the covariance of a quick fit of them, or
 the best next pair would make points better by less than was asked for. What cannot be fitted yet is not enough.
 @param c with data, options and limits; taken by value, as it is fitted
-@param leastGain share of the calibration's part of a point's error that the next pair must take away to be waited for; 0: it is not asked */
+@param leastGain share of the calibration's part of a point's error that the next pair must take off to be waited for; 0: not asked */
 Progressed progressOf(RigCalibration c, double leastGain);
 
 } // namespace tools

@@ -71,7 +71,9 @@ public:
                 pending = pending || watched_[i].files.arePending();
                 any = (!path.empty() && look(i, path)) || any;
             }
-            if (any)
+            if (!any && !pending && toAssess_)          // not while other images wait to be looked at
+                assess();
+            else if (any)
                 last = Clock::now();
             else if (!pending && Clock::now() - last >= quiet)
                 break;
@@ -99,7 +101,10 @@ public:
     RigImages imagesWithTarget() const
     {
         for (const WatchedSource& source : watched_)
-            if (source.found.images.empty())
+            if (source.found.files.empty())
+                throw Failure("no image has come for '" + source.files.pattern() + "' within --watch-quiet seconds: does the camera write "
+                              "into that folder, and under such names?");
+            else if (source.found.images.empty())
                 throw Failure("no image that came for '" + source.files.pattern() + "' shows the target: check --pattern and --size="
                               + sizeText(rig_.target.size()) + ", light and focus");
         return images();
@@ -134,6 +139,9 @@ private:
             if (!used[f])
                 throw Failure("--watch=" + options.folders[f] + ": it is not the folder of --direct or --glass, which say which images of "
                               "it to take, as in --watch=direct --direct='direct/*.png'; --watch alone takes all of them");
+        for (const std::string& source : sources.all())     // the others must be there, which is not to be told at the end
+            if (!isPointFile(source))
+                expandGlob(source);
         if (watched.empty())
             throw Failure("--watch waits for images, but --direct and --glass name files of points: leave it out");
         return watched;
@@ -176,6 +184,7 @@ private:
         try
         {
             const cv::Mat grey = readGrey(path, rig_.sources.channel);
+            requireColour(path, rig_.sources.channel);
             const std::string fault = faultOf(i, path, grey);
             if (fault.empty())
                 take(i, path, grey);
@@ -251,13 +260,12 @@ private:
         if (!about.empty())
             out_ << "    " << about << std::endl;
         if (!points.empty() && (pairs_.complete() > before || !pairs_.areAny()))
-            assess();
+            toAssess_ = (bool)rig_.assess;
     }
 
     void assess()
     {
-        if (!rig_.assess)
-            return;
+        toAssess_ = false;
         const Progressed progressed = rig_.assess(images());
         if (!progressed.words.empty())
             out_ << "    " << progressed.words << std::endl;
@@ -267,7 +275,8 @@ private:
     void say(const WatchedSource& source, const std::string& path, const std::string& what)
     {
         const std::string where = watched_.size() > 1 ? nameOf(source.place, cameras_) + ", " : "", advice = adviceFor(source);
-        out_ << where << fs::path(path).filename().string() << ": " << what << cv::format(" (%zu so far). Next: ", source.found.images.size())
+        out_ << where << fs::path(path).filename().string() << ": " << what
+             << cv::format(" (%zu so far). Next: ", source.found.images.size())
              << (advice.empty() ? "that is enough, more do no harm" : advice) << std::endl;
     }
 
@@ -296,7 +305,7 @@ private:
     int cameras_;
     LivePairs pairs_;
     std::multimap<size_t, std::string> contents_;      //!< hash of a file's bytes -> its path
-    bool enough_ = false;
+    bool enough_ = false, toAssess_ = false;
 };
 
 } // namespace

@@ -14,8 +14,8 @@
 
 namespace tools {
 
-/* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the
-work fails or a signal ends the tool. The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays
+/* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the work fails or a
+signal ends the tool. The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays
 one: what it leads to is replaced. What is no regular file (a device, a pipe) stays what it is: the bytes go into it at the
 end. */
 class OutputFile

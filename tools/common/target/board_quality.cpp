@@ -86,6 +86,8 @@ void countClipped(const Mat& grey, const std::vector<Point2d>& points, BoardQual
     for (const Point2d& p : points)
         if (seen(p))
             found.emplace_back(p);
+    if (found.size() < 3)
+        return;
     std::vector<Point2f> hull;
     convexHull(found, hull);
     Mat mask(grey.size(), CV_8U, Scalar(0));

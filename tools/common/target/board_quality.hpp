@@ -11,7 +11,7 @@ namespace tools {
 //! How well an image shows the board, for whoever holds it.
 struct BoardQuality
 {
-    double edgeWidth[2];        //!< px from 10 to 90 % of an edge, median; across the rows and the columns; NaN: not known
+    double edgeWidth[2];        //!< px from 10 to 90 % of an edge, median; across the rows and the columns; at best 2; NaN: not known
     double contrast;            //!< grey levels between dark and light, median
     double saturated, dark;     //!< shares of the board's pixels at the end of the scale
 

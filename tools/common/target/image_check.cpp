@@ -48,12 +48,10 @@ std::vector<Checked> readAll(const std::vector<std::vector<std::string>>& files,
     return all;
 }
 
-void requireColours(const std::vector<Checked>& images, Channel channel)
+[[noreturn]] void refuseGrey(const std::string& path, Channel channel)
 {
-    for (const Checked& image : images)
-        if (channel != BRIGHTNESS && !image.facts.coloured)
-            throw Failure("--channel=" + nameOf(channel) + ": '" + image.path + "' is a grey image, which has no channels: leave --channel "
-                          "out, and say the light of the camera by --wavelength where an index is a material's name");
+    throw Failure("--channel=" + nameOf(channel) + ": '" + path + "' is a grey image, which has no channels: leave --channel out, and say "
+                  "the light of the camera by --wavelength where an index is a material's name");
 }
 
 void requireKnownSize(const std::vector<Checked>& images, const std::vector<ImageSource>& sources)
@@ -63,7 +61,7 @@ void requireKnownSize(const std::vector<Checked>& images, const std::vector<Imag
         const cv::Size known = sources[image.source].imageSize;
         if (!known.empty() && image.facts.size != known)
             throw Failure("'" + image.path + "' is " + sizeText(image.facts.size) + " pixels, not " + sizeText(known)
-                          + " as the calibration or --image-size says: " + sizeAdvice(image.facts.size, known));
+                          + " as the calibration, --camera or --image-size says: " + sizeAdvice(image.facts.size, known));
     }
 }
 
@@ -107,6 +105,12 @@ void requireOneSizeOfCamera(const std::vector<Checked>& images, const std::vecto
 
 } // namespace
 
+void requireColour(const std::string& path, Channel channel)
+{
+    if (channel != BRIGHTNESS && !factsOf(path).coloured)
+        refuseGrey(path, channel);
+}
+
 std::string sizeAdvice(cv::Size image, cv::Size expected)
 {
     if (image == cv::Size(expected.height, expected.width))
@@ -125,7 +129,9 @@ std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const
     for (size_t s = 0; s < sources.size(); s++)
         requireOneSize(images, s);
     requireOneSizeOfCamera(images, sources);
-    requireColours(images, channel);
+    for (const Checked& image : images)
+        if (channel != BRIGHTNESS && !image.facts.coloured)
+            refuseGrey(image.path, channel);
     std::vector<cv::Size> sizes(sources.size());
     for (const Checked& image : images)
         sizes[image.source] = image.facts.size;

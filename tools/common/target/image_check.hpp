@@ -25,6 +25,9 @@ a camera differ in size, or if a colour is asked for and one is grey.
 std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const std::vector<std::vector<std::string>>& files,
                                   Channel channel, bool quiet);
 
+//! Throws Failure if one of the three colours is asked for and the image is grey.
+void requireColour(const std::string& path, Channel channel);
+
 //! What to do about an image of another size than was expected.
 std::string sizeAdvice(cv::Size image, cv::Size expected);
 

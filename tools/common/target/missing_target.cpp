@@ -49,7 +49,7 @@ cv::Size usualSize(const std::vector<Without>& images)
             all++;
         }
     for (const auto& entry : counts)
-        if (2*entry.second > all && entry.second > 1)
+        if (2*entry.second > all && (entry.second > 1 || images.size() == 1))
             return cv::Size(entry.first.first, entry.first.second);
     return cv::Size();
 }
@@ -84,7 +84,16 @@ std::optional<Target> like(const Target& target, const std::string& pattern, con
     }
 }
 
-//! Half a board, or a hand before it.
+//! Half a board, or a hand before it: what to do.
+std::string partAdvice(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    const std::optional<Target> partial = like(target, "chessboard", TargetOptions().dictionary, true);
+    return std::string("keep the whole board in view and uncovered")
+           + (partial && isFound(*partial, images, channel)
+              ? ", or, with one camera and a hand-held board, add --unpaired --partial, which finds a piece of it in these images"
+              : "; what is seen of it is too little for --partial");
+}
+
 std::string partText(const std::vector<Without>& images, const Target& target, Channel channel)
 {
     std::vector<std::string> sizes;
@@ -93,15 +102,11 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
             sizes.push_back(sizeText(image.chessboard));
     std::sort(sizes.begin(), sizes.end());
     sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
-    std::string text = "only a part of the chessboard of --size=" + sizeText(target.size()) + " is seen in " + quotedNames(images) + " (";
-    for (size_t i = 0; i < sizes.size(); i++)
-        text += (i ? ", " : "") + sizes[i];
-    text += " inner corners): ";
-    const std::optional<Target> partial = like(target, "chessboard", TargetOptions().dictionary, true);
-    if (partial && isFound(*partial, images, channel))
-        return text + "keep the whole board in view and uncovered, or, with one camera and a hand-held board, add --unpaired --partial, "
-               "which finds a piece of it in these images";
-    return text + "keep the whole board in view and uncovered; what is seen of it is too little for --partial";
+    std::string text;
+    for (const std::string& size : sizes)
+        text += (text.empty() ? "" : ", ") + size;
+    return "only a part of the chessboard of --size=" + sizeText(target.size()) + " is seen in " + quotedNames(images) + " (" + text
+           + " inner corners): " + partAdvice(images, target, channel);
 }
 
 //! A target of another kind, with the same number of points; empty: none is found.
@@ -144,32 +149,40 @@ cv::Size otherChessboard(const std::vector<Without>& images)
 
 std::string explainMissing(const std::vector<Without>& images, const std::string& where, size_t all, const Target& target, Channel channel)
 {
-    const bool isChessboard = target.pattern() == Target::CHESSBOARD;
-    const auto seen = std::count_if(images.begin(), images.end(), [](const Without& image) { return !image.chessboard.empty(); });
+    const bool isChessboard = target.pattern() == Target::CHESSBOARD && !target.partial();
+    const auto parts = (size_t)std::count_if(images.begin(), images.end(), [&](const Without& image) {
+        return mayBePart(image.chessboard, target); });
     const cv::Size usual = usualSize(images);
     std::vector<Without> first(images.begin(), images.begin() + (long)std::min<size_t>(images.size(), 3));
     if (isChessboard && !usual.empty() && !mayBePart(usual, target))
         return otherTargetText(quotedNames(first), target, usual);
-    if (isChessboard && seen > 0)
+    if (isChessboard && 2*parts >= images.size())        // clutter looks like a few squares here and there
     {
-        // A smaller board, or one that is covered in the same way everywhere: nothing in the images tells which.
+        // A smaller board, or one that is covered in the same way everywhere: nothing in the images tells which. But one less in both
+        // directions are squares that were counted.
+        const std::string other = otherTargetText(quotedNames(first), target, usual);
+        if (usual + cv::Size(1, 1) == sorted(target.size()))
+            return other;
         if (images.size() > 1 && !otherChessboard(images).empty())
-            return otherTargetText(quotedNames(first), target, usual) + "; or, if the board has more, keep all of it in view and uncovered";
+            return other + "; or, if the board has more, " + partAdvice(images, target, channel);
         const std::string part = partText(images, target, channel);
         return usual.empty() ? part : part + "; or it is another board: if that is all of it, give --size=" + sizeText(usual);
     }
     const std::string looked = "any image of " + where
         + (images.size() < all ? cv::format(" (%zu of %zu were looked at)", images.size(), all) : "");
+    if (target.partial())
+        return "no piece of the chessboard, of at least 5x5 inner corners, was found in " + looked + ": show more of it, check light and "
+               "focus";
     const std::string other = otherPattern(images, target, channel);
     if (!other.empty())
-        return "the target in " + looked + " looks like one of another kind: give " + other + ", or check --size="
+        return "the target in " + quotedNames({images[0]}) + " looks like one of another kind: give " + other + ", or check --size="
                + sizeText(target.size());
     const cv::Size chessboard = isChessboard ? cv::Size() : chessboardIn(images, channel);
     if (!chessboard.empty())
         return "the target in " + quotedNames(first) + " looks like a chessboard of " + sizeText(chessboard)
                + " inner corners: give --pattern=chessboard --size=" + sizeText(chessboard);
-    return "the target was not found in " + looked + ": check --pattern and --size=" + sizeText(target.size()) + " (inner corners or dots), "
-           "light and focus";
+    return "the target was not found in " + looked + ": check --pattern and --size=" + sizeText(target.size())
+           + " (inner corners or dots), light and focus";
 }
 
 std::string otherTargetText(const std::string& where, const Target& target, cv::Size other)

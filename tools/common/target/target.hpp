@@ -43,6 +43,7 @@ public:
     Pattern pattern() const { return pattern_; }
     cv::Size size() const { return size_; }                 //!< inner corners, or dots
     double square() const { return square_; }
+    bool partial() const { return partial_; }               //!< any piece of it will do
     int count() const { return size_.area(); }
     const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
 

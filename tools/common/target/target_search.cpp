@@ -93,8 +93,9 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
     if (target_.pattern() != Target::CHESSBOARD)
         return;
     forEach(which, [&](int i) {
-        const cv::Size other = lookForChessboard(readGrey(paths_[i], channel_));
-        results_[i].other = cv::Size(std::max(other.width, other.height), std::min(other.width, other.height));
+        const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)), whole = target_.size();
+        if (seen != whole && seen != cv::Size(whole.height, whole.width))
+            results_[i].other = cv::Size(std::max(seen.width, seen.height), std::min(seen.width, seen.height));
     });
 }
 
