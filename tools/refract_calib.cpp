@@ -26,8 +26,11 @@ Judge the result by the held-out boards (calibrated on the others in turn), not 
 --summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
 values would do, and what the next images should show.
 
---watch=FOLDER waits while a camera fills the folder of --direct or --glass, says after each image whether the board was found and
-what the next one should show, and then calibrates: after --watch-count images, or when none has come for --watch-quiet seconds.
+--watch waits while cameras fill the folders of --direct, --glass, --direct2, ... (--watch=FOLDER: only that one), says after each
+image whether the board was found, how sharp and how well exposed it is, which image its name still waits for, and what the next one
+should show. Copies and files that cannot be read are named and left out. Then it calibrates: after --watch-count images or
+--watch-pairs pairs, when --max-error-at and --max-normal-std are met by what came so far, when the best next pair would gain less than
+--watch-gain percent, or when no image has come for --watch-quiet seconds.
 
 Where an index stands, a material may stand: N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate,
 of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=101325,RH=50 (C, Pa, %). The result then says which
@@ -37,11 +40,13 @@ Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 cou
 --max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
 carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
+#include "assess/live_limits.hpp"
 #include "diagnose/diagnosis.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
+#include "calibrate/live_rig.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/poses_file.hpp"
@@ -56,7 +61,6 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
 #include "report/thumbnails.hpp"
-#include "target/live_views.hpp"
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -76,7 +80,7 @@ struct Options
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
     std::string innerIndex = "1", outerIndex = "1";
     std::string channel;
-    double wavelength = 0., distance = 0.;
+    double wavelength = 0., distance = 0., watchGain = 0.;
     GivenStdOptions std;
     std::vector<std::string> free;
     bool distanceGiven = false, unpaired = false, sharedWindow = false;
@@ -123,6 +127,8 @@ Options parseOptions(Command& command)
     o.target.addTo(app, false);
     o.images.addTo(app, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
     o.watch.addTo(app);
+    app.add_option("--watch-gain", o.watchGain, "end when the best next pair would take off less than so many percent of the calibration's "
+        "part of a point's error")->needs(app.get_option("--watch"))->check(moreThanZero());
     CLI::Option* glass2 = app.get_option("--glass2");
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
@@ -357,11 +363,39 @@ void readWindow(const Options& o, RigOptions& rig)
     window.check();
 }
 
-void readImages(const Options& o, const Target* target, bool quiet, RigCalibration& c)
+//! Into the place of sources that are not to be read.
+void putWatched(const RigImages& watched, const RigSources& left, RigImages& sets)
+{
+    for (int k = 0; k < MAX_CAMERAS; k++)
+    {
+        if (left.direct[k].empty())
+            sets.direct[k] = watched.direct[k];
+        if (left.glass[k].empty())
+            sets.glass[k] = watched.glass[k];
+    }
+}
+
+//! Those that were watched are there already.
+RigImages readImages(const Options& o, const RigOptions& rig, const Target* target, bool quiet, const RigImages& watched,
+                     const RigSources& left)
 {
     PerCamera<cv::Size> sizes;
-    sizes.fill(o.imageSize.empty() ? cv::Size() : parseSize(o.imageSize, "--image-size"));
-    RigImages sets = readRigImages(o.images, target, sizes, quiet);
+    for (int k = 0; k < MAX_CAMERAS; k++)
+        sizes[k] = !o.imageSize.empty() ? parseSize(o.imageSize, "--image-size") : rig.known[k] ? rig.known[k]->imageSize() : cv::Size();
+    for (int k = 0; k < MAX_CAMERAS; k++)
+        for (const DetectedImages* set : {&watched.direct[k], &watched.glass[k]})
+            if (!set->files.empty())
+                sizes[k] = set->imageSize;
+    if (!o.unpaired)
+        requirePairNames(left);
+    RigImages sets = readRigImages(left, target, sizes, quiet);
+    putWatched(watched, left, sets);
+    return sets;
+}
+
+//! From images to views.
+void takeImages(const Options& o, const Target* target, RigImages sets, RigCalibration& c)
+{
     for (const DetectedImages* set : sets.all())
     {
         c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
@@ -378,6 +412,9 @@ void readImages(const Options& o, const Target* target, bool quiet, RigCalibrati
         c.inputs.push_back(o.poses);
     }
     c.notices = noticesOf(sets, c.data);
+    noticeLiquidLayers(o, c.options, c.notices);
+    if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
+        c.options.window.distance = startDistance(c.data, c.square);
 }
 
 //! Lens and start, wrong points, the fit; then what a user would do instead.
@@ -406,16 +443,14 @@ bool isSlowToStart(const CalibrationInput& input)
     return solid && !known;
 }
 
-RigCalibration calibrate(const Options& o, bool quiet)
+//! All that is known before the images.
+RigCalibration prepare(const Options& o, const Target* target)
 {
     RigCalibration c;
-    std::unique_ptr<const Target> target;
-    if (o.target.given())
-        target = std::make_unique<Target>(o.target);
     readWindow(o, c.options);
     if (o.lens != "auto")
         c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
-    takeStd(o, target.get(), c.options);
+    takeStd(o, target, c.options);
     c.limits = o.limits;
     c.label = o.label;
     c.unit = o.unit;
@@ -431,10 +466,51 @@ RigCalibration calibrate(const Options& o, bool quiet)
             c.options.knownCovariance[k] = lens.covariance;
             c.inputs.push_back(o.camera[k]);
         }
-    readImages(o, target.get(), quiet, c);
-    noticeLiquidLayers(o, c.options, c.notices);
-    if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
-        c.options.window.distance = startDistance(c.data, c.square);
+    return c;
+}
+
+//! Until the images are there. @param left gets what is still to be read
+RigImages watch(const Options& o, const Target* target, const RigCalibration& prepared, bool quiet, RigSources& left)
+{
+    if (!target)
+        throw Failure("--watch looks for a board: give --size and --square");
+    WatchedRig rig = {o.images, *target, o.unpaired, nullptr};
+    const bool isAsked = o.limits.normalStdDeg > 0 || !o.limits.errors.empty() || o.watchGain > 0;
+    RigImages others;                   // that are not watched, read when they are needed first
+    bool read = false;
+    if (isAsked)
+        rig.assess = [&](const RigImages& came) {
+            RigCalibration c = prepared;
+            try
+            {
+                if (!read)
+                    others = readImages(o, c.options, target, quiet, {}, left);
+                read = true;
+                RigImages sets = others;
+                putWatched(came, left, sets);
+                takeImages(o, target, sets, c);
+            }
+            catch (const std::exception&)       // said at the end, if it is still so
+            {
+                return Progressed();
+            }
+            return progressOf(c, 0.01*o.watchGain);
+        };
+    std::ostream nowhere(nullptr);
+    return watchRig(o.watch, rig, left, quiet ? nowhere : std::cout);
+}
+
+RigCalibration calibrate(const Options& o, bool quiet)
+{
+    std::unique_ptr<const Target> target;
+    if (o.target.given())
+        target = std::make_unique<Target>(o.target);
+    RigCalibration c = prepare(o, target.get());
+    RigSources left = o.images;
+    RigImages watched;
+    if (o.watch.given)
+        watched = watch(o, target.get(), c, quiet, left);
+    takeImages(o, target.get(), readImages(o, c.options, target.get(), quiet, watched, left), c);
     if (o.lens == "auto")
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())
@@ -491,15 +567,6 @@ Calibration withFindings(Calibration file, const Findings& findings)
     return file;
 }
 
-//! Until the images are there.
-void watch(const Options& o, bool quiet)
-{
-    if (!o.target.given())
-        throw Failure("--watch looks for a board: give --size and --square");
-    std::ostream nowhere(nullptr);
-    watchImages(o.watch, o.images.all(), Target(o.target), o.images.channel, quiet ? nowhere : std::cout);
-}
-
 void writePinhole(const std::string& path, const RigCalibration& calibration, const std::string& command)
 {
     Calibration pinhole = calibratePinholeRig(calibration.data, allViews(calibration.data),
@@ -516,8 +583,6 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parseOptions(command);
         checkOutputs(options, command.settings());
-        if (!options.watch.folder.empty())
-            watch(options, command.quiet());
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Assessment assessment = assess(calibration, command.quiet());
         const Findings findings = findingsOf(calibration, assessment);

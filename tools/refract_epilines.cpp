@@ -10,7 +10,7 @@
 #include "console/point_file.hpp"
 #include "console/table.hpp"
 #include "report/drawing.hpp"
-#include "target/detected_images.hpp"
+#include "target/missing_target.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>

@@ -30,6 +30,14 @@ std::set<std::string> stemsOf(const DetectedImages& set, bool found)
     return stems;
 }
 
+std::set<std::string> stemsOf(const std::vector<std::string>& paths)
+{
+    std::set<std::string> stems;
+    for (const std::string& path : paths)
+        stems.insert(stemOf(path));
+    return stems;
+}
+
 std::vector<std::string> common(const std::set<std::string>& a, const std::set<std::string>& b)
 {
     std::vector<std::string> both;
@@ -48,6 +56,13 @@ std::string examples(const std::set<std::string>& stems)
         text += (text.empty() ? "'" : ", '") + stem + "'";
     }
     return text;
+}
+
+std::string noPairText(const std::string& suffix, const std::set<std::string>& direct, const std::set<std::string>& glass)
+{
+    return "no image of --direct" + suffix + " (" + examples(direct) + ") has the name of one of --glass" + suffix + " ("
+           + examples(glass) + "), so there is no pair: where the board did not move between the two images, give them the same file "
+           "name in two folders; if it did (hand-held), add --unpaired";
 }
 
 bool areOneImage(const DetectedImage& a, const DetectedImage& b)
@@ -170,9 +185,20 @@ void requirePairs(const RigImages& sets)
                                  "('%s'): check light and focus, or say --unpaired if no pairs are meant", lost.size(),
                                  suffix.c_str(), suffix.c_str(), lost.front().c_str()));
         if (direct.images.size() > 1 && glass.images.size() > 1)
-            throw Failure("no image of --direct" + suffix + " (" + examples(directStems) + ") has the name of one of --glass"
-                          + suffix + " (" + examples(glassStems) + "), so there is no pair: where the board did not move between "
-                          "the two images, give them the same file name in two folders; if it did (hand-held), add --unpaired");
+            throw Failure(noPairText(suffix, directStems, glassStems));
+    }
+}
+
+void requirePairNames(const RigSources& sources)
+{
+    for (int c = 0; c < MAX_CAMERAS; c++)
+    {
+        const std::string &direct = sources.direct[c], &glass = sources.glass[c];
+        if (direct.empty() || glass.empty() || isPointFile(direct) || isPointFile(glass))
+            continue;
+        const std::set<std::string> directStems = stemsOf(expandGlob(direct)), glassStems = stemsOf(expandGlob(glass));
+        if (directStems.size() > 1 && glassStems.size() > 1 && common(directStems, glassStems).empty())
+            throw Failure(noPairText(cameraSuffix(c), directStems, glassStems));
     }
 }
 

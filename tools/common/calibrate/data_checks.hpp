@@ -13,6 +13,9 @@ namespace tools {
 target was found in both images of no pair: the user meant pairs, and a calibration without them is far worse. */
 void requirePairs(const RigImages& sets);
 
+//! The same as far as the names of images tell, before any is searched for the target.
+void requirePairNames(const RigSources& sources);
+
 //! What spoils a calibration without showing in its residuals: one image under two names, boards that are all parallel.
 std::vector<std::string> noticesOf(const RigImages& sets, const RigData& data);
 

@@ -128,15 +128,21 @@ std::vector<int> allViews(const RigData& data)
 
 RigImages readRigImages(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
 {
+    std::vector<ImageSource> given;
+    std::vector<DetectedImages*> places;
     RigImages sets;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool through : {false, true})
         {
             const std::string& source = (through ? sources.glass : sources.direct)[c];
-            if (!source.empty())
-                (through ? sets.glass : sets.direct)[c] = readDetectedImages(source, target, imageSize[c], quiet,
-                                                                          sources.channel);
+            if (source.empty())
+                continue;
+            given.push_back({source, imageSize[c], c, through ? "glass images" : "direct images"});
+            places.push_back(&(through ? sets.glass : sets.direct)[c]);
         }
+    const std::vector<DetectedImages> found = readDetectedImages(given, target, quiet, sources.channel);
+    for (size_t i = 0; i < found.size(); i++)
+        *places[i] = found[i];
     return sets;
 }
 
@@ -149,16 +155,6 @@ int countCameras(const RigImages& sets)
         if (!sets.glass[c].images.empty())
             count = c + 1;
     return count;
-}
-
-void setImageSize(RigData& data, const RigImages& sets, int camera)
-{
-    const DetectedImages &direct = sets.direct[camera], &glass = sets.glass[camera];
-    if (!direct.images.empty() && !glass.images.empty() && direct.imageSize != glass.imageSize)
-        throw Failure(format("camera %d: direct images ('%s') are %dx%d, glass images ('%s') %dx%d: they must come from the "
-                             "same camera at the same resolution", camera + 1, direct.files[0].c_str(), direct.imageSize.width,
-                             direct.imageSize.height, glass.files[0].c_str(), glass.imageSize.width, glass.imageSize.height));
-    data.imageSize[camera] = direct.images.empty() ? glass.imageSize : direct.imageSize;
 }
 
 std::vector<std::vector<Point2d>*> imagesOf(View& view)
@@ -233,7 +229,7 @@ RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaire
                 alignImages(*target, entry.second);
     }
     for (int c = 0; c < data.cameraCount; c++)
-        setImageSize(data, sets, c);
+        data.imageSize[c] = sets.direct[c].images.empty() ? sets.glass[c].imageSize : sets.direct[c].imageSize;
     for (auto& entry : views)
     {
         for (std::vector<Point2d>* pixels : imagesOf(entry.second))

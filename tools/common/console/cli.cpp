@@ -3,6 +3,7 @@
 
 #include "console/cli.hpp"
 #include "console/exif.hpp"
+#include "console/leftovers.hpp"
 #include "console/settings_file.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
@@ -96,6 +97,7 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
 {
     // What goes wrong is said once, in the exception; OpenCV's log would repeat it in its own words.
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    removeLeftoversOnSignals();
     Command command(argc, argv, manual);
     std::string error;
     try

@@ -51,6 +51,22 @@ bool isCutJpeg(const std::vector<uchar>& bytes)
     return true;
 }
 
+//! Seen before libpng sees it, which prints words of its own. Chunks are length, name, data, sum; the last is IEND.
+bool isCutPng(const std::vector<uchar>& bytes)
+{
+    static const uchar SIGNATURE[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    if (bytes.size() < sizeof SIGNATURE || !std::equal(std::begin(SIGNATURE), std::end(SIGNATURE), bytes.begin()))
+        return false;
+    for (size_t at = sizeof SIGNATURE; at + 12 <= bytes.size(); )
+    {
+        const size_t length = (size_t)bytes[at] << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3];
+        if (std::string(bytes.begin() + (long)at + 4, bytes.begin() + (long)at + 8) == "IEND")
+            return false;
+        at += 12 + length;
+    }
+    return true;
+}
+
 //! The first page of several would be taken for all there is.
 void requireOnePage(const std::string& path, const std::vector<uchar>& bytes)
 {
@@ -65,7 +81,7 @@ the lens does not. */
 cv::Mat decode(const std::string& path, int flags)
 {
     const std::vector<uchar> bytes = readBytes(path);
-    if (isCutJpeg(bytes))
+    if (isCutJpeg(bytes) || isCutPng(bytes))
         throw Failure("'" + path + "' is cut short: take or copy the image again");
     cv::Mat image;
     try
@@ -193,6 +209,22 @@ cv::Mat readImage(const std::string& path, bool withAlpha)
             return image;
     }
     return decode(path, cv::IMREAD_ANYCOLOR);
+}
+
+ImageFacts factsOf(const std::string& path)
+{
+    const cv::Mat image = readImage(path);
+    bool coloured = false;
+    for (int channel : {BLUE, RED})
+    {
+        cv::Mat one, green;
+        if (image.channels() != 3 || coloured)
+            continue;
+        cv::extractChannel(image, one, channel);
+        cv::extractChannel(image, green, GREEN);
+        coloured = cv::norm(one, green, cv::NORM_INF) > 0;
+    }
+    return {image.size(), coloured};
 }
 
 void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated)

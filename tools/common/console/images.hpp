@@ -43,6 +43,16 @@ cv::Mat readGrey(const std::string& path, Channel channel = BRIGHTNESS);
 @param withAlpha four channels where the file has them: how opaque a pixel is, the last */
 cv::Mat readImage(const std::string& path, bool withAlpha = false);
 
+//! What a file is, before its pixels are used.
+struct ImageFacts
+{
+    cv::Size size;
+    bool coloured;          //!< false: grey, also where a file repeats the one grey in three channels
+};
+
+//! Reads the whole image, so that Failure is thrown as by readGrey.
+ImageFacts factsOf(const std::string& path);
+
 //! Throws Failure if the calibration's image size is known (not empty) and the image has another.
 void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated);
 

@@ -46,6 +46,11 @@ cv::Size parseSize(const std::string& text, const std::string& option)
     return size;
 }
 
+std::string sizeText(cv::Size size)
+{
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
 std::vector<std::string> splitAtCommas(const std::string& text)
 {
     const char* const blanks = " \t\r\n";

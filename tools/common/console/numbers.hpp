@@ -16,6 +16,9 @@ bool parseNumber(const std::string& text, double& number);
 //! "6x5" -> Size(6, 5); `option` names the option in the error text.
 cv::Size parseSize(const std::string& text, const std::string& option);
 
+//! Size(6, 5) -> "6x5"
+std::string sizeText(cv::Size size);
+
 //! "a, b,c" -> a b c: what stands between commas, without blanks around it.
 std::vector<std::string> splitAtCommas(const std::string& text);
 

@@ -15,9 +15,6 @@ namespace tools {
 
 namespace {
 
-// Processor time that is given to a detector which may take minutes for nothing.
-const int SECONDS_OF_OLD_DETECTOR = 5;
-
 std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
 {
     return std::vector<Point2d>(points.begin(), points.end());
@@ -69,9 +66,9 @@ Size sorted(Size size)
     return Size(std::max(size.width, size.height), std::min(size.width, size.height));
 }
 
-std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size)
+std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size, int seconds)
 {
-    return searchLimited(SECONDS_OF_OLD_DETECTOR, size.area(), [&] {
+    return searchLimited(seconds, size.area(), [&] {
         std::vector<Point2f> corners;
         const bool found = findChessboardCorners(grey, size, corners, CALIB_CB_ADAPTIVE_THRESH
                                                      | CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_FAST_CHECK);
@@ -94,7 +91,7 @@ double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, cons
 /* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
 finds some boards among clutter. But it takes half a minute, or several, where there is a board of another size, or curved by
 a wide-angle lens: so a glance at a small copy of the image goes before it, and its time is limited. */
-std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
+std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other, int seconds)
 {
     std::vector<Point2f> corners;
     if (!findChessboardCornersSB(grey, size, corners, CALIB_CB_EXHAUSTIVE)
@@ -105,7 +102,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other)
             other = sorted(glance);
         if (other.width > sorted(size).width || other.height > sorted(size).height)
             return {};
-        corners = detectByOldChessboard(grey, size);
+        corners = detectByOldChessboard(grey, size, seconds);
         if (corners.empty() || !isChessboard(toDouble(corners), size, grey))
             return {};
     }

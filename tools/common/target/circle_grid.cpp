@@ -16,7 +16,6 @@ namespace tools {
 
 namespace {
 
-const int SECONDS = 20;     // of processor time: the detector may take minutes for nothing
 
 //! Diameters of the dots at some centres; 0 where no blob is.
 std::vector<Point2f> diametersAt(const std::vector<Point2f>& centres, const std::vector<KeyPoint>& blobs)
@@ -208,9 +207,9 @@ std::vector<Vec2d> gridOf(Size size, bool asymmetric)
     return grid;
 }
 
-std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric)
+std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric, int seconds)
 {
-    const std::vector<Point2f> found = searchLimited(SECONDS, 2*size.area(), [&] { return findDots(grey, size, asymmetric); });
+    const std::vector<Point2f> found = searchLimited(seconds, 2*size.area(), [&] { return findDots(grey, size, asymmetric); });
     const auto middle = found.begin() + found.size()/2;
     std::vector<double> areas;
     for (auto diameter = middle; diameter != found.end(); diameter++)

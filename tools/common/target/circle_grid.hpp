@@ -12,8 +12,9 @@ namespace tools {
 //! Where the points of a board are, in units of --square, row by row.
 std::vector<cv::Vec2d> gridOf(cv::Size size, bool asymmetric);
 
-//! The images of the centres of dots, dark on light ground or the reverse; empty if the grid was not found.
-std::vector<cv::Point2d> detectCircleGrid(const cv::Mat& grey, cv::Size size, bool asymmetric);
+/** The images of the centres of dots, dark on light ground or the reverse; empty if the grid was not found.
+@param seconds of processor time, as the detector may take minutes for nothing */
+std::vector<cv::Point2d> detectCircleGrid(const cv::Mat& grey, cv::Size size, bool asymmetric, int seconds = 20);
 
 } // namespace tools
 

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_DETECTED_IMAGES_HPP
 #define REFRACT_TOOLS_DETECTED_IMAGES_HPP
 
-#include "console/images.hpp"
+#include "target/image_check.hpp"
 #include "target/target.hpp"
 
 namespace tools {
@@ -30,21 +30,18 @@ struct DetectedImages
     const DetectedImage* find(const std::string& stem) const;   //!< null if there is none
 };
 
-/** Finds the target in all images of a glob, or reads an mrcal corners.vnl or a points.csv (recognised by their extensions).
-@param source glob ('data/direct-*.png') or file name.
+/** Finds the target in all images of globs, or reads mrcal corners.vnl or points.csv (recognised by their extensions). All images are
+read once before any is searched, and some of each source are searched before all of any: a mistake is told within seconds.
 @param target null: there is none, and only a points.csv can be read.
-@param imageSize needed for a .vnl and a .csv, which do not say it; otherwise checked if not empty.
 @param quiet no progress.
 @param channel of colour images, in which the target is looked for.
-Throws Failure if there is no image, an image cannot be read, images differ in size, or no image shows the target. */
-DetectedImages readDetectedImages(const std::string& source, const Target* target, cv::Size imageSize, bool quiet,
-                                  Channel channel = BRIGHTNESS);
+Throws Failure if there is no image, an image cannot be read, images of a camera differ in size, or no image of a source shows the
+target. */
+std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& sources, const Target* target, bool quiet,
+                                               Channel channel = BRIGHTNESS);
 
 //! A file of points in place of images: there is nothing to look at.
 bool isPointFile(const std::string& source);
-
-//! "the chessboard in WHERE looks like one of 9x6 inner corners, not --size=10x7: ..."
-std::string otherTargetText(const std::string& where, const Target& target, cv::Size other);
 
 } // namespace tools
 

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/limited_search.hpp"
+#include "console/leftovers.hpp"
 
 #include <signal.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,6 +52,10 @@ private:
     const rlimit processor = {(rlim_t)seconds, (rlim_t)seconds + 1}, none = {0, 0};
     setrlimit(RLIMIT_CPU, &processor);
     setrlimit(RLIMIT_CORE, &none);
+    leaveLeftoversToParent();
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);       // nobody waits for its result any more
+#endif
     try
     {
         cv::setNumThreads(1);

@@ -14,6 +14,7 @@ namespace tools {
 namespace {
 
 const int LEAST = 3;                // rows and columns of a piece that is worth keeping
+const int SIDE_OF_COPY = 1000;      // pixels: enough to see what is there
 const double ABRUPT = 1.6;          // ratio of two steps in a row; a board near and steep to the camera reaches 1.3
 
 //! x right, y down, seen from the front: the same handedness as the object points.
@@ -35,6 +36,14 @@ Mat_<Point2f> inner(Mat_<Point2f> grid, Size size)
     if (isMirrored(grid))
         flip(grid.clone(), grid, 0);
     return grid;
+}
+
+Mat smallCopy(const Mat& grey)
+{
+    const double scale = std::min(1., (double)SIDE_OF_COPY/std::max(grey.cols, grey.rows));
+    Mat copy;
+    resize(grey, copy, Size(), scale, scale, INTER_AREA);
+    return copy;
 }
 
 bool isEvenStep(const Point2d& a, const Point2d& b, const Point2d& c)
@@ -69,12 +78,16 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
     }
 }
 
+bool glimpseChessboard(const Mat& grey, Size size)
+{
+    std::vector<Point2f> corners;
+    return findChessboardCornersSB(smallCopy(grey), size, corners);
+}
+
 Size lookForChessboard(const Mat& grey)
 {
-    const int sideOfCopy = 1000, leastCorners = 12;
-    const double scale = std::min(1., (double)sideOfCopy/std::max(grey.cols, grey.rows));
-    Mat copy;
-    resize(grey, copy, Size(), scale, scale, INTER_AREA);
+    const int leastCorners = 12;
+    const Mat copy = smallCopy(grey);
     Size largest;
     for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
     {

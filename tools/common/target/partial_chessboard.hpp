@@ -18,6 +18,9 @@ squares are cut, by the board's edge or by that of the view, and are less exact 
 @return size.area() pixels, NaN where a point was not seen; empty if no piece of at least 3 x 3 corners was found. */
 std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size size);
 
+//! Whether a chessboard of that size is seen in a small copy of the image.
+bool glimpseChessboard(const cv::Mat& grey, cv::Size size);
+
 //! Size of the largest chessboard that is seen in a small copy of the image, whatever it is; empty if there is none.
 cv::Size lookForChessboard(const cv::Mat& grey);
 

@@ -107,18 +107,26 @@ std::vector<std::pair<int, int>> Target::neighbours() const
     return pairs;
 }
 
-std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
+std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort) const
 {
     Size seenSize;
+    const int secondsOfChessboard = effort == HURRIED ? 2 : 5, secondsOfDots = effort == HURRIED ? 2 : 20;
     if (pattern_ == CHARUCO)
         return detectCharuco(grey, size_, square_, marker_, dictionary_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
-    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize)
-        : detectCircleGrid(grey, size_, pattern_ == ACIRCLES);
+    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize, secondsOfChessboard)
+        : detectCircleGrid(grey, size_, pattern_ == ACIRCLES, secondsOfDots);
     if (other)
         *other = seenSize;
     return points.empty() ? points : canonical(points, grey);
+}
+
+bool Target::glimpse(const Mat& grey) const
+{
+    if (partial_)
+        return !lookForChessboard(grey).empty();
+    return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey, nullptr, HURRIED).empty();
 }
 
 std::vector<std::vector<int>> Target::symmetries() const

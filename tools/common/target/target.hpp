@@ -43,6 +43,7 @@ public:
     Pattern pattern() const { return pattern_; }
     cv::Size size() const { return size_; }                 //!< inner corners, or dots
     double square() const { return square_; }
+    bool partial() const { return partial_; }               //!< any piece of it will do
     int count() const { return size_.area(); }
     const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
 
@@ -57,10 +58,16 @@ public:
     //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 
+    //! How long detectors which may take minutes for nothing go on.
+    enum Effort { HURRIED, THOROUGH };
+
     /** Pixels of the points in an 8-bit grey image, NaN where one was not seen; empty if the target was not found, which is
     known after some seconds in any image.
     @param other a chessboard's size, if it was not found but one of another size is in the image (the longer side first) */
-    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr) const;
+    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr, Effort effort = THOROUGH) const;
+
+    //! Whether it is worth while to look for the target: a fast detector finds it, of a chessboard in a small copy of the image.
+    bool glimpse(const cv::Mat& grey) const;
 
     /** The same points, renumbered by the target's symmetry so that the target is turned as in `reference`, another
     view of it by the same or a similarly turned camera. */

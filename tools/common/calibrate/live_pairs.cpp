@@ -1,0 +1,79 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "calibrate/live_pairs.hpp"
+
+#include <opencv2/core.hpp>
+#include <algorithm>
+
+namespace tools {
+
+std::string nameOf(const LivePlace& place, int cameras)
+{
+    return (cameras > 1 ? cv::format("camera %d, ", place.camera + 1) : "") + (place.glass ? "glass" : "direct");
+}
+
+LivePairs::LivePairs(const std::vector<LivePlace>& places, bool unpaired) : places_(places)
+{
+    bool kinds[2] = {false, false};
+    for (const LivePlace& place : places)
+    {
+        kinds[place.glass] = true;
+        cameras_ = std::max(cameras_, place.camera + 1);
+    }
+    pairs_ = !unpaired && kinds[0] && kinds[1];
+}
+
+std::vector<size_t> LivePairs::expected(const Images& images) const
+{
+    bool came[2] = {false, false};
+    for (size_t i = 0; i < places_.size(); i++)
+        came[places_[i].glass] = came[places_[i].glass] || images[i] != NONE;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < places_.size(); i++)
+        if (came[places_[i].glass] || (pairs_ && came[1]))
+            places.push_back(i);
+    return places;
+}
+
+//! "camera 2, glass"; empty: nothing.
+std::string LivePairs::missing(const Images& images) const
+{
+    std::string text;
+    for (size_t i : expected(images))
+        if (images[i] != FOUND)
+            text += (text.empty() ? "" : " and ") + nameOf(places_[i], cameras_)
+                    + (images[i] == WITHOUT_TARGET ? " (the board was not found in it: take it again)" : "");
+    return text;
+}
+
+std::string LivePairs::add(const std::string& stem, size_t place, bool found)
+{
+    if (!areAny())
+        return "";
+    Images& images = images_.emplace(std::make_pair(stem, !pairs_ && places_[place].glass), Images(places_.size(), NONE)).first->second;
+    const bool wasComplete = images[place] == FOUND;
+    images[place] = found ? FOUND : WITHOUT_TARGET;
+    const std::vector<size_t> all = expected(images);
+    const std::string gaps = missing(images);
+    if (!gaps.empty())
+        return "waiting for the image '" + stem + "' of " + gaps;
+    const bool onlyDirect = std::none_of(all.begin(), all.end(), [&](size_t i) { return places_[i].glass; });
+    const std::string by = cameras_ > 1 && all.size() > 1 ? " of all cameras" : "";
+    if (onlyDirect && pairs_)
+        return "'" + stem + "'" + (by.empty() ? "" : " is complete" + by + ";") + " is for the lens, or waits for its glass image";
+    complete_ += !wasComplete;
+    return (pairs_ ? cv::format("pair %d complete: '", complete_) : cv::format("view %d complete: '", complete_)) + stem + "'"
+           + (pairs_ ? ", direct and glass" : "") + by;
+}
+
+std::vector<std::string> LivePairs::incomplete() const
+{
+    std::vector<std::string> sentences;
+    for (const auto& entry : images_)
+        if (!missing(entry.second).empty())
+            sentences.push_back("'" + entry.first.first + "' lacks " + missing(entry.second));
+    return sentences;
+}
+
+} // namespace tools

@@ -1,0 +1,194 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "target/missing_target.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "target/partial_chessboard.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+namespace tools {
+
+namespace {
+
+const size_t TRIED = 2;             // images that a guess is tried on: each takes a second
+
+//! The longer side first.
+cv::Size sorted(cv::Size size)
+{
+    return cv::Size(std::max(size.width, size.height), std::min(size.width, size.height));
+}
+
+//! A part of the target has at most its size.
+bool mayBePart(cv::Size chessboard, const Target& target)
+{
+    const cv::Size whole = sorted(target.size());
+    return !chessboard.empty() && chessboard.width <= whole.width && chessboard.height <= whole.height;
+}
+
+std::string quotedNames(const std::vector<Without>& images)
+{
+    std::vector<std::string> paths;
+    for (const Without& image : images)
+        paths.push_back(image.path);
+    return listed(paths);
+}
+
+//! The size that most of the images show in which a chessboard is seen; empty: there is no such majority.
+cv::Size usualSize(const std::vector<Without>& images)
+{
+    std::map<std::pair<int, int>, int> counts;
+    int all = 0;
+    for (const Without& image : images)
+        if (!image.chessboard.empty())
+        {
+            counts[{image.chessboard.width, image.chessboard.height}]++;
+            all++;
+        }
+    for (const auto& entry : counts)
+        if (2*entry.second > all && (entry.second > 1 || images.size() == 1))
+            return cv::Size(entry.first.first, entry.first.second);
+    return cv::Size();
+}
+
+//! In at least one of the first images.
+bool isFound(const Target& target, const std::vector<Without>& images, Channel channel)
+{
+    const size_t count = std::min(images.size(), TRIED);
+    std::vector<char> found(count);
+    cv::parallel_for_(cv::Range(0, (int)count), [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty();
+    }, (double)count);
+    return std::count(found.begin(), found.end(), true) > 0;
+}
+
+std::optional<Target> like(const Target& target, const std::string& pattern, const std::string& dictionary, bool partial)
+{
+    TargetOptions options;
+    options.pattern = pattern;
+    options.size = sizeText(target.size());
+    options.square = target.square();
+    options.dictionary = dictionary;
+    options.partial = partial;
+    try
+    {
+        return Target(options);
+    }
+    catch (const Failure&)          // no such board can be: a dictionary with too few markers
+    {
+        return std::nullopt;
+    }
+}
+
+//! Half a board, or a hand before it: what to do.
+std::string partAdvice(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    const std::optional<Target> partial = like(target, "chessboard", TargetOptions().dictionary, true);
+    return std::string("keep the whole board in view and uncovered")
+           + (partial && isFound(*partial, images, channel)
+              ? ", or, with one camera and a hand-held board, add --unpaired --partial, which finds a piece of it in these images"
+              : "; what is seen of it is too little for --partial");
+}
+
+std::string partText(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    std::vector<std::string> sizes;
+    for (const Without& image : images)
+        if (mayBePart(image.chessboard, target))
+            sizes.push_back(sizeText(image.chessboard));
+    std::sort(sizes.begin(), sizes.end());
+    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+    std::string text;
+    for (const std::string& size : sizes)
+        text += (text.empty() ? "" : ", ") + size;
+    return "only a part of the chessboard of --size=" + sizeText(target.size()) + " is seen in " + quotedNames(images) + " (" + text
+           + " inner corners): " + partAdvice(images, target, channel);
+}
+
+//! A target of another kind, with the same number of points; empty: none is found.
+std::string otherPattern(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    static const struct { Target::Pattern pattern; const char *name, *dictionary; } OTHERS[] = {
+        {Target::CHARUCO, "charuco", "DICT_4X4_250"}, {Target::CHARUCO, "charuco", "DICT_5X5_1000"},
+        {Target::CHARUCO, "charuco", "DICT_6X6_1000"}, {Target::CHARUCO, "charuco", "DICT_7X7_1000"},
+        {Target::CHARUCO, "charuco", "DICT_ARUCO_ORIGINAL"}, {Target::CIRCLES, "circles", "DICT_4X4_250"},
+        {Target::ACIRCLES, "acircles", "DICT_4X4_250"}};
+    const std::vector<Without> one(images.begin(), images.begin() + 1);
+    for (const auto& other : OTHERS)
+    {
+        const std::optional<Target> tried = like(target, other.name, other.dictionary, false);
+        const bool same = other.pattern == target.pattern() && other.pattern != Target::CHARUCO;
+        if (!same && tried && isFound(*tried, one, channel))
+            return std::string("--pattern=") + other.name
+                   + (other.pattern == Target::CHARUCO ? std::string(" --dictionary=") + other.dictionary : "");
+    }
+    return "";
+}
+
+//! Where no chessboard is asked for, nobody has looked for one yet.
+cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
+{
+    std::vector<Without> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
+    for (Without& image : seen)
+        image.chessboard = sorted(lookForChessboard(readGrey(image.path, channel)));
+    return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
+}
+
+} // namespace
+
+cv::Size otherChessboard(const std::vector<Without>& images)
+{
+    const cv::Size other = images[0].chessboard;
+    const bool agree = std::all_of(images.begin(), images.end(), [&](const Without& image) { return image.chessboard == other; });
+    return agree ? other : cv::Size();
+}
+
+std::string explainMissing(const std::vector<Without>& images, const std::string& where, size_t all, const Target& target, Channel channel)
+{
+    const bool isChessboard = target.pattern() == Target::CHESSBOARD && !target.partial();
+    const auto parts = (size_t)std::count_if(images.begin(), images.end(), [&](const Without& image) {
+        return mayBePart(image.chessboard, target); });
+    const cv::Size usual = usualSize(images);
+    std::vector<Without> first(images.begin(), images.begin() + (long)std::min<size_t>(images.size(), 3));
+    if (isChessboard && !usual.empty() && !mayBePart(usual, target))
+        return otherTargetText(quotedNames(first), target, usual);
+    if (isChessboard && 2*parts >= images.size())        // clutter looks like a few squares here and there
+    {
+        // A smaller board, or one that is covered in the same way everywhere: nothing in the images tells which. But one less in both
+        // directions are squares that were counted.
+        const std::string other = otherTargetText(quotedNames(first), target, usual);
+        if (usual + cv::Size(1, 1) == sorted(target.size()))
+            return other;
+        if (images.size() > 1 && !otherChessboard(images).empty())
+            return other + "; or, if the board has more, " + partAdvice(images, target, channel);
+        const std::string part = partText(images, target, channel);
+        return usual.empty() ? part : part + "; or it is another board: if that is all of it, give --size=" + sizeText(usual);
+    }
+    const std::string looked = "any image of " + where
+        + (images.size() < all ? cv::format(" (%zu of %zu were looked at)", images.size(), all) : "");
+    if (target.partial())
+        return "no piece of the chessboard, of at least 5x5 inner corners, was found in " + looked + ": show more of it, check light and "
+               "focus";
+    const std::string other = otherPattern(images, target, channel);
+    if (!other.empty())
+        return "the target in " + quotedNames({images[0]}) + " looks like one of another kind: give " + other + ", or check --size="
+               + sizeText(target.size());
+    const cv::Size chessboard = isChessboard ? cv::Size() : chessboardIn(images, channel);
+    if (!chessboard.empty())
+        return "the target in " + quotedNames(first) + " looks like a chessboard of " + sizeText(chessboard)
+               + " inner corners: give --pattern=chessboard --size=" + sizeText(chessboard);
+    return "the target was not found in " + looked + ": check --pattern and --size=" + sizeText(target.size())
+           + " (inner corners or dots), light and focus";
+}
+
+std::string otherTargetText(const std::string& where, const Target& target, cv::Size other)
+{
+    return "the chessboard in " + where + " looks like one of " + sizeText(other) + " inner corners, not --size="
+        + sizeText(target.size()) + ": give --size=" + sizeText(other) + ", and count inner corners, not squares";
+}
+
+} // namespace tools

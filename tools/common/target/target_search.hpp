@@ -1,0 +1,51 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_TARGET_SEARCH_HPP
+#define REFRACT_TOOLS_TARGET_SEARCH_HPP
+
+#include "console/images.hpp"
+#include "console/progress.hpp"
+#include "target/target.hpp"
+
+namespace tools {
+
+/* The search for a target in the images of one camera. Where it fails it fails slowly, as every detector tries all that it can; so a few
+images come first, and if none of them shows the target, it is refused with what they show instead. Images are searched in parallel; what
+is found, and what is said, does not depend on the order. */
+class TargetSearch
+{
+public:
+    //! @param source as the user gave it, for texts
+    TargetSearch(const std::string& source, const std::vector<std::string>& paths, const Target& target, Channel channel);
+
+    //! A few images: throws Failure if they tell that there is no target in any.
+    void begin(Progress& progress);
+
+    //! All others. Returns the pixels of each image, see Target::detect; throws Failure if all are empty.
+    std::vector<std::vector<cv::Point2d>> finish(Progress& progress);
+
+private:
+    struct Result
+    {
+        std::vector<cv::Point2d> points;
+        cv::Size other;             //!< see Target::detect
+        bool done = false;
+    };
+
+    void search(const std::vector<int>& which, Target::Effort effort, Progress& progress);
+    //! Whether one of these is worth while to be searched.
+    bool glimpse(const std::vector<int>& which, Progress& progress);
+    void lookForOthers(const std::vector<int>& which);
+    [[noreturn]] void refuse(const std::vector<int>& which) const;
+
+    std::string source_;
+    const std::vector<std::string>& paths_;
+    const Target& target_;
+    Channel channel_;
+    std::vector<Result> results_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TARGET_SEARCH_HPP
