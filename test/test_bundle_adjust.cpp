@@ -354,6 +354,9 @@ TEST_CASE("What is wrong with the arguments, and what nothing determines, is sai
     CHECK_THAT(fault([](BundleCall& c) { c.rvecs.clear(); }, R_T), Contains("rvecs has 0 vectors"));
     CHECK_THAT(fault([](BundleCall& c) { c.images[1][0] = c.images[1][0]*NaN; }, R_T), Contains("imagePoints[1] has no point"));
 
+    // A window that the second camera cannot look through, as it is turned to the side.
+    CHECK_THAT(fault([](BundleCall& c) { c.windows = { 0, 0 }; Rodrigues(Vec3d(0, 2, 0), c.Rs[1]); }, R_T),
+               Contains("shared window: camera 2"));
     // One camera that stands still sees every point once.
     BundleCall alone(oneCamera(), makeWandScene(oneCamera(), 20, random, 0.1), random);
     CHECK_THAT(thrown([&] { alone.run(0); }), Contains("lengths has none between two points that are seen in two images"));

@@ -45,7 +45,7 @@ struct Options
 {
     std::string start, points, lengths, out, pointsOut, summary;
     BundleOptions bundle;
-    double maxRms = 0.;
+    double maxRms = 0., pixelSigma = 0.;
     bool robust = true;
 };
 
@@ -60,6 +60,8 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)")->check(CLI::IsMember(unitNames()));
     app.add_flag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
     app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "every match is right; by default wrong ones are left out");
+    app.add_option("--pixel-sigma", o.pixelSigma, "noise of a pixel coordinate that the matches are known to have: far above it they "
+        "contradict the start (default: that of start.yml, or 2 px at most)")->check(moreThanZero());
     app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
     app.add_option("--points-out", o.pointsOut, "points.csv to write");
     app.add_option("--summary", o.summary, "JSON file with all that is said, and more");
@@ -78,11 +80,11 @@ Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const
     return file;
 }
 
-//! What to free, in the same sentence.
+//! What to free, in the same sentence; of a rig that was calibrated: one of nominal values may be wrong in anything.
 void explain(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths, const BundleStart& start,
              const BundleAdjustment& adjustment, BundleFindings& findings)
 {
-    if (findings.contradictions.empty())
+    if (findings.contradictions.empty() || file.covariance.empty())
         return;
     BundleOptions options = o.bundle;
     const std::string explanation = explanationOf(start.free, adjustment.fit.sigma, [&](const std::vector<std::string>& free) {
@@ -111,7 +113,8 @@ int main(int argc, char** argv)
         const BundleStart start = startOf(file, options.start, options.bundle);
         requireScale(start, options.start, matches, lengths);
         const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
-        BundleFindings findings = findingsOf(start, lengths, adjustment, file.sigma, options.maxRms);
+        const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : file.sigma;
+        BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
         explain(options, file, matches, lengths, start, adjustment, findings);
         const std::string unit = !options.bundle.unit.empty() ? options.bundle.unit : file.unit;
         if (!options.pointsOut.empty())

@@ -402,7 +402,7 @@ TEST_CASE("What an earlier calibration knows has its say in refract_bundle, unle
     const ToolResult held = runTool(commandFor(f, ""));
     CAPTURE(held.out, held.err);
     CHECK(held.code == 2);
-    CHECK(mentions(held.err, "changed since; explained, with 0."));
+    CHECK(mentions(held.err, "not as the start says; explained, with 0."));
     CHECK(mentions(held.err, "if free: normal"));
     const ToolResult freed = runTool(commandFor(f, "--free=normal"));
     CAPTURE(freed.out, freed.err);
@@ -469,6 +469,33 @@ TEST_CASE("refract_bundle says in one sentence what is wrong with its input", "[
     CHECK(loose.code != 0);
     const ToolResult over = runTool("refract_bundle " + f / "start.yml" + " --points=" + f / "matches.csv --out=" + f / "start.yml");
     CHECK(over.code == 1);
+}
+
+TEST_CASE("What cannot be so is not called usable by refract_bundle", "[tools][bundle]")
+{
+    const Wand wand(15, 2, 60);
+    const TemporaryFolder f;
+    wand.write(f);
+    Wand swapped = wand, mirrored = wand;
+    std::swap(swapped.pixels[0], swapped.pixels[1]);
+    for (Point2d& p : mirrored.pixels[1])
+        p.x = SIZE.width - 1 - p.x;
+    for (const std::string& matches : { swapped.matches(), mirrored.matches() })
+    {
+        writeFile(f / "matches.csv", matches);
+        const ToolResult result = bundle(f);
+        CAPTURE(scenes::seed(), result.out, result.err);
+        CHECK(result.code != 0);
+        CHECK((result.code == 1 || mentions(result.out, "NOT USABLE: ")));
+    }
+    writeFile(f / "matches.csv", wand.matches());
+    const ToolResult held = bundle(f, "--free=none");
+    CAPTURE(held.out, held.err);
+    CHECK(held.code == 2);
+    CHECK(mentions(held.err, "order of the start"));
+    CHECK(mentions(readFile(f / "calib.yml"), "NOT USABLE"));
+    CHECK(bundle(f, "--pixel-sigma=0.1").code == 0);
+    CHECK(bundle(f, "--pixel-sigma=0.01").code == 2);
 }
 
 TEST_CASE("refract_bundle says what it found in ten lines of 80 columns", "[tools][bundle]")

@@ -270,7 +270,7 @@ TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and w
 TEST_CASE("every tool explains itself", "[tools]")
 {
     for (const std::string tool : {"refract_simulate", "refract_measure", "refract_undistort", "refract_epilines",
-                                   "refract_stereo", "refract_board", "refract_calib", "refract_check", "refract_export"})
+                                   "refract_stereo", "refract_board", "refract_bundle", "refract_calib", "refract_check", "refract_export"})
     {
         const ToolResult help = runTool(tool + " --help"), version = runTool(tool + " --version");
         CHECK(help.code == 0);

@@ -121,7 +121,7 @@ std::string BundleFindings::verdict() const
     return weak.empty() ? maxRms > 0. ? "PASS" : "USABLE" : "USABLE, WITH WEAK POINTS";
 }
 
-BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double startSigma,
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double knownSigma,
                           double maxRms)
 {
     const Fit& fit = adjustment.fit;
@@ -136,10 +136,14 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
     findContradictions(start, fit, findings);
-    const double NOISIER = 5.;
-    if (startSigma > 0. && fit.sigma > NOISIER*startSigma)
-        findings.contradictions.push_back(format("the matches are off by %.3g px, where the start was made with %.3g px of noise: "
-                                                 "matches are wrong, or something has changed since", fit.sigma, startSigma));
+    const double NOISIER = 5., NO_DETECTOR = 2.;     // px
+    if (knownSigma > 0. && fit.sigma > NOISIER*knownSigma)
+        findings.contradictions.push_back(format("the matches are off by %.3g px, where the noise is known to be %.3g px: matches are "
+                                                 "wrong, or something is not as the start says", fit.sigma, knownSigma));
+    else if (!(knownSigma > 0.) && fit.sigma > NO_DETECTOR)
+        findings.contradictions.push_back(format("the matches are off by %.3g px, more than found points are: are the cameras in the "
+                                                 "order of the start, the pixels raw and not mirrored, and is what is not free as the "
+                                                 "start says? (If they are that noisy, say --pixel-sigma)", fit.sigma));
     findings.maxRms = maxRms;
     findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
     return findings;

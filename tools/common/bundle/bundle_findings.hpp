@@ -35,7 +35,8 @@ struct BundleFindings
     std::string verdict() const;
 };
 
-BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double startSigma,
+//! @param knownSigma of a pixel coordinate; not above 0: unknown
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double knownSigma,
                           double maxRms);
 
 /** Which of what may change in a rig explains a contradiction, each freed alone beside what is free: the best, and those that are

@@ -38,8 +38,13 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const TermCriteria criteria = checkedCriteria(task.criteria);
     SceneOutliers outliers(problem, task.isRigKnown, task.arePosesKnown);
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    problem.setPoints(std::vector<Point3d>(task.points.size(), Point3d(NaN, NaN, NaN)), Masks());
+    FitOutcome outcome = problem.findPointWithoutImage();       // of none: a shared window that a camera cannot look through
+    if (!outcome.converged())
+        return outcome;
     problem.setPoints(startPoints(problem, task.points), Masks());
-    FitOutcome outcome = outliers.checkWhatIsLeft();
+    outcome = outliers.checkWhatIsLeft();
     if (!outcome.converged())
         return outcome;
     // Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up
