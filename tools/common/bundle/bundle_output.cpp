@@ -3,6 +3,7 @@
 
 #include "bundle/bundle_output.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "console/csv.hpp"
 #include "console/table.hpp"
 
 #include <nlohmann/json.hpp>
@@ -19,17 +20,6 @@ namespace tools {
 namespace {
 
 const size_t WIDTH = 80;
-
-//! Quoted where readers might split it.
-std::string cellOf(const std::string& text)
-{
-    if (text.find_first_of(", ;\t\"\n\r") == std::string::npos)
-        return text;
-    std::string cell = "\"";
-    for (const char c : text)
-        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return cell + "\"";
-}
 
 //! As many names as a line holds, and how many more there are.
 std::string fitted(const std::string& head, const std::vector<std::string>& words)
