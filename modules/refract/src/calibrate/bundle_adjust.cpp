@@ -113,11 +113,26 @@ void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
     }
 }
 
+//! Per camera, or nothing.
+void readCovariances(const std::vector<std::vector<Mat> >& covariances, BundleTask& task)
+{
+    checkCount(covariances.size(), (int)task.pixels.size(), "pixelCovariances", true);
+    MedianVariance median;
+    for (size_t c = 0; c < covariances.size(); c++)
+    {
+        task.covariances.push_back(readCovarianceViews(covariances[c], task.pixels[c], numbered("pixelCovariances", (int)c)));
+        for (size_t view = 0; view < task.pixels[c].size(); view++)
+            median.add(task.pixels[c][view], task.covariances[c].empty() ? PixelCovariances() : task.covariances[c][view]);
+    }
+    task.variance = median();
+}
+
 //! What both forms do; poses and deviations only where they are wanted.
 BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<RefractiveCamera> >& cameras,
                  const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
                  InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths, int flags,
-                 InputArrayOfArrays poseCovariances, TermCriteria criteria, bool wantsPointDeviations)
+                 InputArrayOfArrays poseCovariances, TermCriteria criteria, bool wantsPointDeviations,
+                 InputArrayOfArrays cameraCovariances, const std::vector<std::vector<Mat> >& pixelCovariances)
 {
     const int count = (int)cameras.size();
     if (count == 0)
@@ -141,12 +156,14 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     task.lengths = readLengths(lengths, (int)task.points.size());
     readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
     checkScale(task);
+    readCovariances(pixelCovariances, task);
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
     addWedges(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
+    task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
     RigViews views;
     views.object.resize(pixels[0].size());
     for (const PixelViews& ofCamera : pixels)
@@ -156,7 +173,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     BundleFit fit;
     throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
     setCameras(rig, cameras);
-    if (flags & GLASS_FREE_EXTRINSICS)
+    if (areExtrinsicsFree(flags, rig, task.cameraPriors))
         writeExtrinsicPoses(rig, Rs, Ts);
     writePoints(fit.points, depth, points3D);
     return fit;
@@ -172,16 +189,17 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
                               InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
                               OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
                               OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
-                              InputArrayOfArrays poseCovariances, TermCriteria criteria)
+                              InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
+                              const std::vector<std::vector<Mat> >& pixelCovariances)
 {
     CV_INSTRUMENT_REGION();
 
     checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
     std::vector<PixelViews> pixels;
     for (size_t c = 0; c < imagePoints.size(); c++)
-        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str()));
+        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
     const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
-                                 poseCovariances, criteria, pointDeviations.needed());
+                                 poseCovariances, criteria, pointDeviations.needed(), cameraCovariances, pixelCovariances);
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.pointDeviations, pointDeviations);
     writeMasks(fit.inliers, inliers);
@@ -196,10 +214,10 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
 
     checkFlags(flags, BUNDLE_FLAGS);
     std::vector<PixelViews> pixels;
-    for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints"))
+    for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints", HalfPixels::TAKEN))
         pixels.push_back(PixelViews(1, ofCamera));
     return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
-                  false).rms;
+                  false, noArray(), {}).rms;
 }
 
 }} // namespace

@@ -73,7 +73,8 @@ void describe(const Problem& problem, BundleFit& fit)
 
 FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
 {
-    Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags);
+    Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags,
+                    task.cameraPriors, task.covariances, task.variance);
     const FitOutcome outcome = adjust(problem, task);
     if (!outcome.isUsable())
         return outcome;

@@ -16,6 +16,9 @@ struct BundleTask
     std::vector<Point3d> points;                //!< NaN: not known
     std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
     std::vector<PosePrior> posePriors;      //!< of the same
+    std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
+    std::vector<CovarianceViews> covariances;   //!< of the pixels, per camera, or empty
+    double variance = 1;                        //!< in units of which they are: RigViews'
     std::vector<KnownLength> lengths;
     int flags;
     TermCriteria criteria;
