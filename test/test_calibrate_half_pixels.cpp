@@ -50,6 +50,24 @@ Mat extrinsicPrior(const Ptr<RefractiveCamera>& camera, const Vec6d& variances)
     return C;
 }
 
+//! Covariance of a rotation vector that may turn by any angle, but not about the camera's x: (turn about x)^2/tiny + turns^2/wide.
+Matx33d turnedAcross(const Matx33d& R)
+{
+    const double H = 1e-5, TINY = 1e-6, WIDE = 1;
+    Vec3d rvec, about;
+    Rodrigues(R, rvec);
+    for (int k = 0; k < 3; k++)
+    {
+        Matx33d moved;
+        Vec3d step = rvec;
+        step[k] += H;
+        Rodrigues(step, moved);
+        const Matx33d turn = moved*R.t();
+        about[k] = (turn(2, 1) - turn(1, 2))/(2*H);
+    }
+    return Matx33d(about*about.t()*(1/TINY) + Matx33d::eye()*(1/WIDE)).inv(DECOMP_CHOLESKY);
+}
+
 std::string whyNot(const std::function<void()>& call)
 {
     try { call(); }
@@ -103,7 +121,7 @@ TEST_CASE("A projector that knows u alone is calibrated behind its window", "[ha
     const double SIGMA = 0.1;
     const RigTruth rig = makeRig(2, { 0, 1 }, 1.333, 0.3);
     double sum = 0;
-    const int count = trials(6);
+    const int count = trials(20);
     for (int trial = 0; trial < count; trial++)
     {
         RigScene scene = makeRigScene(rig, 12, random, SIGMA);
@@ -120,8 +138,8 @@ TEST_CASE("A projector that knows u alone is calibrated behind its window", "[ha
         CHECK(angleBetween(call.cameras[1]->window().normal, rig.cameras[1]->window().normal) < 3);
         sum += chiSquare(rig, call.cameras, call.Rs, call.Ts, call.covariance);
     }
-    CHECK(sum/count > 0.4);
-    CHECK(sum/count < 1.9);
+    CHECK(sum/count > 0.7);
+    CHECK(sum/count < 1.3);
     printNumber("camera and projector of u, calibrated, mean chi-square over its dimensions", sum/count, "");
 }
 
@@ -168,12 +186,17 @@ TEST_CASE("A straight sheet of light: three of its six are told, the others are 
     const int flags = GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
     const std::string why = whyNot([&] { call.run(flags); });
     CHECK_THAT(why, Contains("do not determine") && Contains("T"));
-    // T along the sheet's lines alone is not enough.
-    call.cameraCovariances = { Mat(), extrinsicPrior(call.cameras[1], { NaN, NaN, NaN, NaN, 0, NaN }) };
-    CHECK_THAT(whyNot([&] { call.run(flags); }), Contains("do not determine R"));
-    // What is wide open for the pixels closes what they do not tell.
-    const double turn = 0.1*0.1, shift = 100*100;
-    call.cameraCovariances = { Mat(), extrinsicPrior(call.cameras[1], { turn, turn, turn, shift, shift, shift }) };
+    // T along the sheet alone is not enough.
+    call.cameraCovariances = { Mat(), extrinsicPrior(call.cameras[1], { NaN, NaN, NaN, NaN, 0, 0 }) };
+    const std::string whyTurn = whyNot([&] { call.run(flags); });
+    if (whyTurn == "no exception")          // where noise seems to tell a little of what the sheet does not
+        CHECK(norm(call.deviations.rowRange(call.deviations.rows - 6, call.deviations.rows - 3), NORM_INF) > 0.01);
+    else
+        CHECK_THAT(whyTurn, Contains("do not determine R"));
+    call.Rs[1] = Mat(R, true);
+    call.Ts[1] = Mat(T + Vec3d(3, 0, 0), true);
+    // Nor may it turn about the sheet's normal.
+    Mat(turnedAcross(R)).copyTo(call.cameraCovariances[1](Rect(parametersOf(laser), parametersOf(laser), 3, 3)));
     call.run(flags);
     // The plane, in the frame of camera 1: first row of R and x of T.
     const auto planeOf = [](const Matx33d& rotation, const Vec3d& t)
@@ -189,8 +212,12 @@ TEST_CASE("A straight sheet of light: three of its six are told, the others are 
     }
     CHECK(worst < 0.05);
     printNumber("sheet of light from 8 images in water, farthest from the true plane", worst, "mm");
-    const int first = call.covariance.rows - 6;
-    CHECK(std::sqrt(call.covariance.at<double>(first + 4, first + 4)) > 10);       // along the sheet: what the prior says
+    CHECK(Vec3d(call.Ts[1])[1] == T[1]);
+    CHECK(Vec3d(call.Ts[1])[2] == T[2]);
+    // x of T, which the sheet tells, and how well.
+    const double sigma = call.deviations.at<double>(call.deviations.rows - 3);
+    CHECK(sigma < 0.1);
+    CHECK(std::abs(Vec3d(call.Ts[1])[0] - T[0]) < 5*sigma);
 }
 
 TEST_CASE("Weighted pixels calibrate a rig, and their common factor is estimated", "[half_pixels][calibrate_rig]")
@@ -265,7 +292,7 @@ TEST_CASE("A moved scene with a line camera beside cameras: bundle adjustment ta
     const RigTruth rig = makeRig(3, { 0, 1, 2 }, 1.333, 0.3);
     double sum = 0;
     int number = 0;
-    for (int trial = 0; trial < trials(4); trial++)
+    for (int trial = 0; trial < trials(20); trial++)
     {
         BundleScene scene = makeWandScene(rig, 60, random, SIGMA);
         forgetV(scene.pixels[2]);
@@ -298,8 +325,8 @@ TEST_CASE("A moved scene with a line camera beside cameras: bundle adjustment ta
             CHECK(std::abs(T[k] - rig.Ts[2][k]) <= 5*call.deviations.at<double>(call.deviations.rows - 3 + k));
     }
     const double ratio = sum/number;
-    CHECK(ratio > 0.4);
-    CHECK(ratio < 1.9);
+    CHECK(ratio > 0.6);
+    CHECK(ratio < 1.5);
     printNumber("bundle of two cameras and one of u alone, points' squared errors over stated", ratio, "");
 }
 
