@@ -223,7 +223,7 @@ struct Rig
                 p += Point2d(noise(engine), noise(engine));
         }
         for (int i = 0; i < count && hideOneIn; i += hideOneIn)
-            pixels[i/hideOneIn % 4][i].x = NAN;
+            pixels[i/hideOneIn % 4][i] = Point2d(NAN, NAN);
     }
     std::vector<View> views() const
     {
@@ -250,6 +250,35 @@ Row rigRow(int count, const std::string& key, const std::string& work, int hideO
     r.peer = [=] { triangulateRefractive(all->cameras[0], all->cameras[1], all->Rs[1], all->Ts[1], all->pixels[0],
                                          all->pixels[1], all->others); };
     r.error = [=] { return optimumError(d->views(), d->points); };
+    r.successes = [=] { return countOk(d->status); };
+    return r;
+}
+
+/* A point of a camera and a sheet of light, each behind its own window, beside that of two cameras; pixels without noise, which
+the second camera of both has as well. */
+Row sheetRow(int count, const std::string& key, const std::string& work, double target)
+{
+    const auto d = std::make_shared<Rig>(count, 0), stereo = std::make_shared<Rig>(count, 0);
+    const auto truth = std::make_shared<std::vector<Point3d> >();
+    for (const auto& rig : { d, stereo })
+    {
+        rig->cameras.resize(2); rig->Rs.resize(2); rig->Ts.resize(2); rig->pixels.resize(2);
+    }
+    triangulateRefractive(stereo->cameras, stereo->Rs, stereo->Ts, stereo->pixels, *truth);
+    for (int k = 0; k < 2; k++)
+        refractiveProjectPoints(*truth, d->Rs[k], d->Ts[k], d->cameras[k], d->pixels[k]);
+    for (Point2d& p : d->pixels[1])
+        p.y = NAN;
+    Row r = { key, work, "triangulateRefractive, two cameras", { target, target }, count, {}, {}, {}, {}, 57, "mm", 1e-8, {}, {}, {} };
+    r.ours = [=] { triangulateRefractive(d->cameras, d->Rs, d->Ts, d->pixels, d->points, d->status); };
+    r.peer = [=] { triangulateRefractive(stereo->cameras, stereo->Rs, stereo->Ts, stereo->pixels, stereo->points, stereo->status); };
+    r.error = [=]
+    {
+        double worst = 0;
+        for (size_t i = 0; i < truth->size(); i++)
+            worst = std::max(worst, norm(d->points[i] - (*truth)[i]));
+        return worst;
+    };
     r.successes = [=] { return countOk(d->status); };
     return r;
 }
@@ -339,6 +368,7 @@ void addPairRows(std::vector<Row>& rows, int count)
     rows.push_back(covarianceRow(many, "triangulate_calibrated", "triangulate, with the calibration's covariance", true, 3));
     rows.push_back(rigRow(count, "triangulate_rig", "triangulate, 4 cameras", 0, 2.2));
     rows.push_back(rigRow(count, "triangulate_missing", "triangulate, 4 cameras, some unseen", 2, 0));
+    rows.push_back(sheetRow(count, "triangulate_sheet", "triangulate, camera and sheet of light", 1));
     Row cv = rigRow(count, "triangulate_cv", "triangulate, 4 cameras", 0, 2.2/12);
     cv.peerName = "3 cv::triangulatePoints";
     cv.peer = [=] { for (int k = 0; k < 3; k++) triangulatePoints(Matx34d::eye(), many->P2, many->normal1, many->normal2,

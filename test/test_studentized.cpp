@@ -93,3 +93,21 @@ TEST_CASE("A good observation exceeds the cut with a chance of 1e-4, whatever th
     CHECK(beyond >= 1);
     CHECK(beyond <= 20);        // 8 expected
 }
+
+TEST_CASE("Of half a pixel a deletion residual has one dimension", "[half_pixels][studentized]")
+{
+    for (bool isUsed : { false, true })
+        for (int row : { 0, 1 })
+        {
+            const double leverage = 0.25, variance = isUsed ? 1 - leverage : 1 + leverage;
+            Vec2d residual;
+            Matx22d prediction = Matx22d::zeros();
+            residual[row] = 3;
+            prediction(row, row) = leverage;
+            const DeletionResidual half(residual, prediction, isUsed, 1);
+            CHECK(half.dimensions == 1);
+            CHECK(half.square == Approx(9/variance));
+            prediction(row, row) = 1;
+            CHECK(DeletionResidual(residual, prediction, true, 1).dimensions == 0);     // nothing else predicts it
+        }
+}

@@ -218,7 +218,7 @@ TEST_CASE("Two of any number of cameras are the pair", "[triangulate_rig]")
     Random random;
     Rig rig = makeRig(2, 1000, random);
     addNoise(rig, 0.3, random);
-    rig.pixels[0][5] = Vec2d(NaN, 3);
+    rig.pixels[0][5] = Vec2d(NaN, NaN);
     for (int flags : { TRIANGULATE_OPTIMAL, TRIANGULATE_MIDPOINT })
     {
         std::vector<Vec3d> pair;

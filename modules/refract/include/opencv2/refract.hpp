@@ -43,6 +43,14 @@ without a window.
   the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
   Matx33d, or rotation vectors.
 - **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
+- **Half pixels**: triangulateRefractive for any number of cameras, refractiveSolvePnP, refractiveSolvePnPGeneric,
+  calibrateGlassRig and refractiveBundleAdjust take pixels of which one coordinate is NaN: observations of the other one. So a
+  laser line, a fringe projector and a line camera are cameras, each behind its own window: a sheet of light is what one image
+  line of its emitter sees, (u, NaN). Both coordinates NaN: not seen. All other calls take a NaN coordinate as not seen.
+- **Covariances of pixels** (`pixelCovariances`): of each pixel, in units of the square of the pixels' standard deviation (which
+  is an argument, or estimated), so that 1, 0, 1 is a usual pixel. N x 4 or Nx1 with 4 channels (2x2 row by row; NumPy: N x 2 x
+  2), or N x 3 or Nx1 with 3 channels (uu, uv, vv); float32 or float64. Of a half pixel only the variance of the known
+  coordinate is read; of one that was not seen, nothing. Empty: all pixels are usual ones.
 
 ### The model
 
@@ -78,9 +86,9 @@ enum RefractiveStatus {
     REFRACT_TOTAL_REFLECTION = 4,   //!< no light path exists: total reflection in a layer
     REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
-    REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, are parallel
+    REFRACT_PARALLEL_RAYS = 7,      //!< all rays, or the ray and the plane, or sheet, are parallel
     REFRACT_NO_INTERSECTION = 8,    //!< the closest point of the rays, or of ray and plane, is behind an origin
-    REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than two cameras saw the point (9 is used by refract_measure)
+    REFRACT_TOO_FEW_VIEWS = 10      //!< fewer than three coordinates were observed (9 is used by refract_measure)
 };
 
 //! @}
@@ -144,7 +152,7 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
-    GLASS_FIX_NORMAL = 1048576,         //!< the normal stays (refractiveBundleAdjust only)
+    GLASS_FIX_NORMAL = 1048576,         //!< the normals stay (calibrateGlassRig, refractiveBundleAdjust)
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
@@ -927,11 +935,13 @@ CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
 @param cameras lens and window of each.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
 @param Ts 3x1 translation, as Rs; the first is 0.
-@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param imagePoints one array of N raw pixels per camera. One coordinate NaN: half a pixel. Both NaN: the camera did not see
+that point.
 @param points3D N points in the frame of camera 1, Nx1 3-channel.
-@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than two cameras saw the point. Every observed
-pixel must have a ray: otherwise the point has the status of the first pixel without one.
-@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+@param status Nx1 CV_8U, see RefractiveStatus; REFRACT_TOO_FEW_VIEWS where fewer than three coordinates were observed,
+REFRACT_PARALLEL_RAYS where the observed ones do not determine the point, as where a camera's ray lies in the sheet. Every
+observed pixel must have a ray: otherwise the point has the status of the first pixel without one.
+@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT, which takes half pixels as not seen.
 
 With two cameras the result is that of triangulateRefractive for two. Outliers are not rejected: one wrong observation among
 many cameras shifts the point.
@@ -944,23 +954,25 @@ CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> 
 @param cameras lens and window of each.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
 @param Ts 3x1 translation, as Rs; the first is 0.
-@param imagePoints one array of N raw pixels per camera. NaN: the camera did not see that point.
+@param imagePoints as above.
 @param points3D N points in the frame of camera 1, Nx1 3-channel.
-@param status Nx1 CV_8U, see RefractiveStatus.
-@param flags TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT.
+@param status as above.
+@param flags as above.
 @param pixelSigma standard deviation of each pixel coordinate.
 @param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras,
 then rvec and T of each but the first; it is propagated to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
-@param reprojectionErrors N x cameras CV_64F, pixels: distance of each point's projection from the given pixel; NaN where there
-is no point, or the camera did not see it.
+@param reprojectionErrors N x cameras CV_64F, pixels: distance of each point's projection from the given pixel, of half a pixel
+the difference of its known coordinate; NaN where there is no point, or the camera did not see it.
+@param pixelCovariances one array per camera: the covariance of each pixel in units of the square of pixelSigma (see the
+conventions). The point is the most likely one for them. An empty array, or noArray(): usual pixels.
 */
 CV_EXPORTS_AS(triangulateRefractiveExtended) void triangulateRefractive(
         const std::vector<Ptr<RefractiveCamera> >& cameras,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, InputArrayOfArrays imagePoints,
         OutputArray points3D, OutputArray status, int flags,
         double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
-        OutputArray reprojectionErrors = noArray());
+        OutputArray reprojectionErrors = noArray(), InputArrayOfArrays pixelCovariances = noArray());
 
 //! @}
 
@@ -1287,8 +1299,9 @@ determines the normal.
 targets.
 @param imagePointsDirect per camera, per view: the same points of the same, unmoved target seen without the window; may be
 empty as a whole.
-@param imagePointsRefracted per camera, per view: the points seen through the window. NaN: the point was not seen. An empty
-array: there is no image. An empty list: the camera has none.
+@param imagePointsRefracted per camera, per view: the points seen through the window. One coordinate NaN: half a pixel (here
+and in imagePointsDirect). Both NaN: the point was not seen. An empty array: there is no image. An empty list: the camera has
+none.
 @param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
 @param windowOfCamera per camera: the index of its window. Cameras with equal numbers share one window; empty: each camera has
 its own. The initial value of a shared window is that of its first camera; for the others it follows from R and T.
@@ -1317,8 +1330,16 @@ exact; noArray(): all are exact.
 L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
 estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
 NaN the flags decide, also for window parameters without a variance (rows of the normal are not used). noArray(): no prior
-knowledge.
-@return RMS reprojection error in pixels over all points that were used.
+knowledge. It may also be a (P+6)x(P+6) one, of the camera's parameters, then of its rvec and T (rows and columns of camera 1:
+not used). With a variance they are estimated, with this prior; with the variance 0 exact, with any flags. An emitter of which
+only one coordinate is known needs this: of a straight sheet of light the images determine the plane, three of the six.
+@param pixelCovariancesDirect per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the
+pixels' variance, in units of which they are, is estimated). An empty array, list or whole: usual pixels.
+@param pixelCovariancesRefracted as pixelCovariancesDirect.
+@return RMS reprojection error in pixels over all points that were used (of half a pixel: of its known coordinate; without
+weights).
+
+A camera without a window (no layer, equal media) may be part of the rig if other windows refract.
 
 Throws as calibrateGlass, also without Ceres, and with GLASS_ROBUST if fewer than half of all points are inliers.
 */
@@ -1332,7 +1353,9 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
         OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
         int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray());
+        InputArrayOfArrays cameraCovariances = noArray(),
+        const std::vector<std::vector<Mat> >& pixelCovariancesDirect = std::vector<std::vector<Mat> >(),
+        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted = std::vector<std::vector<Mat> >());
 
 /** @overload
 With systematic errors of the targets.
@@ -1354,7 +1377,9 @@ CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArr
         OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
         InputArray targetCovariance, OutputArray targetErrors, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray());
+        InputArrayOfArrays cameraCovariances = noArray(),
+        const std::vector<std::vector<Mat> >& pixelCovariancesDirect = std::vector<std::vector<Mat> >(),
+        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted = std::vector<std::vector<Mat> >());
 
 /** @overload
 The short form: the results are lenses and windows in cameras and (with GLASS_FREE_EXTRINSICS) Rs and Ts.
@@ -1413,8 +1438,8 @@ GLASS_USE_POSES. Without any of them this throws, because refraction alone hardl
 numbers, also for the normal, the distance and the thickness without a target). A parameter that is hardly determined is not
 refused: it has a large value in stdDeviations.
 
-@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64. NaN: not seen in that image. An
-empty array: there is no image.
+@param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64. One coordinate NaN: half a pixel.
+Both NaN: not seen in that image. An empty array: there is no image.
 @param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
 @param windowOfCamera per camera: the index of its window, as in calibrateGlassRig; empty: each camera has its own.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
@@ -1423,8 +1448,8 @@ Initial value and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
 @param rvecs scene -> camera 1 rotation vector of each view, initial value and result; with one view it may be empty.
 @param tvecs scene -> camera 1 translation of each view; as rvecs.
 @param points3D M scene points, initial value and result, Nx1 3-channel. Empty, or NaN for a point: its initial value is
-triangulated from its rays. The result is NaN for a point that has fewer than two observations (with GLASS_ROBUST: inliers), or
-whose rays do not meet.
+triangulated from its rays. The result is NaN for a point of which fewer than three coordinates were observed (with
+GLASS_ROBUST: by inliers), or whose rays do not meet.
 @param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
 deviation > 0; noArray(): none.
 @param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
@@ -1439,6 +1464,8 @@ loss, then a decision for each observation; the probability to reject an inlier 
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is exact;
 noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
+@param cameraCovariances prior knowledge of each camera, as for calibrateGlassRig, also of its rvec and T; noArray(): none.
+@param pixelCovariances per camera, per view, as imagePoints: the covariance of each pixel, as for calibrateGlassRig.
 @return RMS reprojection error in pixels over all points that were used.
 
 Throws if the data do not determine a free parameter, with its name; throws Error::StsNotImplemented in a build without Ceres.
@@ -1451,7 +1478,9 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         InputOutputArray points3D, InputArray lengths,
         OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
         OutputArrayOfArrays inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
+        InputArrayOfArrays cameraCovariances = noArray(),
+        const std::vector<std::vector<Mat> >& pixelCovariances = std::vector<std::vector<Mat> >());
 
 /** @overload
 With what is known of the rig from an earlier calibration, and of the lengths in common.
@@ -1477,7 +1506,7 @@ CV_EXPORTS_AS(refractiveBundleAdjustPriors) double refractiveBundleAdjust(
 /** @overload
 The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial
 values and results; flags say which are estimated.
-@param imagePoints one array of Mx2 pixels per camera. NaN: the point was not seen.
+@param imagePoints one array of Mx2 pixels per camera. One coordinate NaN: half a pixel. Both NaN: the point was not seen.
 @param cameras as above.
 @param windowOfCamera as above.
 @param Rs as above.
@@ -1501,7 +1530,7 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 
 /** @brief Pose of a known target seen through the window (maximum likelihood).
 @param objectPoints N >= 4 3-D points (three are enough with useExtrinsicGuess), or none.
-@param imagePoints N raw pixels. NaN: the point was not seen.
+@param imagePoints N raw pixels. One coordinate NaN: half a pixel. Both NaN: the point was not seen.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
@@ -1510,7 +1539,8 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 @param useExtrinsicGuess rvec, tvec are the initial values.
 @param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as in cv::solvePnPGeneric.
 @return false if there is no pose: there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a line,
-or no pose gives all of them an image. Then rvec and tvec are unchanged, and reprojectionError is empty.
+or no pose gives all of them an image. Then rvec and tvec are unchanged, and reprojectionError is empty. The first guess is made
+from whole pixels, at least 4; with useExtrinsicGuess half pixels are enough, 6 coordinates in all.
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1536,11 +1566,14 @@ are no redundant observations (three points).
 @param cameraCovariance uncertainty of the camera: an LxL covariance of its L lens parameters, or a PxP one of its P parameters
 in the order of RefractiveCamera::parameterNames(). It increases covariance; the pose does not change. noArray(): the camera is
 exact.
+@param pixelCovariances covariance of each pixel in units of the square of sigma (see the conventions). The pose is the most
+likely one for them. noArray(): usual pixels.
 @return as above; covariance is empty if there is no pose.
 */
 CV_EXPORTS_AS(refractiveSolvePnPExtended) bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         const Ptr<RefractiveCamera>& camera, OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess,
-        OutputArray reprojectionError, OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray());
+        OutputArray reprojectionError, OutputArray covariance, double sigma = 0, InputArray cameraCovariance = noArray(),
+        InputArray pixelCovariances = noArray());
 
 /** @brief All poses of a known target that explain its image: the minima of the reprojection error, the smallest first.
 

@@ -127,10 +127,8 @@ FitOutcome setHalf(const std::vector<FreeParameter>& parameters, const Informati
     half.resize(count, 0);
     if (count == 0)
         return FitOutcome();
-    for (int i = 0; i < count; i++)
-        if (!(information.effect[i] > 0))
-            return undetermined(parameters, VectorXd::Unit(count, i), 1, VectorXd());
-    const VectorXd scale = information.effect.cwiseInverse();
+    // What has no effect at all is lost as well.
+    const VectorXd scale = (information.effect.head(count).array() > 0).select(information.effect.head(count).cwiseInverse(), 0.);
     const Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeFullV);
     // The rows may be fewer than the parameters.
     VectorXd values = VectorXd::Zero(count);

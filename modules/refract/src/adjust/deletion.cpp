@@ -119,7 +119,8 @@ std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& pro
                 const int at = problem.hasScene() ?
                     3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]) : 0;
                 all[o.image][o.row] = DeletionResidual(Vec2d(image.residuals[2*o.row], image.residuals[2*o.row + 1]),
-                                                       prediction(image, o.row, at), isInlier[o.image][o.row] != 0);
+                                                       prediction(image, o.row, at), isInlier[o.image][o.row] != 0,
+                                                       problem.images()[o.image].points.rowsOf(o.row));
             }
         }
     });

@@ -3,7 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 /* Two rays of wrong matches often come within the noise of each other: one equation checks them. So a point that has an outlier
-stays only if more than half of its observations are inliers, and at least three; one without outliers needs two. */
+stays only if more than half of its observations are inliers, and two equations at least check them, as of three rays; one
+without outliers needs three coordinates. */
 
 #include "adjust/outliers.hpp"
 #include "adjust/ray_midpoints.hpp"
@@ -17,15 +18,11 @@ namespace {
 const Point3d NOWHERE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
                       std::numeric_limits<double>::quiet_NaN());
 
-bool isEnough(int inliers, int observations)
-{
-    return inliers == observations ? inliers >= 2 : inliers >= 3 && 2*inliers > observations;
-}
-
 //! Observations of each point: those that are used, and all.
 struct PointCounts
 {
-    PointCounts(const Problem& problem, const Masks& used, int points) : inliers(points, 0), observations(points, 0)
+    PointCounts(const Problem& problem, const Masks& used, int points)
+        : inliers(points, 0), observations(points, 0), coordinates(points, 0)
     {
         for (size_t i = 0; i < used.size(); i++)
             for (size_t row = 0; row < used[i].size(); row++)
@@ -33,10 +30,16 @@ struct PointCounts
                 const int point = problem.images()[i].points.index[row];
                 observations[point]++;
                 inliers[point] += used[i][row] != 0;
+                coordinates[point] += used[i][row] ? problem.images()[i].points.rowsOf(row) : 0;
             }
     }
-    bool areEnough(int point) const { return isEnough(inliers[point], observations[point]); }
+    bool areEnough(int point) const
+    {
+        return inliers[point] == observations[point] ? coordinates[point] >= 3
+                                                     : coordinates[point] >= 5 && 2*inliers[point] > observations[point];
+    }
     std::vector<int> inliers, observations;
+    std::vector<int> coordinates;       //!< of the inliers
 };
 
 } // namespace

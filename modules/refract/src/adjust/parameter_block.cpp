@@ -34,7 +34,7 @@ bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
     for (int i = 0; i < size; i++)
         if (covariance(i, i) > 0)
             uncertain.push_back(i);
-        else if (kind == LENS && covariance(i, i) == 0)
+        else if ((kind == LENS || kind == EXTRINSICS) && covariance(i, i) == 0)
             isFree[i] = false;
     const int count = (int)uncertain.size();
     Eigen::MatrixXd correlation(count, count);

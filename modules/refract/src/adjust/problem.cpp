@@ -24,14 +24,22 @@ Pose poseOf(const double* six)
     return pose;
 }
 
-RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount)
+RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount, const std::vector<CovarianceViews>& covariances,
+                      double variance)
 {
     RigViews views;
     const int count = (int)pixels[0].size();
     views.object.assign(count, std::vector<Point3d>(pointCount));
-    for (const PixelViews& ofCamera : pixels)
-        views.cameras.push_back({ PixelViews(count), ofCamera });
+    views.variance = variance;
+    for (size_t c = 0; c < pixels.size(); c++)
+        views.cameras.push_back({ PixelViews(count), pixels[c], {}, covariances.empty() ? CovarianceViews() : covariances[c] });
     return views;
+}
+
+void setCameraPrior(ParameterBlock& block, int c, const Eigen::MatrixXd& covariance)
+{
+    if (!block.setPrior(covariance))
+        CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", c));
 }
 
 } // namespace
@@ -47,6 +55,7 @@ Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>&
 
 Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
                  const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
+                 const std::vector<CameraPrior>& cameraPriors, const std::vector<CovarianceViews>& covariances, double variance,
                  const Eigen::MatrixXd& rigCovariance, double lengthScaleSigma)
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
 {
@@ -56,10 +65,10 @@ Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int poin
         sharedErrors = Eigen::MatrixXd::Zero(SharedTargetErrors::COUNT, SharedTargetErrors::COUNT);
         sharedErrors(0, 0) = lengthScaleSigma*lengthScaleSigma;
     }
-    addBlocks(poses, posePriors, std::vector<CameraPrior>(), flags, sharedErrors);
+    addBlocks(poses, posePriors, cameraPriors, flags, sharedErrors);
     if (rigCovariance.size() > 0)
         setRigPrior(rigCovariance);
-    addImages(viewsOfScene(pixels, pointCount));
+    addImages(viewsOfScene(pixels, pointCount, covariances, variance));
     updateCameras();
 }
 
@@ -74,8 +83,13 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
         addCameraBlocks(c, cameraPriors.empty() ? CameraPrior() : cameraPriors[c], flags);
     const std::vector<String> names = { "R", "R", "R", "T", "T", "T" };
     for (int c = 1; c < rig_.count(); c++)
-        addBlock(ParameterBlock::EXTRINSICS, c, sixOf(rig_.extrinsics[c]), names,
-                 std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
+    {
+        ParameterBlock& block = addBlock(ParameterBlock::EXTRINSICS, c, sixOf(rig_.extrinsics[c]), names,
+                                         std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
+        const int first = rig_.cameras[c].parameterCount();
+        if (!cameraPriors.empty() && cameraPriors[c].covariance.cols() == first + 6)
+            setCameraPrior(block, c, cameraPriors[c].covariance.block(first, first, 6, 6));
+    }
     targetBlock_ = -1;
     if (targetCovariance.size() > 0)
         addTargetBlock(targetCovariance);
@@ -164,21 +178,21 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     const WindowLayout& at = camera.layers().at();
     const std::vector<double> all = camera.parameters();
     const std::vector<String> names = camera.parameterNames();
-    const std::vector<bool> isFree = freeWindowParameters(at, flags);
+    // Of a camera without a window the flags of the others' windows mean nothing.
+    const std::vector<bool> isFree = camera.refracts() ? freeWindowParameters(at, flags) : std::vector<bool>(at.count, false);
     const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free, bool mayHavePrior)
     {
         const int size = (int)free.size();
         ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
                                          std::vector<String>(names.begin() + first, names.begin() + first + size), free);
-        if (mayHavePrior && first + size <= prior.covariance.cols() &&
-            !block.setPrior(prior.covariance.block(first, first, size, size)))
-            CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", c));
+        if (mayHavePrior && first + size <= prior.covariance.cols())
+            setCameraPrior(block, c, prior.covariance.block(first, first, size, size));
     };
     const int lens = camera.lensCount();
     add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);
     if (!rig_.owns(c))
         return;
-    add(ParameterBlock::NORMAL, lens + at.normal, std::vector<bool>(3, !(flags & GLASS_FIX_NORMAL)), false);
+    add(ParameterBlock::NORMAL, lens + at.normal, std::vector<bool>(3, camera.refracts() && !(flags & GLASS_FIX_NORMAL)), false);
     add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
 }
 
@@ -214,7 +228,9 @@ void Problem::addImages(const RigViews& views)
                 image.view = view;
                 image.camera = c;
                 image.refracted = refracted;
-                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view]);
+                const CovarianceViews& covariances = refracted ? seen.refractedCovariances : seen.directCovariances;
+                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view],
+                                        covariances.empty() ? PixelCovariances() : covariances[view], views.variance);
                 if (image.points.pixel.empty())
                     continue;
                 image.rootWeights.assign(image.points.pixel.size(), 1.);
@@ -237,6 +253,14 @@ int Problem::pointCount() const
     int count = 0;
     for (const Image& image : images_)
         count += image.usedCount();
+    return count;
+}
+
+int Problem::coordinateCount() const
+{
+    int count = 0;
+    for (const Image& image : images_)
+        count += image.coordinateCount();
     return count;
 }
 
@@ -372,7 +396,8 @@ std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) c
     {
         Point2d pixel;
         if (project(image, placed, row, pixel) == REFRACT_OK)
-            errors[row] = norm(pixel - image.points.pixel[row]);
+            errors[row] = image.points.whitening.empty() ? norm(pixel - image.points.pixel[row])
+                                                         : norm(image.points.error(row, pixel.x, pixel.y));
     }
     return errors;
 }
@@ -465,6 +490,24 @@ double Problem::squaredPixelError(const Image& image) const
     return result.residuals.squaredNorm();
 }
 
+double Problem::squaredDistances(const Image& image) const
+{
+    if (image.points.whitening.empty())
+        return squaredPixelError(image);
+    const Pose direct = pose(image.view);
+    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, image.refracted);
+    double sum = 0;
+    for (int row = 0; row < (int)image.points.pixel.size(); row++)
+    {
+        Point2d pixel;
+        const double weight = image.rootWeights[row]*image.rootWeights[row];
+        if (weight > 0)
+            sum += project(image, placed, row, pixel) == REFRACT_OK ? weight*squaredDistance(pixel, image.points.pixel[row])
+                                                                    : std::numeric_limits<double>::infinity();
+    }
+    return sum;
+}
+
 double Problem::squaredError() const
 {
     double sum = 0;
@@ -497,7 +540,7 @@ Eigen::VectorXd Problem::priorResidual(int block) const
 
 int Problem::equationCount() const
 {
-    int count = 2*pointCount() + scene_.lengthCount() + rigPrior_.count();
+    int count = coordinateCount() + scene_.lengthCount() + rigPrior_.count();
     for (int block = 0; block < (int)blocks_.size(); block++)
         count += isActive(block) ? (int)blocks_[block].sqrtInformation.rows() : 0;
     return count;

@@ -33,8 +33,9 @@ struct PosePrior
     Matrix6 sqrtInformation;            //!< W, W^T W = inverse of the covariance; UNCERTAIN only
 };
 
-/** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window. A
-parameter with a variance is estimated, within it. A lens parameter with none is exact; NaN or empty: nothing is known. */
+/** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window, or these and
+its extrinsics (rvec, T). A parameter with a variance is estimated, within it. A lens parameter with none is exact, and one of the
+extrinsics; NaN or empty: nothing is known. */
 struct CameraPrior
 {
     Eigen::MatrixXd covariance;
@@ -48,6 +49,14 @@ struct Image
     ImagePoints points;
     std::vector<double> rootWeights;    //!< one per point; 0: left out
 
+    //! Observed coordinates of its points that have a weight.
+    int coordinateCount() const
+    {
+        int count = 0;
+        for (size_t i = 0; i < rootWeights.size(); i++)
+            count += rootWeights[i] > 0 ? points.rowsOf(i) : 0;
+        return count;
+    }
     int usedCount() const { return (int)std::count_if(rootWeights.begin(), rootWeights.end(),
                                                       [](double w) { return w > 0; }); }
 };
@@ -81,11 +90,16 @@ public:
             const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd());
     /** A scene.
     @param pixels per camera, per view: one per scene point, or none
+    @param cameraPriors one per camera, or empty
+    @param covariances of the pixels, or empty
+    @param variance as RigViews'
     @param rigCovariance of the public parameters, which start where they are known: what has a variance is estimated within it,
     for the rest the flags decide; empty: nothing is known
     @param lengthScaleSigma of a relative error that all lengths share; 0: there is none */
     Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
             const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
+            const std::vector<CameraPrior>& cameraPriors = std::vector<CameraPrior>(),
+            const std::vector<CovarianceViews>& covariances = std::vector<CovarianceViews>(), double variance = 1,
             const Eigen::MatrixXd& rigCovariance = Eigen::MatrixXd(), double lengthScaleSigma = 0);
     Problem(const Problem&) = delete;
     Problem& operator=(const Problem&) = delete;
@@ -98,10 +112,13 @@ public:
     const std::vector<int>& imagesOf(int view) const { return imagesOfView_[view]; }
     void setRootWeights(int image, const std::vector<double>& rootWeights);
     int pointCount() const;             //!< of those with a weight
-    /** Distance of each predicted from the observed pixel, whatever its weight, with this pose of the view; infinite without image. */
+    int coordinateCount() const;        //!< that were observed, of the same
+    /** Distance of each predicted from the observed pixel, whitened, whatever its weight, with this pose of the view; infinite without
+    image. */
     std::vector<double> pixelErrors(const Image& image, const Pose& pose) const;
     std::vector<double> pixelErrors(const Image& image) const { return pixelErrors(image, pose(image.view)); }
-    double squaredPixelError(const Image& image) const;     //!< weighted
+    double squaredPixelError(const Image& image) const;     //!< weighted and whitened
+    double squaredDistances(const Image& image) const;      //!< weighted; in pixels whatever their covariances
     //! The first point with a weight that has no image; or which window no camera can look through so.
     FitOutcome findPointWithoutImage() const;
 
@@ -143,7 +160,7 @@ public:
     //! Standard deviation of a pixel coordinate, against which priors and lengths are weighed.
     void setPixelSigma(double sigma) { pixelSigma_ = sigma; }
     double pixelSigma() const { return pixelSigma_; }
-    bool hasPriors() const { return equationCount() > 2*pointCount(); }     //!< or lengths
+    bool hasPriors() const { return equationCount() > coordinateCount(); }     //!< or lengths
     int equationCount() const;
     int unknownCount() const;
     int freedom() const { return equationCount() - unknownCount(); }

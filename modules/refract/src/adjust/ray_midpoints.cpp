@@ -2,10 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* The point X that is nearest to rays o_i + s d_i in the sense of least squares: sum (I - d_i d_i^T) (X - o_i) = 0. */
+/* The point X that is nearest to rays o_i + s d_i in the sense of least squares: sum (I - d_i d_i^T) (X - o_i) = 0. Of half a pixel
+with the sheet's normal m it is the plane: m_i m_i^T (X - o_i). */
 
 #include "adjust/ray_midpoints.hpp"
 #include "arrays/arrays.hpp"
+#include "points/sheet.hpp"
 #include <Eigen/Eigenvalues>
 
 namespace cv { namespace refract {
@@ -19,14 +21,15 @@ struct RaySum
 {
     Matx33d across = Matx33d::zeros();
     Vec3d offset;
-    int rays = 0;
+    int coordinates = 0;
 
-    void add(const Vec3d& origin, const Vec3d& direction)
+    void addRay(const Vec3d& origin, const Vec3d& direction) { add(Matx33d::eye() - direction*direction.t(), origin, 2); }
+    void addSheet(const Vec3d& origin, const Vec3d& normal) { add(normal*normal.t(), origin, 1); }
+    void add(const Matx33d& projector, const Vec3d& origin, int own)
     {
-        const Matx33d projector = Matx33d::eye() - direction*direction.t();
         across += projector;
         offset += projector*origin;
-        rays++;
+        coordinates += own;
     }
 
     Vec3d point() const
@@ -34,7 +37,7 @@ struct RaySum
         const double PARALLEL = 1e-12;      // squared sine
         typedef Eigen::Matrix<double, 3, 3, Eigen::RowMajor> Matrix3;
         const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(Eigen::Map<const Matrix3>(across.val));
-        if (rays < 2 || !(eigen.eigenvalues()[0] > PARALLEL*rays))
+        if (coordinates < 3 || !(eigen.eigenvalues()[0] > 0.5*PARALLEL*coordinates))
             return Vec3d::all(NaN);
         return across.inv(DECOMP_CHOLESKY)*offset;
     }
@@ -55,7 +58,7 @@ void addRays(const Camera& camera, const RigidTransform& place, const ImagePoint
     {
         const int n = std::min(BLOCK, (int)points.pixel.size() - begin);
         double u[BLOCK], v[BLOCK];
-        Rays rays;
+        Sheets rays;
         uchar status[BLOCK];
         for (int k = 0; k < n; k++)
         {
@@ -63,10 +66,21 @@ void addRays(const Camera& camera, const RigidTransform& place, const ImagePoint
             v[k] = points.pixel[begin + k].y;
             status[k] = REFRACT_OK;
         }
-        camera.unproject(n, u, v, rays, status);
+        if (points.whitening.empty())
+            camera.unproject(n, u, v, rays, status);
+        else
+            unprojectSheets(camera, n, u, v, rays, status);
         for (int k = 0; k < n; k++)
-            if (status[k] == REFRACT_OK && (isUsed.empty() || isUsed[begin + k]))
-                sums[points.index[begin + k]].add(place.inverse(rays.origin(k, normal)), place.R.t()*rays.direction(k));
+        {
+            if (status[k] != REFRACT_OK || (!isUsed.empty() && !isUsed[begin + k]))
+                continue;
+            RaySum& sum = sums[points.index[begin + k]];
+            const Vec3d origin = place.inverse(rays.origin(k, normal));
+            if (isWhole(points.pixel[begin + k]))
+                sum.addRay(origin, place.R.t()*rays.direction(k));
+            else
+                sum.addSheet(origin, place.R.t()*rays.normalOf(k));
+        }
     }
 }
 
@@ -86,17 +100,17 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
     const Rig rig = problem.rig();
     std::vector<RaySum> sums(given.size());
     std::vector<RigidTransform> places;
-    std::vector<int> seen(given.size(), 0);
+    std::vector<int> seen(given.size(), 0);         // coordinates
     for (const Image& image : problem.images())
     {
         places.push_back(placeOf(problem, rig, image));
         addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), sums);
-        for (int index : image.points.index)
-            seen[index]++;
+        for (size_t k = 0; k < image.points.index.size(); k++)
+            seen[image.points.index[k]] += image.points.rowsOf(k);
     }
     std::vector<Point3d> points = given;
     for (size_t i = 0; i < points.size(); i++)
-        if (seen[i] < 2)
+        if (seen[i] < 3)
             points[i] = Point3d(NaN, NaN, NaN);
         else if (!std::isfinite(given[i].x))
             points[i] = Point3d(sums[i].point()/problem.sceneScale());

@@ -59,6 +59,14 @@ struct ImageResidual::Point
     Vec3d inObject, inCamera1;
     Eigen::Matrix<double, 2, 3, Eigen::RowMajor> byPoint;
     Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> byParameters, byOwnersWindow;
+
+    void whiten(const Whitening& W)
+    {
+        for (int c = 0; c < 3; c++)
+            W.apply(byPoint(0, c), byPoint(1, c));
+        for (int c = 0; c < (int)byParameters.cols(); c++)
+            W.apply(byParameters(0, c), byParameters(1, c));
+    }
 };
 
 //! The rows of point i in every jacobian that is wanted.
@@ -152,6 +160,8 @@ bool ImageResidual::linearize(const Camera& camera, const double* pose, double* 
                 for (int c = 0; c < count && byParameters; c++)
                     point.byParameters(r, c) = w == 0 ? 0 : w*byParameter.at(r, c)[k];
             }
+            if (!points_.whitening.empty())
+                point.whiten(points_.whitening[i]);
             writeJacobians(target, point, i, jacobians);
         }
     }
@@ -178,8 +188,9 @@ bool ImageResidual::writeResidual(int i, double u, double v, uchar status, doubl
 {
     const double w = rootWeights_[i];
     const bool hasImage = w == 0 || status == REFRACT_OK;
-    residuals[2*i] = w == 0 ? 0 : hasImage ? w*(u - points_.pixel[i].x) : std::numeric_limits<double>::infinity();
-    residuals[2*i + 1] = w == 0 ? 0 : hasImage ? w*(v - points_.pixel[i].y) : std::numeric_limits<double>::infinity();
+    const Vec2d error = hasImage ? points_.error(i, u, v) : Vec2d::all(std::numeric_limits<double>::infinity());
+    for (int k = 0; k < 2; k++)
+        residuals[2*i + k] = w == 0 ? 0 : w*error[k];
     return hasImage;
 }
 

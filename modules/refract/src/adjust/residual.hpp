@@ -19,7 +19,8 @@ The camera is evaluated once for all its images (RigCamera). Blocks in this orde
 share (7; if the problem has them), extrinsics (rvec, T; 6) but for camera 1, lens, and through a window its normal (3, unit), media,
 and the owner's extrinsics if the window is neither the camera's own nor camera 1's.
 
-Every point has a weight: its residual is multiplied by the weight's root. 0: left out. */
+Every point has a weight: its residual, whitened (whitening.hpp), is multiplied by the weight's root. 0: left out. Half a pixel has
+two rows as well, one of which is 0. */
 class ImageResidual
 {
 public:

@@ -54,9 +54,10 @@ FitOutcome RobustFit::approach()
     return isRobust_ ? reweightGradually() : minimize(problem_, few);
 }
 
-//! Distances of predicted from observed pixels, of what may have a say.
+//! Distances of predicted from observed pixels, of what may have a say; of halves as large as those of whole pixels usually are.
 std::vector<std::vector<double> > RobustFit::errors() const
 {
+    const double HALF = std::sqrt(std::log(4.))/0.6744898;      // between the medians of two coordinates' length and of one's
     std::vector<std::vector<double> > all;
     const Masks candidates = outliers_.candidates();
     for (size_t i = 0; i < images().size(); i++)
@@ -65,7 +66,7 @@ std::vector<std::vector<double> > RobustFit::errors() const
         all.push_back(std::vector<double>());
         for (size_t row = 0; row < ofImage.size(); row++)
             if (candidates[i][row])
-                all.back().push_back(ofImage[row]);
+                all.back().push_back(images()[i].points.rowsOf(row) == 2 ? ofImage[row] : HALF*ofImage[row]);
     }
     return all;
 }

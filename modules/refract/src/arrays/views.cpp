@@ -18,15 +18,32 @@ static int countViews(InputArrayOfArrays a, const char* name)
     return (int)a.total();
 }
 
-PixelViews readPixelViews(InputArrayOfArrays a, const char* name)
+PixelViews readPixelViews(InputArrayOfArrays a, const char* name, HalfPixels halves)
 {
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
     PixelViews views(countViews(a, name));
     for (int i = 0; i < (int)views.size(); i++)
     {
         const Mat view = a.getMat(i);
         if (!view.empty())
             views[i] = readPoints2(view, format("%s[%d]", name, i).c_str());
+        for (Point2d& pixel : views[i])
+            if (halves == HalfPixels::NOT_SEEN && !isWhole(pixel))
+                pixel = Point2d(NaN, NaN);
     }
+    return views;
+}
+
+CovarianceViews readCovarianceViews(const std::vector<Mat>& a, const PixelViews& pixels, const String& name)
+{
+    if (a.empty())
+        return CovarianceViews();
+    if (a.size() != pixels.size())
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d views, but the pixels have %d; they must agree", name.c_str(), (int)a.size(),
+                                             (int)pixels.size()));
+    CovarianceViews views;
+    for (size_t i = 0; i < a.size(); i++)
+        views.push_back(readPixelCovariances(a[i], pixels[i], format("%s[%d]", name.c_str(), (int)i)));
     return views;
 }
 
@@ -63,11 +80,11 @@ static void matchViews(PixelViews& pixels, const std::vector<std::vector<Point3d
 
 CameraViews readCameraViews(InputArrayOfArrays direct, const char* directName,
                             InputArrayOfArrays refracted, const char* refractedName,
-                            const std::vector<std::vector<Point3d> >& object)
+                            const std::vector<std::vector<Point3d> >& object, HalfPixels halves)
 {
     CameraViews views;
-    views.direct = readPixelViews(direct, directName);
-    views.refracted = readPixelViews(refracted, refractedName);
+    views.direct = readPixelViews(direct, directName, halves);
+    views.refracted = readPixelViews(refracted, refractedName, halves);
     matchViews(views.direct, object, directName);
     matchViews(views.refracted, object, refractedName);
     return views;
@@ -78,6 +95,11 @@ int countSeen(const std::vector<Point2d>& pixels)
     return (int)std::count_if(pixels.begin(), pixels.end(), isSeen);
 }
 
+int countWhole(const std::vector<Point2d>& pixels)
+{
+    return (int)std::count_if(pixels.begin(), pixels.end(), isWhole);
+}
+
 bool seesAnything(const PixelViews& views)
 {
     for (const std::vector<Point2d>& view : views)
@@ -86,12 +108,25 @@ bool seesAnything(const PixelViews& views)
     return false;
 }
 
-ImagePoints observed(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels)
+int ImagePoints::rows() const
+{
+    int count = 0;
+    for (size_t i = 0; i < pixel.size(); i++)
+        count += rowsOf(i);
+    return count;
+}
+
+ImagePoints observed(const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, const PixelCovariances& covariances,
+                     double variance)
 {
     ImagePoints points;
+    const bool isUsual = covariances.empty() && variance == 1 && std::none_of(pixels.begin(), pixels.end(), isHalf);
     for (size_t i = 0; i < pixels.size(); i++)
         if (isSeen(pixels[i]))
         {
+            if (!isUsual)
+                points.whitening.push_back(Whitening(pixels[i], covariances.empty() ? PixelCovariance() : covariances[i],
+                                                     std::sqrt(variance)));
             points.object.push_back(object[i]);
             points.pixel.push_back(pixels[i]);
             points.index.push_back((int)i);

@@ -116,11 +116,13 @@ Eigen::MatrixXd readRigCovariance(InputArray covariance, const std::vector<Camer
     return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
 }
 
-//! What an earlier calibration knows, and how well the ruler of the lengths is known.
+//! What is known beside the pixels: from earlier calibrations, of the ruler of the lengths, of the detector.
 struct Knowledge
 {
     InputArray rigCovariance;
     double lengthScaleStd;
+    InputArrayOfArrays cameraCovariances;
+    std::vector<std::vector<Mat> > pixelCovariances;
 };
 
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
@@ -140,6 +142,20 @@ void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
         }
         writer.store(begin, n, x, y, z, status);
     }
+}
+
+//! Per camera, or nothing.
+void readCovariances(const std::vector<std::vector<Mat> >& covariances, BundleTask& task)
+{
+    checkCount(covariances.size(), (int)task.pixels.size(), "pixelCovariances", true);
+    MedianVariance median;
+    for (size_t c = 0; c < covariances.size(); c++)
+    {
+        task.covariances.push_back(readCovarianceViews(covariances[c], task.pixels[c], numbered("pixelCovariances", (int)c)));
+        for (size_t view = 0; view < task.pixels[c].size(); view++)
+            median.add(task.pixels[c][view], task.covariances[c].empty() ? PixelCovariances() : task.covariances[c][view]);
+    }
+    task.variance = median();
 }
 
 //! What both forms do; poses and deviations only where they are wanted.
@@ -170,6 +186,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     task.lengths = readLengths(lengths, (int)task.points.size());
     readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
     checkScale(task);
+    readCovariances(known.pixelCovariances, task);
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
@@ -180,6 +197,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     if (!(known.lengthScaleStd >= 0 && std::isfinite(known.lengthScaleStd)))
         CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative", known.lengthScaleStd));
     task.lengthScaleSigma = task.lengths.empty() ? 0 : known.lengthScaleStd;
+    task.cameraPriors = readCameraPriors(known.cameraCovariances, rig.cameras);
     RigViews views;
     views.object.resize(pixels[0].size());
     for (const PixelViews& ofCamera : pixels)
@@ -189,13 +207,33 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     BundleFit fit;
     throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
     setCameras(rig, cameras);
-    if (count > 1 && ((flags & GLASS_FREE_EXTRINSICS) || task.rigCovariance.size() > 0))
+    if (areExtrinsicsFree(flags, rig, task.cameraPriors) || (count > 1 && task.rigCovariance.size() > 0))
         writeExtrinsicPoses(rig, Rs, Ts);
     writePoints(fit.points, depth, points3D);
     return fit;
 }
 
 const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
+
+//! With all that it tells.
+double adjustInFull(const std::vector<std::vector<Mat> >& imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                    const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                    InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                    OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
+                    OutputArrayOfArrays inliers, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                    const Knowledge& known)
+{
+    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    std::vector<PixelViews> pixels;
+    for (size_t c = 0; c < imagePoints.size(); c++)
+        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
+    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
+                                 poseCovariances, criteria, known, pointDeviations.needed());
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeMat(fit.pointDeviations, pointDeviations);
+    writeMasks(fit.inliers, inliers);
+    return fit.rms;
+}
 
 } // namespace
 
@@ -205,10 +243,14 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
                               InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
                               OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
                               OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
-                              InputArrayOfArrays poseCovariances, TermCriteria criteria)
+                              InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
+                              const std::vector<std::vector<Mat> >& pixelCovariances)
 {
-    return refractiveBundleAdjust(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations,
-                                  covariance, pointDeviations, perViewErrors, inliers, noArray(), 0., flags, poseCovariances, criteria);
+    CV_INSTRUMENT_REGION();
+
+    return adjustInFull(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations, covariance,
+                        pointDeviations, perViewErrors, inliers, flags, poseCovariances, criteria,
+                        { noArray(), 0., cameraCovariances, pixelCovariances });
 }
 
 double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
@@ -221,16 +263,9 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
-    std::vector<PixelViews> pixels;
-    for (size_t c = 0; c < imagePoints.size(); c++)
-        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str()));
-    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
-                                 poseCovariances, criteria, { rigCovariance, lengthScaleStd }, pointDeviations.needed());
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMat(fit.pointDeviations, pointDeviations);
-    writeMasks(fit.inliers, inliers);
-    return fit.rms;
+    return adjustInFull(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations, covariance,
+                        pointDeviations, perViewErrors, inliers, flags, poseCovariances, criteria,
+                        { rigCovariance, lengthScaleStd, noArray(), {} });
 }
 
 double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
@@ -241,10 +276,10 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
 
     checkFlags(flags, BUNDLE_FLAGS);
     std::vector<PixelViews> pixels;
-    for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints"))
+    for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints", HalfPixels::TAKEN))
         pixels.push_back(PixelViews(1, ofCamera));
     return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
-                  { noArray(), 0. }, false).rms;
+                  { noArray(), 0., noArray(), {} }, false).rms;
 }
 
 }} // namespace

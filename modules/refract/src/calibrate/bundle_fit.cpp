@@ -81,7 +81,7 @@ void describe(const Problem& problem, BundleFit& fit)
 FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
 {
     Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags,
-                    task.rigCovariance, task.lengthScaleSigma);
+                    task.cameraPriors, task.covariances, task.variance, task.rigCovariance, task.lengthScaleSigma);
     const FitOutcome outcome = adjust(problem, task);
     if (!outcome.isUsable())
         return outcome;

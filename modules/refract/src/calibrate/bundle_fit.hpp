@@ -16,6 +16,9 @@ struct BundleTask
     std::vector<Point3d> points;                //!< NaN: not known
     std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
     std::vector<PosePrior> posePriors;      //!< of the same
+    std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
+    std::vector<CovarianceViews> covariances;   //!< of the pixels, per camera, or empty
+    double variance = 1;                        //!< in units of which they are: RigViews'
     std::vector<KnownLength> lengths;
     Eigen::MatrixXd rigCovariance;              //!< of the public parameters, from an earlier calibration; empty: nothing is known
     double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none

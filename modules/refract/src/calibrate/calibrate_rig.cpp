@@ -50,9 +50,12 @@ void addWedges(std::vector<Camera>& cameras, int flags)
 
 void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names)
 {
+    const auto refracts = [](const Camera& camera) { return camera.refracts(); };
+    const bool anyRefracts = std::any_of(rig.cameras.begin(), rig.cameras.end(), refracts);
     for (int owner = 0; owner < rig.count(); owner++)
     {
-        if (!rig.owns(owner))
+        // A camera without a window may be among others that have one; nothing of it is estimated then.
+        if (!rig.owns(owner) || (anyRefracts && !refracts(rig.cameras[owner])))
             continue;
         checkWindow(rig.cameras[owner].window(), flags);
         bool isSeen = false;
@@ -74,7 +77,7 @@ static std::vector<Mat> viewsOf(const std::vector<std::vector<Mat> >& imagePoint
 }
 
 RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
-                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras)
+                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras, HalfPixels halves)
 {
     if (cameras == 0)
         CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
@@ -85,8 +88,33 @@ RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::ve
     for (int c = 0; c < cameras; c++)
         views.cameras.push_back(readCameraViews(viewsOf(imagePointsDirect, c), numbered("imagePointsDirect", c).c_str(),
                                                 viewsOf(imagePointsRefracted, c), numbered("imagePointsRefracted", c).c_str(),
-                                                views.object));
+                                                views.object, halves));
     return views;
+}
+
+//! Covariances of what was read; nothing if there are none.
+static void addPixelCovariances(const std::vector<std::vector<Mat> >& direct, const std::vector<std::vector<Mat> >& refracted,
+                                RigViews& views)
+{
+    const int count = (int)views.cameras.size();
+    checkCount(direct.size(), count, "pixelCovariancesDirect", true);
+    checkCount(refracted.size(), count, "pixelCovariancesRefracted", true);
+    MedianVariance median;
+    for (int c = 0; c < count; c++)
+    {
+        CameraViews& seen = views.cameras[c];
+        seen.directCovariances = readCovarianceViews(viewsOf(direct, c), seen.direct, numbered("pixelCovariancesDirect", c));
+        seen.refractedCovariances = readCovarianceViews(viewsOf(refracted, c), seen.refracted,
+                                                        numbered("pixelCovariancesRefracted", c));
+        for (int view = 0; view < views.count(); view++)
+        {
+            median.add(seen.direct[view], seen.directCovariances.empty() ? PixelCovariances() : seen.directCovariances[view]);
+            median.add(seen.refracted[view],
+                       seen.refractedCovariances.empty() ? PixelCovariances() : seen.refractedCovariances[view]);
+        }
+    }
+    if (!direct.empty() || !refracted.empty())
+        views.variance = median();
 }
 
 std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names)
@@ -206,11 +234,11 @@ std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count)
     return priors;
 }
 
-//! LxL or PxP of each camera, or nothing.
-static void readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras, RigTask& task)
+std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras)
 {
+    std::vector<CameraPrior> priors;
     if (covariances.empty())
-        return;
+        return priors;
     std::vector<Mat> all;
     covariances.getMatVector(all);
     checkCount(all.size(), (int)cameras.size(), "cameraCovariances", false);
@@ -218,9 +246,11 @@ static void readCameraPriors(InputArrayOfArrays covariances, const std::vector<C
     {
         const String name = numbered("cameraCovariances", c);
         const int lens = cameras[c].lensCount(), both = cameras[c].parameterCount(), side = all[c].rows;
-        if (!all[c].empty() && (all[c].channels() != 1 || all[c].cols != side || (side != lens && side != both)))
-            CV_Error_(Error::StsBadSize, ("%s is %dx%d with %d channels; it must be %dx%d (lens), %dx%d (lens and window) or "
-                                          "empty", name.c_str(), side, all[c].cols, all[c].channels(), lens, lens, both, both));
+        if (!all[c].empty() && (all[c].channels() != 1 || all[c].cols != side ||
+                                (side != lens && side != both && side != both + 6)))
+            CV_Error_(Error::StsBadSize, ("%s is %dx%d with %d channels; it must be %dx%d (lens), %dx%d (lens and window), %dx%d "
+                                          "(these, rvec and T) or empty", name.c_str(), side, all[c].cols, all[c].channels(), lens, lens,
+                                          both, both, both + 6, both + 6));
         CameraPrior prior;
         Mat_<double> numbers;
         all[c].convertTo(numbers, CV_64F);
@@ -230,8 +260,21 @@ static void readCameraPriors(InputArrayOfArrays covariances, const std::vector<C
             if (prior.covariance(i, i) < 0)
                 CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
                                              prior.covariance(i, i), i));
-        task.cameraPriors.push_back(prior);
+        priors.push_back(prior);
     }
+    return priors;
+}
+
+bool areExtrinsicsFree(int flags, const Rig& rig, const std::vector<CameraPrior>& priors)
+{
+    bool areFree = (flags & GLASS_FREE_EXTRINSICS) != 0;
+    for (int c = 1; c < (int)priors.size(); c++)
+    {
+        const int first = rig.cameras[c].parameterCount();
+        if (priors[c].covariance.cols() == first + 6)
+            areFree = areFree || (priors[c].covariance.diagonal().tail(6).array() > 0).any();
+    }
+    return areFree;
 }
 
 //! 7x7, or nothing.
@@ -276,11 +319,14 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
                         InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                        InputArrayOfArrays cameraCovariances, InputArray targetCovariance)
+                        InputArrayOfArrays cameraCovariances, InputArray targetCovariance,
+                        const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
+                        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
 {
     const int count = (int)cameras.size();
     RigTask task;
-    task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count);
+    task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count, HalfPixels::TAKEN);
+    addPixelCovariances(pixelCovariancesDirect, pixelCovariancesRefracted, task.views);
     checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
     checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     std::vector<String> names, refractedNames;
@@ -299,7 +345,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
         task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
         task.posePriors = readPosePriors(poseCovariances, task.views.count());
     }
-    readCameraPriors(cameraCovariances, rig.cameras, task);
+    task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
     task.targetCovariance = readTargetCovariance(targetCovariance);
     task.flags = flags;
     task.criteria = criteria;
@@ -308,7 +354,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, cameras);
-    if (flags & GLASS_FREE_EXTRINSICS)
+    if (areExtrinsicsFree(flags, rig, task.cameraPriors))
         writeExtrinsicPoses(rig, Rs, Ts);
     return fit;
 }
@@ -321,11 +367,12 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
                          OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
                          OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                         InputArrayOfArrays cameraCovariances)
+                         InputArrayOfArrays cameraCovariances, const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
+                         const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
 {
     return calibrateGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
                              stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, noArray(), noArray(), flags,
-                             poseCovariances, criteria, cameraCovariances);
+                             poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted);
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints,
@@ -336,13 +383,16 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
                          OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
                          OutputArray otherMinima, InputArray targetCovariance, OutputArray targetErrors, int flags,
-                         InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances)
+                         InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
+                         const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
+                         const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES);
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES | GLASS_FIX_NORMAL);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance);
+                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
+                                 pixelCovariancesDirect, pixelCovariancesRefracted);
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
@@ -359,9 +409,9 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std:
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray());
+                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray(), {}, {});
     writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
     return fit.rms;
 }

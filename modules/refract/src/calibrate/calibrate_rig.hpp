@@ -33,7 +33,13 @@ void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty);
 
 //! What all cameras saw; either list may be empty as a whole, but not both.
 RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
-                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras);
+                      const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras,
+                      HalfPixels halves = HalfPixels::NOT_SEEN);
+
+//! LxL, PxP or (P+6)x(P+6) of each camera; noArray(): none.
+std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras);
+//! Whether R and T of some camera are estimated.
+bool areExtrinsicsFree(int flags, const Rig& rig, const std::vector<CameraPrior>& priors);
 
 //! The cameras behind the handles, each of which must be an object of its own; names in messages.
 std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles, const std::vector<String>& names);

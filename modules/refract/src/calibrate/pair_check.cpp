@@ -49,7 +49,7 @@ std::vector<Pair> pairsOf(const RigViews& views)
     std::vector<Pair> pairs;
     for (int c = 0; c < (int)views.cameras.size(); c++)
         for (int view = 0; view < views.count(); view++)
-            if (countSeen(views.cameras[c].direct[view]) > 0 && countSeen(views.cameras[c].refracted[view]) > 0)
+            if (countWhole(views.cameras[c].direct[view]) > 0 && countWhole(views.cameras[c].refracted[view]) > 0)
                 pairs.push_back({ view, c });
     return pairs;
 }
@@ -96,7 +96,7 @@ double residualOf(const std::vector<Pair>& pairs, const RigViews& views, const R
         const PairImages images(p, views, fit);
         for (int k = 0; k < 2; k++)
         {
-            const double rms = fit.perViewErrors.at<double>(p.view, 2*p.camera + k), count = countSeen(images.image[k]);
+            const double rms = fit.perViewErrors.at<double>(p.view, 2*p.camera + k), count = countWhole(images.image[k]);
             if (count > 0)
                 residual.add(rms*rms*count, count);
         }
@@ -111,7 +111,7 @@ double displacementOf(const std::vector<Pair>& pairs, const RigViews& views, con
     {
         const PairImages images(p, views, fit);
         for (size_t i = 0; i < images.image[0].size(); i++)
-            if (isSeen(images.image[0][i]) && isSeen(images.image[1][i]))
+            if (isWhole(images.image[0][i]) && isWhole(images.image[1][i]))
                 displacement.add(norm(images.image[0][i] - images.image[1][i])*
                                  norm(images.image[0][i] - images.image[1][i]), 1);
     }
@@ -136,7 +136,7 @@ double residualApart(const std::vector<Pair>& pairs, const RigViews& views, cons
                 if (solvePose(camera, views.object[p.view], image, Pose(), rms).found)
                     least = std::min(least, rms);
             }
-            const double count = countSeen(image), freedom = 2*count - 6;
+            const double count = countWhole(image), freedom = 2*count - 6;
             if (std::isfinite(least) && freedom > 0)
                 residual.add(least*least*count*2*count/freedom, count);
         }
@@ -161,7 +161,10 @@ double plausibleRms(Rig rig, const RigTask& task)
 double swappedRms(const Rig& start, RigTask task)
 {
     for (CameraViews& camera : task.views.cameras)
+    {
         std::swap(camera.direct, camera.refracted);
+        std::swap(camera.directCovariances, camera.refractedCovariances);
+    }
     return plausibleRms(start, task);
 }
 

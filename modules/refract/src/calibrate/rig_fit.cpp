@@ -152,7 +152,7 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
 
 double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)
 {
-    const double squares = problem.squaredPixelError(image);
+    const double squares = problem.squaredDistances(image);
     const int used = image.usedCount();
     fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
     Mat mask(pointCount, 1, CV_8U, Scalar(0));

@@ -61,7 +61,7 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
                          OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, int, InputArrayOfArrays, TermCriteria,
-                         InputArrayOfArrays)
+                         InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }
@@ -70,7 +70,8 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
                          OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
-                         TermCriteria, InputArrayOfArrays)
+                         TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&,
+                         const std::vector<std::vector<Mat> >&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }
@@ -85,7 +86,8 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
 double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::vector<Ptr<RefractiveCamera> >&,
                               const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
                               InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray,
-                              OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, int, InputArrayOfArrays, TermCriteria)
+                              OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, int, InputArrayOfArrays, TermCriteria,
+                              InputArrayOfArrays, const std::vector<std::vector<Mat> >&)
 {
     throwWithoutCeres("refractiveBundleAdjust");
 }

@@ -13,12 +13,19 @@ are exactly chi^2 of two degrees; for d = 1 they are nearly chi^2 of one (with W
 
 namespace cv { namespace refract {
 
-DeletionResidual::DeletionResidual(const Vec2d& residual, const Matx22d& prediction, bool isUsed_)
+DeletionResidual::DeletionResidual(const Vec2d& residual, const Matx22d& prediction, bool isUsed_, int rows)
     : square(0), dimensions(0), isUsed(isUsed_)
 {
     // Of a unit variance; less is rounding, and what the linear model leaves out.
     const double LEAST_VARIANCE = 1e-4;
     const double sign = isUsed ? -1 : 1;
+    if (rows == 1)
+    {
+        const double variance = 1 + sign*trace(prediction);
+        dimensions = variance > LEAST_VARIANCE;
+        square = dimensions > 0 ? residual.dot(residual)/variance : 0;
+        return;
+    }
     const double a = 1 + sign*prediction(0, 0), b = sign*(prediction(0, 1) + prediction(1, 0))/2, c = 1 + sign*prediction(1, 1);
     const double half = (a - c)/2, root = std::sqrt(half*half + b*b), angle = 0.5*std::atan2(b, half);
     const Vec2d axes[] = { { std::cos(angle), std::sin(angle) }, { -std::sin(angle), std::cos(angle) } };

@@ -15,11 +15,12 @@ I + H. Both give the square of its deletion residual (@cite Cook1982), chi^2 whe
 struct DeletionResidual
 {
     DeletionResidual() : square(0), dimensions(0), isUsed(false) {}
-    //! @param prediction covariance of the predicted pixel: H
-    DeletionResidual(const Vec2d& residual, const Matx22d& prediction, bool isUsed);
+    /** @param prediction covariance of the predicted pixel: H
+    @param rows of the residual: 2, or 1 where half a pixel was observed; the other row is 0 then */
+    DeletionResidual(const Vec2d& residual, const Matx22d& prediction, bool isUsed, int rows = 2);
 
     double square;      //!< for unit noise
-    int dimensions;     //!< 2; fewer where nothing else predicts the pixel, or only one coordinate of it
+    int dimensions;     //!< as rows; fewer where nothing else predicts the pixel, or only one coordinate of it
     bool isUsed;
 
     /** Above 1: an outlier. A good observation exceeds 1 with a chance of 1e-4, whatever its leverage, also where the variance was

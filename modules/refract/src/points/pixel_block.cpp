@@ -22,9 +22,16 @@ uchar projectIntoAll(const PlacedCameras& cameras, const PixelBlock& block, int 
         J = J*cameras[c].place.R;
         for (int k = 0; k < 2; k++)
         {
-            images.errors[2*c + k] = pixel[k] - block.pixel(2*c + k)[i];
-            images.byPoint[2*c + k] = Vec3d(J.val + 3*k);
+            const bool isKnown = !std::isnan(block.pixel(2*c + k)[i]);
+            images.errors[2*c + k] = isKnown ? pixel[k] - block.pixel(2*c + k)[i] : 0;
+            images.byPoint[2*c + k] = isKnown ? Vec3d(J.val + 3*k) : Vec3d();
         }
+        if (block.whitening.empty())
+            continue;
+        const Whitening& W = block.whiteningOf(c, i);
+        W.apply(images.errors[2*c], images.errors[2*c + 1]);
+        for (int k = 0; k < 3; k++)
+            W.apply(images.byPoint[2*c][k], images.byPoint[2*c + 1][k]);
     }
     return REFRACT_OK;
 }

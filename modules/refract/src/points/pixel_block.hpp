@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_PIXEL_BLOCK_HPP
 
 #include "arrays/extrinsics.hpp"
+#include "arrays/whitening.hpp"
 #include "camera/camera.hpp"
 
 /* What cameras of a rig see of points: a block of them on its way from pixels to points, and one of them in all images. */
@@ -24,22 +25,41 @@ typedef std::vector<PlacedCamera> PlacedCameras;    //!< the first is in its own
 //! A block of points on their way from their pixels in all images to the frame of camera 1.
 struct PixelBlock
 {
-    explicit PixelBlock(int cameras) : sees((size_t)cameras), pixels_((size_t)2*cameras*BLOCK)
-    { std::fill(sees.data(), sees.data() + cameras, (uchar)ALL); }
+    explicit PixelBlock(int cameras) : sees((size_t)cameras), hasHalves((size_t)cameras), pixels_((size_t)2*cameras*BLOCK)
+    {
+        std::fill(sees.data(), sees.data() + cameras, (uchar)ALL);
+        std::fill(hasHalves.data(), hasHalves.data() + cameras, (uchar)false);
+    }
     //! u1, v1, u2, v2, ...
     double* pixel(int k) { return pixels_.data() + k*BLOCK; }
     const double* pixel(int k) const { return pixels_.data() + k*BLOCK; }
-    bool isSeen(int camera, int i) const { return !std::isnan(pixel(2*camera)[i]); }
+    bool isSeen(int camera, int i) const { return !std::isnan(pixel(2*camera)[i]) || !std::isnan(pixel(2*camera + 1)[i]); }
+    bool isHalf(int camera, int i) const { return std::isnan(pixel(2*camera)[i]) != std::isnan(pixel(2*camera + 1)[i]); }
+    //! Whether some camera sees half of the point.
+    bool hasHalf(int i) const
+    {
+        for (size_t c = 0; c < hasHalves.size(); c++)
+            if (hasHalves[c] && isHalf((int)c, i))
+                return true;
+        return false;
+    }
+    Point2d pixelOf(int camera, int i) const { return Point2d(pixel(2*camera)[i], pixel(2*camera + 1)[i]); }
 
     enum Sees { NONE, SOME, ALL };
-    AutoBuffer<uchar, 16> sees;         //!< of each camera: which of the points; SOME: u of the others is NaN
+    AutoBuffer<uchar, 16> sees;         //!< of each camera: which of the points; SOME: pixels of the others are NaN
+    AutoBuffer<uchar, 16> hasHalves;    //!< of each camera: one coordinate of some pixels is NaN
+    //! Of each camera and point, if covariances were given; halves have rows of 0. W of each point has a scale of its own, so that
+    //! its largest row is about 1.
+    std::vector<Whitening> whitening;
+    std::vector<double> scale;          //!< of each point: this times the pixels' standard deviation has been divided out
+    const Whitening& whiteningOf(int camera, int i) const { return whitening[(size_t)camera*BLOCK + i]; }
     double x[BLOCK], y[BLOCK], z[BLOCK];
     uchar status[BLOCK];
 private:
     AutoBuffer<double, 4*BLOCK> pixels_;
 };
 
-//! One point's pixels in all images: two rows a camera, 0 where the camera does not see it.
+//! One point's pixels in all images: two rows a camera, 0 where the camera does not see it; whitened.
 struct PointImages
 {
     explicit PointImages(int cameras) : errors(2*cameras), byPoint(2*cameras) {}

@@ -9,7 +9,7 @@
 
 /* Covariance of the maximum-likelihood point: J^+ (S + P C P^T) J^+^T, from the covariance S of the pixels and C of the
 calibration; J and P are the derivatives of all pixels by the point and by the parameters. Zero where a camera does not see the
-point. */
+point; whitened where the pixels have covariances, so that S is that of usual ones. */
 
 namespace cv { namespace refract {
 
@@ -89,6 +89,23 @@ private:
     double* next_;
 };
 
+//! Whitens the derivatives of a camera's pixels; 0 where they were not seen.
+static void weigh(const PixelBlock& block, int c, int n, double* byU, double* byV)
+{
+    const double *u = block.pixel(2*c), *v = block.pixel(2*c + 1);
+    for (int i = 0; i < n && (block.sees[c] == PixelBlock::SOME || block.hasHalves[c]); i++)
+    {
+        byU[i] = std::isnan(u[i]) ? 0 : byU[i];
+        byV[i] = std::isnan(v[i]) ? 0 : byV[i];
+    }
+    for (int i = 0; i < n && !block.whitening.empty(); i++)
+    {
+        const Whitening& W = block.whiteningOf(c, i);
+        byV[i] = (W.vu*byU[i] + W.vv*byV[i])/block.scale[i];
+        byU[i] = W.uu*byU[i]/block.scale[i];
+    }
+}
+
 //! Derivatives of all pixels.
 void PointCovariance::differentiate(const PixelBlock& block, int n, Block& work) const
 {
@@ -116,14 +133,10 @@ void PointCovariance::differentiate(const PixelBlock& block, int n, Block& work)
             for (int k = 0; k < 6; k++)
                 std::copy(byPoint.at(k/3, k % 3), byPoint.at(k/3, k % 3) + n, values.at(k/3, p.lensAndWindow + 3 + k % 3));
         }
-        for (int i = 0; i < n && block.sees[c] == PixelBlock::SOME; i++)
-            if (!block.isSeen(c, i))
-            {
-                for (int k = 0; k < 6; k++)
-                    byPoint.at(0, k)[i] = 0;
-                for (int k = 0; k < (isUncertain ? 2*p.count : 0); k++)
-                    values.at(0, k)[i] = 0;
-            }
+        for (int k = 0; k < 3; k++)
+            weigh(block, c, n, byPoint.at(0, k), byPoint.at(1, k));
+        for (int k = 0; k < (isUncertain ? p.count : 0); k++)
+            weigh(block, c, n, values.at(0, k), values.at(1, k));
         work.pixels[work.count] = { c > 0 ? place.R.val : NULL, byPoint };
         work.byParameters[work.count] = { values, p.uncertain.data(), (int)p.uncertain.size() };
         work.seeing[work.count++] = c;

@@ -30,15 +30,17 @@ struct CameraRays
     const double *tau, *dx, *dy, *dz;
     double axis[3], centre[3];
     Columns offset;             //!< three; may be null: 0
+    Columns sheet;              //!< three: normals of sheets, of which the rays are part; NaN: only the ray. May be null: only rays
 };
 
 //! Pixels of one camera.
 struct CameraErrors
 {
     const double* R;            //!< rotation from the frame of camera 1; null: none
-    Columns observed;           //!< 2x1; NaN: not seen
+    Columns observed;           //!< 2x1; NaN: this coordinate was not seen
     Columns predicted;          //!< 2x1
     Columns byPoint;            //!< derivatives of the predicted pixels, in the frame of the camera
+    Columns whitening;          //!< 3x1: W's uu, vu, vv; may be null: 1, 0, 1
 };
 
 //! Derivatives of one camera's pixels by the point; 0 where it is not seen.
@@ -113,7 +115,7 @@ struct PointKernels
     //! The raw pixels of n places of a row of a tile, at their depths; row and columns as interpolate's.
     void (*interpolateSurface)(const SurfaceTile& tile, const double* row, const double* columns, const double* planeD, int n,
                                double* u, double* v);
-    /** The points with the least squared distance from the rays of two or more cameras.
+    /** The points with the least squared distance from the rays and sheets of two or more cameras.
     @param apart below about 1e-24 all rays are parallel; of two, half the square of the sine between them
     @param nearest how far along its ray the camera sees the point that has it least far */
     void (*meetRays)(int n, int cameras, const CameraRays* rays, double* x, double* y, double* z, double* apart,
@@ -156,6 +158,17 @@ struct PointKernels
                                 const double* dx, const double* dy, const double* dz, const double* mx, const double* my,
                                 const double* mz, const Columns& byPoint1, const Columns& byPoint2, const Columns& nearest,
                                 const Columns& out);
+
+    //! Unit normals of two directions each.
+    void (*normals)(int n, const double* ax, const double* ay, const double* az, const double* bx, const double* by, const double* bz,
+                    double* x, double* y, double* z);
+    /** One step of Newton's method along rays to where a coordinate of a pixel is right.
+    @param gradient of the predicted coordinate by the point, three columns
+    @param s how far along each ray, in and out
+    @param error squared, before the step
+    @param sine squared, between ray and sheet */
+    void (*slide)(int n, const double* observed, const double* predicted, const Columns& gradient, const double* dx, const double* dy,
+                  const double* dz, double* s, double* error, double* sine);
 };
 
 const PointKernels& pointKernels();

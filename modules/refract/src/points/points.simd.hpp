@@ -217,8 +217,11 @@ inline Vector keep(Mask m, const Vector& a)
 
 struct RayLanes { Mask seen; Vector d, o; };
 
+//! What the rays of cameras may be.
+enum RayKind { ON_AXIS, OFF_AXIS, WITH_SHEETS };
+
 //! d is 0 where the ray is not seen.
-template<bool OFF_AXIS, typename At>
+template<RayKind KIND, typename At>
 inline RayLanes loadRay(const CameraRays& rays, At at)
 {
     const Lanes u = load(rays.seen, at), zero = all(0);
@@ -227,7 +230,7 @@ inline RayLanes loadRay(const CameraRays& rays, At at)
     ray.d = keep(ray.seen, { load(rays.dx, at), load(rays.dy, at), load(rays.dz, at) });
     const Lanes tau = select(ray.seen, load(rays.tau, at), zero);
     ray.o = { tau*rays.axis[0] + rays.centre[0], tau*rays.axis[1] + rays.centre[1], tau*rays.axis[2] + rays.centre[2] };
-    if (OFF_AXIS && rays.offset.data)
+    if (KIND != ON_AXIS && rays.offset.data)
     {
         const Vector offset = keep(ray.seen, loadRow(rays.offset, 0, at));
         ray.o = { ray.o.x + offset.x, ray.o.y + offset.y, ray.o.z + offset.z };
@@ -235,14 +238,39 @@ inline RayLanes loadRay(const CameraRays& rays, At at)
     return ray;
 }
 
-//! The first ray that each lane sees.
-template<bool OFF_AXIS, typename At>
+//! Which lanes have a sheet; its normal is 0 elsewhere.
+template<typename At>
+inline Mask loadSheet(const CameraRays& rays, At at, Vector& normal)
+{
+    const Lanes x = load(rays.sheet.at(0, 0), at);
+    const Mask isSheet = x == x;
+    normal = keep(isSheet, loadRow(rays.sheet, 0, at));
+    return isSheet;
+}
+
+//! The first ray that each lane sees, if there is one that is not part of a sheet.
+template<RayKind KIND, typename At>
 inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
 {
-    RayLanes first = loadRay<OFF_AXIS>(rays[0], at);
+    RayLanes first = loadRay<KIND>(rays[0], at);
+    Vector normal;
+    Mask isSheet = none();
+    if (KIND == WITH_SHEETS && rays[0].sheet.data)
+        isSheet = loadSheet(rays[0], at, normal);
+    for (int c = 1; c < cameras && KIND == WITH_SHEETS && any(isSheet); c++)
+    {
+        RayLanes next = loadRay<KIND>(rays[c], at);
+        if (rays[c].sheet.data)
+            next.seen &= isNot(loadSheet(rays[c], at, normal));
+        const Mask better = isSheet & next.seen;
+        const auto choose = [&](Lanes a, Lanes b) { return select(better, b, a); };
+        first.d = { choose(first.d.x, next.d.x), choose(first.d.y, next.d.y), choose(first.d.z, next.d.z) };
+        first.o = { choose(first.o.x, next.o.x), choose(first.o.y, next.o.y), choose(first.o.z, next.o.z) };
+        isSheet &= isNot(better);
+    }
     for (int c = 1; c < cameras && any(isNot(first.seen)); c++)
     {
-        const RayLanes next = loadRay<OFF_AXIS>(rays[c], at);
+        const RayLanes next = loadRay<KIND>(rays[c], at);
         const auto otherwise = [&](Lanes a, Lanes b) { return select(first.seen, a, b); };
         first.d = { otherwise(first.d.x, next.d.x), otherwise(first.d.y, next.d.y), otherwise(first.d.z, next.d.z) };
         first.o = { otherwise(first.o.x, next.o.x), otherwise(first.o.y, next.o.y), otherwise(first.o.z, next.o.z) };
@@ -251,22 +279,32 @@ inline RayLanes firstRay(int cameras, const CameraRays* rays, At at)
     return first;
 }
 
-/* Least squares of (I - d d^T)(X - o), in a frame (s, a, b) with s along the first ray: there what is small between rays that
-are nearly parallel is a product of small numbers, not a difference of large ones. */
-template<bool OFF_AXIS>
+/* Least squares of (I - d d^T)(X - o), of a sheet with the normal m of m.(X - o), in a frame (s, a, b) with s along the first ray:
+there what is small between rays that are nearly parallel is a product of small numbers, not a difference of large ones. */
+template<RayKind KIND>
 inline void meetRaysOf(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
 {
     eachRegister(n, [&](auto at)
     {
-        const RayLanes first = firstRay<OFF_AXIS>(cameras, rays, at);
+        const RayLanes first = firstRay<KIND>(cameras, rays, at);
         Vector a, b;
         vectorsAcross(first.d, a, b);
         Lanes ss = all(0), sa = all(0), sb = all(0), aa = all(0), ab = all(0), bb = all(0);
         Vector g = {};
         for (int c = 0; c < cameras; c++)
         {
-            const RayLanes ray = loadRay<OFF_AXIS>(rays[c], at);
+            RayLanes ray = loadRay<KIND>(rays[c], at);
             const Vector w = { ray.o.x - first.o.x, ray.o.y - first.o.y, ray.o.z - first.o.z };
+            if (KIND == WITH_SHEETS && rays[c].sheet.data)
+            {
+                Vector m;
+                const Mask isSheet = loadSheet(rays[c], at, m);
+                m = keep(ray.seen, m);
+                const Lanes ms = dot(m, first.d), ma = dot(m, a), mb = dot(m, b), off = dot(m, w);
+                g = { g.x + ms*off, g.y + ma*off, g.z + mb*off };
+                ss += ms*ms; sa += ms*ma; sb += ms*mb; aa += ma*ma; ab += ma*mb; bb += mb*mb;
+                ray.d = keep(isNot(isSheet), ray.d);
+            }
             const Lanes ds = dot(ray.d, first.d), da = dot(ray.d, a), db = dot(ray.d, b);
             const Lanes ws = dot(w, first.d), wa = dot(w, a), wb = dot(w, b);
             const Lanes along = da*wa + db*wb, across = da*da + db*db, aaOwn = ds*ds + db*db, bbOwn = ds*ds + da*da;
@@ -281,7 +319,7 @@ inline void meetRaysOf(int n, int cameras, const CameraRays* rays, double* px, d
         Lanes nearest = s;
         for (int c = 0; c < cameras; c++)
         {
-            const RayLanes ray = loadRay<OFF_AXIS>(rays[c], at);
+            const RayLanes ray = loadRay<KIND>(rays[c], at);
             const Lanes far = dot(ray.d, { X.x - ray.o.x, X.y - ray.o.y, X.z - ray.o.z });
             nearest = select(ray.seen & (far < nearest), far, nearest);
         }
@@ -295,10 +333,41 @@ inline void meetRaysOf(int n, int cameras, const CameraRays* rays, double* px, d
 
 void meetRays(int n, int cameras, const CameraRays* rays, double* px, double* py, double* pz, double* pApart, double* pNearest)
 {
-    bool isOffAxis = false;
+    bool isOffAxis = false, hasSheets = false;
     for (int c = 0; c < cameras; c++)
+    {
         isOffAxis |= rays[c].offset.data != nullptr;
-    (isOffAxis ? meetRaysOf<true> : meetRaysOf<false>)(n, cameras, rays, px, py, pz, pApart, pNearest);
+        hasSheets |= rays[c].sheet.data != nullptr;
+    }
+    (hasSheets ? meetRaysOf<WITH_SHEETS> : isOffAxis ? meetRaysOf<OFF_AXIS> : meetRaysOf<ON_AXIS>)
+        (n, cameras, rays, px, py, pz, pApart, pNearest);
+}
+
+void normals(int n, const double* pax, const double* pay, const double* paz, const double* pbx, const double* pby, const double* pbz,
+             double* px, double* py, double* pz)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Vector a = { load(pax, at), load(pay, at), load(paz, at) }, b = { load(pbx, at), load(pby, at), load(pbz, at) };
+        const Vector m = cross(a, b);
+        const Lanes inverse = 1/sqrt(dot(m, m));
+        store(m.x*inverse, px, at);
+        store(m.y*inverse, py, at);
+        store(m.z*inverse, pz, at);
+    });
+}
+
+void slide(int n, const double* observed, const double* predicted, const Columns& gradient, const double* pdx, const double* pdy,
+           const double* pdz, double* pS, double* pError, double* pSine)
+{
+    eachRegister(n, [&](auto at)
+    {
+        const Vector g = loadRow(gradient, 0, at), d = { load(pdx, at), load(pdy, at), load(pdz, at) };
+        const Lanes error = load(observed, at) - load(predicted, at), along = dot(g, d);
+        store(load(pS, at) + error/along, pS, at);
+        store(error*error, pError, at);
+        store(along*along/dot(g, g), pSine, at);
+    });
 }
 
 void gaussNewton(int n, int cameras, const CameraErrors* errors, double* px, double* py, double* pz, double* pMoved)
@@ -310,12 +379,25 @@ void gaussNewton(int n, int cameras, const CameraErrors* errors, double* px, dou
         for (int c = 0; c < cameras; c++)
         {
             const CameraErrors& camera = errors[c];
+            Lanes uError = all(0);
+            Vector byU = {};
             for (int k = 0; k < 2; k++)
             {
                 const Lanes observed = load(camera.observed.at(k, 0), at);
                 const Mask seen = observed == observed;
-                const Lanes e = select(seen, observed - load(camera.predicted.at(k, 0), at), all(0));
+                Lanes e = select(seen, observed - load(camera.predicted.at(k, 0), at), all(0));
                 Vector D = keep(seen, loadRow(camera.byPoint, k, at));
+                if (camera.whitening.data)
+                {
+                    const Lanes own = load(camera.whitening.at(k == 0 ? 0 : 2, 0), at);
+                    const Lanes across = k == 0 ? all(0) : load(camera.whitening.at(1, 0), at);
+                    const Lanes u = e;
+                    const Vector U = D;
+                    e = own*e + across*uError;
+                    D = { own*D.x + across*byU.x, own*D.y + across*byU.y, own*D.z + across*byU.z };
+                    uError = u;
+                    byU = U;
+                }
                 if (const double* R = camera.R)
                     D = { D.x*R[0] + D.y*R[3] + D.z*R[6], D.x*R[1] + D.y*R[4] + D.z*R[7], D.x*R[2] + D.y*R[5] + D.z*R[8] };
                 g = { g.x + D.x*e, g.y + D.y*e, g.z + D.z*e };
@@ -629,7 +711,8 @@ void distanceDerivatives(const CurveMotion& given, int n, const double* px, cons
 
 constexpr PointKernels pointTable = {
     transform, multiples, pinhole, meetPlane, meetPlaneOffAxis, chordRoots, areClose, chainLinear, interpolate, interpolateSurface,
-    meetRays, gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives
+    meetRays, gaussNewton, carryCovariance, pointCovariance, curvesOf, nearestToRay, curvePoints, approachPixel, distanceDerivatives,
+    normals, slide
 };
 
 }}} // namespace

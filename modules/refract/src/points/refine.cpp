@@ -22,6 +22,15 @@ Vec3d gaussNewtonStep(const PointImages& images)
     return -step;
 }
 
+//! Whether the images determine the point: their derivatives have three singular values that are not rounding.
+bool isDetermined(const PointImages& images)
+{
+    const double ROUNDING = 1e-10;
+    Mat values;
+    SVD::compute(Mat((int)images.errors.size(), 3, CV_64F, const_cast<Vec3d*>(images.byPoint.data())), values, SVD::NO_UV);
+    return values.at<double>(2) > ROUNDING*values.at<double>(0);
+}
+
 /* Far from the minimum a step must reduce the cost; near it full Gauss-Newton steps converge, and the cost, whose
 changes drown in rounding there, is not asked. */
 uchar refine(const PlacedCameras& cameras, const PixelBlock& block, int i, Vec3d& X)
@@ -53,7 +62,7 @@ uchar refine(const PlacedCameras& cameras, const PixelBlock& block, int i, Vec3d
         if (!taken)
             return REFRACT_NOT_CONVERGED;
         if (moved <= DONE || (moved <= ROUNDING && moved >= 0.5*last))
-            return REFRACT_OK;
+            return !block.hasHalf(i) || isDetermined(here) ? REFRACT_OK : REFRACT_PARALLEL_RAYS;
         last = moved;
     }
     return REFRACT_NOT_CONVERGED;
@@ -79,14 +88,18 @@ public:
         std::copy(block.status, block.status + n, status_);
     }
 
-    void run(PixelBlock& block, double off, double enough, uchar* arrived)
+    void run(PixelBlock& block, const double* off, double enough, uchar* arrived)
     {
         const double DONE = 1e-11, SHRINK = 0.01;
         const int STEPS = 6;
         double moved[BLOCK], last[BLOCK];
-        std::fill(arrived, arrived + n_, (uchar)false);
-        std::fill(last, last + n_, off*off/SHRINK);
-        int missing = n_;
+        int missing = 0;
+        for (int i = 0; i < n_; i++)
+        {
+            arrived[i] = off[i] == 0;
+            last[i] = off[i]*off[i]/SHRINK;
+            missing += !arrived[i] && status_[i] == REFRACT_OK;
+        }
         for (int k = 0; k < STEPS && missing > 0; k++)
         {
             step(moved);
@@ -135,7 +148,22 @@ private:
         }
         forSeen(block_, c, n_, status_, [&](uchar* status)
         { camera.camera->projectJacobian(n_, px, py, pz, p.pixels, p.pixels + BLOCK, byPoint, none, status); });
-        return { c > 0 ? camera.place.R.val : NULL, observed, predicted, byPoint };
+        return { c > 0 ? camera.place.R.val : NULL, observed, predicted, byPoint, whiteningOf(c) };
+    }
+
+    //! As the kernel takes it: null if no covariances were given.
+    Columns whiteningOf(int c)
+    {
+        if (block_.whitening.empty())
+            return { NULL, 0, 0 };
+        whitening_.resize(3*BLOCK*cameras_.size());
+        const Columns W = { &whitening_[(size_t)3*BLOCK*c], 1, BLOCK };
+        for (int i = 0; i < n_; i++)
+        {
+            const Whitening& own = block_.whiteningOf(c, i);
+            W.at(0, 0)[i] = own.uu; W.at(1, 0)[i] = own.vu; W.at(2, 0)[i] = own.vv;
+        }
+        return W;
     }
 
     const PlacedCameras& cameras_;
@@ -143,11 +171,18 @@ private:
     const int n_;
     AutoBuffer<Prediction, 4> predictions_;
     AutoBuffer<CameraErrors, 16> errors_;
+    std::vector<double> whitening_;
     double x_[BLOCK], y_[BLOCK], z_[BLOCK];
     uchar status_[BLOCK];
 };
 
 } // namespace
+
+//! Of half a pixel one is NaN.
+static double lengthOf(double du, double dv)
+{
+    return std::isnan(du) ? std::abs(dv) : std::isnan(dv) ? std::abs(du) : std::hypot(du, dv);
+}
 
 void reprojectionErrors(const PlacedCameras& cameras, const PixelBlock& block, int n, double* errors)
 {
@@ -163,12 +198,12 @@ void reprojectionErrors(const PlacedCameras& cameras, const PixelBlock& block, i
         pointKernels().transform(cameras[c].place.R.val, cameras[c].place.t.val, n, x, y, z);
         cameras[c].camera->project(n, x, y, z, NULL, predictedU, predictedV, status);
         for (int i = 0; i < n; i++)
-            errors[i*count + c] = status[i] == REFRACT_OK ? std::hypot(predictedU[i] - u[i], predictedV[i] - v[i])
+            errors[i*count + c] = status[i] == REFRACT_OK ? lengthOf(predictedU[i] - u[i], predictedV[i] - v[i])
                                                           : std::numeric_limits<double>::quiet_NaN();
     }
 }
 
-void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, double off, double enough)
+void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, const double* off, double enough)
 {
     uchar arrived[BLOCK];
     TogetherRefinement(cameras, block, n).run(block, off, enough, arrived);

@@ -4,6 +4,8 @@
 
 #include "points/triangulate.hpp"
 #include "points/point_kernels.hpp"
+#include "points/sheet.hpp"
+#include "arrays/views.hpp"
 
 /* Refracted rays of two or more cameras -> a point. The point nearest to all rays is the start; the maximum-likelihood point
 minimises the sum of squared pixel errors in all raw images, by Gauss-Newton with exact derivatives. */
@@ -12,33 +14,70 @@ namespace cv { namespace refract {
 
 namespace {
 
-CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n, Rays& r)
+//! Brings rays from the frame of their camera to that of camera 1.
+CameraRays inFrame1(const PlacedCamera& placed, bool isFirst, const double* seen, int n, Rays& r)
 {
-    const Camera& camera = *cameras[c].camera;
-    forSeen(block, c, n, block.status, [&](uchar* status)
-    { camera.unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r, status); });
-    const RigidTransform& place = cameras[c].place;
+    const RigidTransform& place = placed.place;
     const Matx33d back = place.R.t();
-    const Vec3d axis = back*camera.layers().normal(), centre = -(back*place.t), none;
-    if (c > 0)
+    const Vec3d axis = back*placed.camera->layers().normal(), centre = -(back*place.t), none;
+    if (!isFirst)
         pointKernels().transform(back.val, none.val, n, r.dx, r.dy, r.dz);
-    if (c > 0 && r.hasOffset)
+    if (!isFirst && r.hasOffset)
         pointKernels().transform(back.val, none.val, n, r.offset, r.offset + BLOCK, r.offset + 2*BLOCK);
-    return { block.pixel(2*c), r.tau, r.dx, r.dy, r.dz, { axis[0], axis[1], axis[2] },
-             { centre[0], centre[1], centre[2] }, r.offsets() };
+    return { seen, r.tau, r.dx, r.dy, r.dz, { axis[0], axis[1], axis[2] }, { centre[0], centre[1], centre[2] }, r.offsets(),
+             { NULL, 0, 0 } };
 }
 
-//! The points nearest to all rays.
-void meet(const PlacedCameras& cameras, PixelBlock& block, int n)
+CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n, Rays& r)
 {
+    forSeen(block, c, n, block.status, [&](uchar* status)
+    { cameras[c].camera->unproject(n, block.pixel(2*c), block.pixel(2*c + 1), r, status); });
+    return inFrame1(cameras[c], c == 0, block.pixel(2*c), n, r);
+}
+
+//! Rays of a camera that sees halves of some points.
+struct SheetRays
+{
+    Sheets sheets;
+    double seen[BLOCK];
+};
+
+CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n, SheetRays& r)
+{
+    forSeen(block, c, n, block.status, [&](uchar* status)
+    { unprojectSheets(*cameras[c].camera, n, block.pixel(2*c), block.pixel(2*c + 1), r.sheets, status); });
+    for (int i = 0; i < n; i++)
+        r.seen[i] = block.isSeen(c, i) ? 0 : std::numeric_limits<double>::quiet_NaN();
+    CameraRays rays = inFrame1(cameras[c], c == 0, r.seen, n, r.sheets);
+    rays.sheet = { r.sheets.normal, 3, BLOCK };
+    const Matx33d back = cameras[c].place.R.t();
+    if (c > 0)
+        pointKernels().transform(back.val, Vec3d().val, n, r.sheets.normal, r.sheets.normal + BLOCK, r.sheets.normal + 2*BLOCK);
+    return rays;
+}
+
+//! The points nearest to all rays. @param off by how many pixels they are off at most; 0: they are the most likely ones
+void meet(const PlacedCameras& cameras, PixelBlock& block, int n, double* off)
+{
+    const double OFF_WHOLE = 1, OFF_HALVES = 300;       // pixels that see one point; sheets are no planes, but taken for such
     const double PARALLEL = 0.5e-24;
     AutoBuffer<Rays, 4> buffers(cameras.size());
     AutoBuffer<CameraRays, 16> rays(cameras.size());
+    std::vector<SheetRays> sheets;      // few cameras have any
+    sheets.reserve(std::count(block.hasHalves.data(), block.hasHalves.data() + cameras.size(), (uchar)true));
     double apart[BLOCK], nearest[BLOCK];
-    int count = 0;
+    int count = 0, half = -1, whole = -1;
     for (int c = 0; c < (int)cameras.size(); c++)
-        if (block.sees[c] != PixelBlock::NONE)
-            rays[count++] = raysOf(cameras, c, block, n, buffers[c]);
+    {
+        if (block.sees[c] == PixelBlock::NONE)
+            continue;
+        if (block.hasHalves[c])
+            sheets.push_back(SheetRays());
+        (block.hasHalves[c] ? half : whole) = c;
+        rays[count++] = block.hasHalves[c] ? raysOf(cameras, c, block, n, sheets.back()) : raysOf(cameras, c, block, n, buffers[c]);
+    }
+    for (int i = 0; i < n; i++)
+        off[i] = half >= 0 && block.hasHalf(i) ? OFF_HALVES : OFF_WHOLE;
     if (count == 0)
         return;
     pointKernels().meetRays(n, count, rays.data(), block.x, block.y, block.z, apart, nearest);
@@ -46,6 +85,8 @@ void meet(const PlacedCameras& cameras, PixelBlock& block, int n)
         if (block.status[i] == REFRACT_OK)
             block.status[i] = !(apart[i] > PARALLEL) ? REFRACT_PARALLEL_RAYS
                               : !(nearest[i] > 0) ? REFRACT_NO_INTERSECTION : REFRACT_OK;
+    if (count == 2 && half >= 0 && whole >= 0)
+        slideToSheet(cameras[half], half, rays[whole < half ? 0 : 1], n, block, off);
 }
 
 } // namespace
@@ -58,12 +99,12 @@ void checkSigma(double sigma, const char* name)
 
 void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, int flags)
 {
-    const double MIDPOINT_OFF = 1;      // pixels, of pixels that see one point
-    meet(cameras, block, n);
+    double off[BLOCK];
+    meet(cameras, block, n, off);
     if (flags == TRIANGULATE_MIDPOINT)
         checkBeyond(cameras, block, n);
     else
-        refineBlock(cameras, block, n, MIDPOINT_OFF, 0);
+        refineBlock(cameras, block, n, off, 0);
 }
 
 namespace {
@@ -104,11 +145,11 @@ public:
         }
     }
 
-    //! A NaN pixel was not seen.
-    void loadSeen(int begin, int n, PixelBlock& block) const
+    //! NaN coordinates were not seen. @param takesHalves pixels of which one coordinate was
+    void loadSeen(int begin, int n, bool takesHalves, PixelBlock& block) const
     {
         uchar own[BLOCK];
-        int views[BLOCK] = {};
+        int coordinates[BLOCK] = {};
         std::fill(block.status, block.status + n, (uchar)REFRACT_OK);
         for (int c = 0; c < cameras(); c++)
         {
@@ -118,11 +159,18 @@ public:
             for (int i = 0; i < n; i++)
             {
                 if (own[i] != REFRACT_OK && (std::isnan(u[i]) || std::isnan(v[i])))
-                    u[i] = v[i] = std::numeric_limits<double>::quiet_NaN();
+                {
+                    const bool isHalf = takesHalves && (std::isfinite(u[i]) || std::isfinite(v[i]));
+                    if (!isHalf)
+                        u[i] = v[i] = std::numeric_limits<double>::quiet_NaN();
+                    block.hasHalves[c] |= (uchar)isHalf;
+                    seen += isHalf;
+                    coordinates[i] += isHalf;
+                }
                 else
                 {
                     seen++;
-                    views[i]++;
+                    coordinates[i] += 2;
                     if (own[i] != REFRACT_OK)
                         block.status[i] = own[i];
                 }
@@ -130,11 +178,51 @@ public:
             block.sees[c] = (uchar)(seen == n ? PixelBlock::ALL : seen ? PixelBlock::SOME : PixelBlock::NONE);
         }
         for (int i = 0; i < n; i++)
-            if (block.status[i] == REFRACT_OK && views[i] < 2)
+            if (block.status[i] == REFRACT_OK && coordinates[i] < 3)
                 block.status[i] = REFRACT_TOO_FEW_VIEWS;
+        weigh(begin, n, block);
+    }
+
+    //! Covariances of the pixels; none: all are usual ones.
+    void readCovariances(InputArrayOfArrays covariances, InputArrayOfArrays imagePoints)
+    {
+        std::vector<Mat> all;
+        if (!covariances.empty())
+            covariances.getMatVector(all);
+        if (all.empty())
+            return;
+        if ((int)all.size() != cameras())
+            CV_Error_(Error::StsUnmatchedSizes, ("pixelCovariances has %d elements; cameras has %d", (int)all.size(), cameras()));
+        for (int c = 0; c < cameras(); c++)
+            covariances_.push_back(readPixelCovariances(all[c], readPoints2(imagePoints.getMat(c), names_[c].c_str()),
+                                                        numbered("pixelCovariances", c)));
     }
 
 private:
+    //! W of each point, scaled by its best pixel.
+    void weigh(int begin, int n, PixelBlock& block) const
+    {
+        if (covariances_.empty())
+            return;
+        block.whitening.resize((size_t)BLOCK*cameras());
+        block.scale.assign(BLOCK, 1.);
+        for (int i = 0; i < n; i++)
+        {
+            double least = std::numeric_limits<double>::infinity();
+            for (int c = 0; c < cameras(); c++)
+                if (isSeen(block.pixelOf(c, i)))
+                    least = std::min(least, std::min(std::isnan(block.pixel(2*c)[i]) ? least : covarianceOf(c, begin + i).uu,
+                                                     std::isnan(block.pixel(2*c + 1)[i]) ? least : covarianceOf(c, begin + i).vv));
+            if (std::isfinite(least))
+                block.scale[i] = std::sqrt(least);
+            for (int c = 0; c < cameras(); c++)
+                if (isSeen(block.pixelOf(c, i)))
+                    block.whitening[(size_t)c*BLOCK + i] = Whitening(block.pixelOf(c, i), covarianceOf(c, begin + i), block.scale[i]);
+        }
+    }
+    PixelCovariance covarianceOf(int c, int i) const { return covariances_[c].empty() ? PixelCovariance() : covariances_[c][i]; }
+
+    std::vector<PixelCovariances> covariances_;
     std::vector<PointReader> images_;
     std::vector<String> names_;
 };
@@ -191,7 +279,7 @@ void triangulate(const PlacedCameras& cameras, const ImageReader& images, bool m
     {
         PixelBlock block(images.cameras());
         if (mayMiss)
-            images.loadSeen(begin, n, block);
+            images.loadSeen(begin, n, flags == TRIANGULATE_OPTIMAL, block);
         else
             images.load(begin, n, block);
         out.prepare(begin, n);
@@ -283,13 +371,15 @@ void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, I
 void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> >& handles, InputArrayOfArrays Rs, InputArrayOfArrays Ts,
                            InputArrayOfArrays imagePoints, OutputArray points3D, OutputArray status, int flags,
                            double pixelSigma, InputArray calibrationCovariance, OutputArray covariance,
-                           OutputArray reprojectionErrors)
+                           OutputArray reprojectionErrors, InputArrayOfArrays pixelCovariances)
 {
     CV_INSTRUMENT_REGION();
 
     const PlacedCameras cameras = readCameras(handles, Rs, Ts);
     PointQuality quality(cameras, pixelSigma, calibrationCovariance, covariance, reprojectionErrors);
-    triangulate(cameras, readImages(imagePoints, cameras.size()), true, points3D, status, flags, &quality);
+    ImageReader images = readImages(imagePoints, cameras.size());
+    images.readCovariances(pixelCovariances, imagePoints);
+    triangulate(cameras, images, true, points3D, status, flags, &quality);
     quality.store();
 }
 

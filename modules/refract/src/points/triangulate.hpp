@@ -25,9 +25,9 @@ struct StereoPair
 void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, int flags);
 
 /** The most likely points, from near ones in x, y, z.
-@param off pixels by which the images of these points are off, at most, if vectors shall do it
+@param off pixels by which the images of each point are off, at most, if vectors shall do it; 0: it is there
 @param enough a step that moves the images by less, in pixels, is the last; 0: to the accuracy of double */
-void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, double off, double enough);
+void refineBlock(const PlacedCameras& cameras, PixelBlock& block, int n, const double* off, double enough);
 
 //! Covariances of maximum-likelihood points, a block at a time.
 class PointCovariance

@@ -22,6 +22,8 @@ Bearings bearingsOf(const Camera& camera, const std::vector<Point2d>& pixels)
     for (size_t i = 0; i < pixels.size(); i++)
     {
         uchar status = REFRACT_OK;
+        if (!isWhole(pixels[i]))
+            continue;
         camera.unproject(1, &pixels[i].x, &pixels[i].y, rays, &status);
         if (status != REFRACT_OK)
             continue;
@@ -91,7 +93,7 @@ std::vector<RigidTransform> centralPoses(const Bearings& b1, const Bearings& b2,
 {
     Points n1, n2;
     for (size_t i = 0; i < b1.normalized.size(); i++)
-        if (isSeen(b1.normalized[i]) && isSeen(b2.normalized[i]))
+        if (isWhole(b1.normalized[i]) && isWhole(b2.normalized[i]))
         {
             n1.push_back(b1.normalized[i]);
             n2.push_back(b2.normalized[i]);

@@ -46,7 +46,11 @@ Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const Po
         if (camera.projectJacobian(rotation.R*X + pose.tvec, pixel, byPoint.data(), byCamera.data()) != REFRACT_OK)
             return Matx66d::all(std::numeric_limits<double>::quiet_NaN());
         const Matx33d byRvec = rotation.derivativeOf(X);
-        const double error[2] = { pixel[0] - points.pixel[i].x, pixel[1] - points.pixel[i].y };
+        const Vec2d error = points.error(i, pixel[0], pixel[1]);
+        for (int c = 0; c < 3 && !points.whitening.empty(); c++)
+            points.whitening[i].apply(byPoint[c], byPoint[3 + c]);
+        for (int c = 0; c < parameters && !points.whitening.empty(); c++)
+            points.whitening[i].apply(byCamera[c], byCamera[parameters + c]);
         for (int r = 0; r < 2; r++)
         {
             const Matx13d row(&byPoint[3*r]), turned = row*byRvec;
@@ -58,7 +62,7 @@ Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const Po
         }
     }
     const Matx66d inverse = inverseOfPositive(sum.curvature);
-    const double freedom = 2*count - 6;         // none: 0/0
+    const double freedom = points.rows() - 6;         // none: 0/0
     Matx66d covariance = (noise.sigma > 0 ? noise.sigma*noise.sigma : freedom > 0 ? sum.value/freedom
                           : std::numeric_limits<double>::quiet_NaN())*inverse;
     if (!noise.camera.empty())

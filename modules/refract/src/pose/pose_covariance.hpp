@@ -7,8 +7,8 @@
 
 #include "pose/poses.hpp"
 
-/* What noise and an inexact camera do to a pose. With errors e, J their derivatives by the pose, K those by the camera's parameters,
-the pose of the least squares is moved by -(J^T J)^-1 J^T (e + K dc), so that its covariance is
+/* What noise and an inexact camera do to a pose. With whitened errors e, J their derivatives by the pose, K those by the
+camera's parameters, the pose of the least squares is moved by -(J^T J)^-1 J^T (e + K dc), so that its covariance is
 
     sigma^2 (J^T J)^-1 + G C G^T,    G = (J^T J)^-1 J^T K */
 

@@ -56,7 +56,7 @@ struct CentralView
     CentralView(const Camera& camera, const ImagePoints& points) : bearings(bearingsOf(camera, points.pixel))
     {
         for (size_t i = 0; i < points.pixel.size(); i++)
-            if (isSeen(bearings.normalized[i]))
+            if (isWhole(bearings.normalized[i]))
             {
                 object.push_back(points.object[i]);
                 normalized.push_back(bearings.normalized[i]);
@@ -133,7 +133,9 @@ struct PoseErrors
             for (int k = 0; k < n; k++)
             {
                 const Matx33d byRvec = object.derivativeOf(Vec3d(points.object[begin + k]));
-                const Point2d &seen = points.pixel[begin + k];
+                const Vec2d error = points.error(begin + k, u[k], v[k]);
+                for (int c = 0; c < 3 && !points.whitening.empty(); c++)
+                    points.whitening[begin + k].apply(byPoint.at(0, c)[k], byPoint.at(1, c)[k]);
                 for (int r = 0; r < 2; r++)
                 {
                     double byPose[6];
@@ -143,7 +145,7 @@ struct PoseErrors
                         byPose[c] = byPoint.at(r, 0)[k]*byRvec(0, c) + byPoint.at(r, 1)[k]*byRvec(1, c) +
                                     byPoint.at(r, 2)[k]*byRvec(2, c);
                     }
-                    sum.add(r == 0 ? u[k] - seen.x : v[k] - seen.y, byPose);
+                    sum.add(error[r], byPose);
                 }
             }
         }
@@ -234,6 +236,23 @@ void sortByError(std::vector<PoseMinimum>& minima)
     std::stable_sort(minima.begin(), minima.end(), [](const PoseMinimum& a, const PoseMinimum& b) { return a.rms < b.rms; });
 }
 
+double coordinateRms(const Camera& camera, const ImagePoints& points, const PoseMinimum& minimum)
+{
+    if (points.whitening.empty())
+        return minimum.rms/std::sqrt(2.);
+    const RigidTransform motion = transformOf(minimum.pose);
+    double sum = 0;
+    for (size_t i = 0; i < points.pixel.size(); i++)
+    {
+        const Vec3d X = motion.apply(Vec3d(points.object[i]));
+        Point2d pixel;
+        uchar status = REFRACT_OK;
+        camera.project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+        sum += squaredDistance(pixel, points.pixel[i]);
+    }
+    return std::sqrt(sum/points.rows());
+}
+
 //! Where the search for minima begins, of few points the poses with the smallest errors.
 static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& points)
 {
@@ -260,7 +279,7 @@ static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& point
 std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
 {
     std::vector<PoseMinimum> minima;
-    if (points.pixel.size() < 3 || scatterRank(points.object) < 2)
+    if (points.rows() < 6 || scatterRank(points.object) < 2)
         return minima;
     for (const Pose& pose : start.found ? std::vector<Pose>(1, start) : startsOf(camera, points))
     {

@@ -25,7 +25,7 @@ RigidTransform transformOf(const Pose& pose);
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
 
 /** Pose of a target seen through lens and window: closed-form start on the bearings (solvePnP on the pinhole directions),
-then maximum likelihood. NaN image points are left out.
+then maximum likelihood. NaN image points are left out; halves have a say in the second, not in the start.
 @param start if found, the start
 @param rms reprojection error in pixels by cv::calibrateCamera's definition */
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
@@ -40,6 +40,9 @@ struct PoseMinimum
 
 void sortByError(std::vector<PoseMinimum>& minima);
 
+//! RMS of the coordinates that were observed, without weights.
+double coordinateRms(const Camera& camera, const ImagePoints& points, const PoseMinimum& minimum);
+
 //! All minima that the start, or else the closed forms, lead to, the smallest first.
 std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start);
 
@@ -53,6 +56,10 @@ int scatterRank(const std::vector<Point3d>& points);
 @param least points that there must be, or none at all
 @param most points that there may be */
 ImagePoints readPosePoints(InputArray objectPoints, InputArray imagePoints, int least, int most = INT_MAX);
+/** The same with half pixels, and covariances or noArray().
+@param variance the median of the pixels' coordinates, in units of which they are weighed */
+ImagePoints readWeightedPosePoints(InputArray objectPoints, InputArray imagePoints, InputArray pixelCovariances, int least,
+                                   double& variance);
 Pose readPose(InputArray rvec, InputArray tvec);
 void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
 

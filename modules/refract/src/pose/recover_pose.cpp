@@ -472,7 +472,7 @@ static MatchedPixels differentMatches(const std::vector<Point2d>& all1, const st
     for (size_t i = 0; i < all1.size(); i++)
     {
         index.push_back(-1);
-        if (!isSeen(all1[i]) || !isSeen(all2[i]))
+        if (!isWhole(all1[i]) || !isWhole(all2[i]))
             continue;
         const auto entry = known.insert({ { { all1[i].x, all1[i].y, all2[i].x, all2[i].y } }, (int)matches.first.size() });
         index.back() = entry.first->second;

@@ -9,10 +9,12 @@
 
 namespace cv { namespace refract {
 
-ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, int least, int most)
+//! What can be checked before it is known which points were seen.
+static void readTarget(InputArray objectPoints_, InputArray imagePoints_, int least, int most, std::vector<Point3d>& objectPoints,
+                       std::vector<Point2d>& imagePoints)
 {
-    const std::vector<Point3d> objectPoints = readPoints3(objectPoints_, "objectPoints");
-    const std::vector<Point2d> imagePoints = readPoints2(imagePoints_, "imagePoints");
+    objectPoints = readPoints3(objectPoints_, "objectPoints");
+    imagePoints = readPoints2(imagePoints_, "imagePoints");
     if (objectPoints.size() != imagePoints.size())
         CV_Error_(Error::StsUnmatchedSizes, ("objectPoints has %d points, imagePoints %d; they must agree",
                                              (int)objectPoints.size(), (int)imagePoints.size()));
@@ -24,7 +26,32 @@ ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, in
     for (const Point3d& p : objectPoints)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             CV_Error_(Error::StsBadArg, ("objectPoints holds the point (%g, %g, %g); it must be finite", p.x, p.y, p.z));
+}
+
+ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, int least, int most)
+{
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Point3d> objectPoints;
+    std::vector<Point2d> imagePoints;
+    readTarget(objectPoints_, imagePoints_, least, most, objectPoints, imagePoints);
+    for (Point2d& pixel : imagePoints)
+        if (isHalf(pixel))
+            pixel = Point2d(NaN, NaN);
     return observed(objectPoints, imagePoints);
+}
+
+ImagePoints readWeightedPosePoints(InputArray objectPoints_, InputArray imagePoints_, InputArray pixelCovariances, int least,
+                                   double& variance)
+{
+    std::vector<Point3d> objectPoints;
+    std::vector<Point2d> imagePoints;
+    readTarget(objectPoints_, imagePoints_, least, INT_MAX, objectPoints, imagePoints);
+    const PixelCovariances covariances = readPixelCovariances(pixelCovariances, imagePoints, "pixelCovariances");
+    MedianVariance median;
+    if (!covariances.empty())
+        median.add(imagePoints, covariances);
+    variance = median();
+    return observed(objectPoints, imagePoints, covariances, variance);
 }
 
 Pose readPose(InputArray rvec, InputArray tvec)
@@ -32,11 +59,11 @@ Pose readPose(InputArray rvec, InputArray tvec)
     return poseOf({ readRotation(rvec, "rvec"), readVec3(tvec, "tvec") });
 }
 
-static std::vector<PoseMinimum> solvePnP(InputArray objectPoints, InputArray imagePoints, const Camera& camera,
-                                     InputArray rvec, InputArray tvec, bool useExtrinsicGuess)
+//! Without covariances.
+static ImagePoints readPoints(InputArray objectPoints, InputArray imagePoints, bool useExtrinsicGuess)
 {
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, useExtrinsicGuess ? 3 : 4);
-    return findMinima(camera, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
+    double variance;
+    return readWeightedPosePoints(objectPoints, imagePoints, noArray(), useExtrinsicGuess ? 3 : 4, variance);
 }
 
 static void writeCovariances(const Camera& camera, const ImagePoints& points, const std::vector<PoseMinimum>& minima,
@@ -54,14 +81,28 @@ static void writeCovariances(const Camera& camera, const ImagePoints& points, co
 }
 
 //! As cv::solvePnPGeneric's: of coordinates, not of distances.
-static void writeErrors(const std::vector<PoseMinimum>& minima, OutputArray reprojectionError)
+static void writeErrors(const Camera& camera, const ImagePoints& points, const std::vector<PoseMinimum>& minima,
+                        OutputArray reprojectionError)
 {
     if (!reprojectionError.needed())
         return;
     Mat errors((int)minima.size(), 1, CV_64F);
     for (int i = 0; i < errors.rows; i++)
-        errors.at<double>(i) = minima[i].rms/std::sqrt(2.);
+        errors.at<double>(i) = coordinateRms(camera, points, minima[i]);
     errors.copyTo(reprojectionError);
+}
+
+//! The pose of the least error, if there is one.
+static bool writeBest(const Camera& camera, const ImagePoints& points, std::vector<PoseMinimum> minima, OutputArray rvec,
+                      OutputArray tvec, OutputArray reprojectionError)
+{
+    minima.resize(std::min<size_t>(minima.size(), 1));
+    writeErrors(camera, points, minima, reprojectionError);
+    if (minima.empty())
+        return false;
+    Mat(minima[0].pose.rvec).copyTo(rvec);
+    Mat(minima[0].pose.tvec).copyTo(tvec);
+    return true;
 }
 
 void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
@@ -92,31 +133,30 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
 {
     CV_INSTRUMENT_REGION();
 
-    std::vector<PoseMinimum> minima = solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
-    minima.resize(std::min<size_t>(minima.size(), 1));
-    writeErrors(minima, reprojectionError);
-    if (minima.empty())
-        return false;
-    Mat(minima[0].pose.rvec).copyTo(rvec);
-    Mat(minima[0].pose.tvec).copyTo(tvec);
-    return true;
+    const Camera& seenBy = cameraOf(camera);
+    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
+    return writeBest(seenBy, points, findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose()), rvec, tvec,
+                     reprojectionError);
 }
 
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera, OutputArray rvec,
                         OutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError, OutputArray covariance,
-                        double sigma, InputArray cameraCovariance)
+                        double sigma, InputArray cameraCovariance, InputArray pixelCovariances)
 {
     CV_INSTRUMENT_REGION();
 
     const Camera& seenBy = cameraOf(camera);
     const PoseNoise noise = readPoseNoise(sigma, cameraCovariance, seenBy);
-    if (!refractiveSolvePnP(objectPoints, imagePoints, camera, rvec, tvec, useExtrinsicGuess, reprojectionError))
+    double variance;
+    const ImagePoints points = readWeightedPosePoints(objectPoints, imagePoints, pixelCovariances, useExtrinsicGuess ? 3 : 4, variance);
+    const Pose guess = useExtrinsicGuess ? readPose(rvec, tvec) : Pose();
+    if (!writeBest(seenBy, points, findMinima(seenBy, points, guess), rvec, tvec, reprojectionError))
     {
         covariance.release();
         return false;
     }
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 3);
-    Mat(poseCovariance(seenBy, points, readPose(rvec, tvec), noise)).copyTo(covariance);
+    const PoseNoise scaled = { noise.sigma*std::sqrt(variance), noise.camera };     // of the median pixel
+    Mat(poseCovariance(seenBy, points, readPose(rvec, tvec), scaled)).copyTo(covariance);
     return true;
 }
 
@@ -129,10 +169,10 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
 
     const Camera& seenBy = cameraOf(camera);
     const PoseNoise noise = readPoseNoise(sigma, cameraCovariance, seenBy);
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, useExtrinsicGuess ? 3 : 4);
+    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
     const std::vector<PoseMinimum> minima = findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
     writePoses(minima, rvecs, tvecs);
-    writeErrors(minima, reprojectionError);
+    writeErrors(seenBy, points, minima, reprojectionError);
     writeCovariances(seenBy, points, minima, noise, covariances);
     return (int)minima.size();
 }
@@ -143,10 +183,11 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
 {
     CV_INSTRUMENT_REGION();
 
-    const std::vector<PoseMinimum> minima =
-        solvePnP(objectPoints, imagePoints, cameraOf(camera), rvec, tvec, useExtrinsicGuess);
+    const Camera& seenBy = cameraOf(camera);
+    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
+    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
     writePoses(minima, rvecs, tvecs);
-    writeErrors(minima, reprojectionError);
+    writeErrors(seenBy, points, minima, reprojectionError);
     return (int)minima.size();
 }
 

@@ -173,7 +173,7 @@ PointRays::PointRays(const Camera& camera, const ImagePoints& points)
     for (size_t i = 0; i < points.pixel.size(); i++)
     {
         SceneRay seen;
-        if (camera.unproject(points.pixel[i], seen.origin, seen.direction) != REFRACT_OK)
+        if (!isWhole(points.pixel[i]) || camera.unproject(points.pixel[i], seen.origin, seen.direction) != REFRACT_OK)
             continue;
         ray.push_back(seen);
         point.push_back((int)i);

@@ -29,11 +29,12 @@ RigViews viewsOf(const RigViews& views, const std::vector<int>& cameras)
 {
     RigViews picked;
     picked.object = views.object;
+    picked.variance = views.variance;
     for (int c : cameras)
     {
         picked.cameras.push_back(views.cameras[c]);
         for (std::vector<Point2d>& pixels : picked.cameras.back().refracted)
-            if (countSeen(pixels) < 4)
+            if (countWhole(pixels) < 4)
                 pixels.clear();
     }
     return picked;

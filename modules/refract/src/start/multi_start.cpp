@@ -102,14 +102,21 @@ bool isFirstBehind(const Rig& rig, int c)
 RigViews pick(const RigViews& views, const std::vector<int>& which)
 {
     RigViews picked;
+    picked.variance = views.variance;
     picked.cameras.resize(views.cameras.size());
     for (int view : which)
     {
         picked.object.push_back(views.object[view]);
         for (size_t c = 0; c < views.cameras.size(); c++)
         {
-            picked.cameras[c].direct.push_back(views.cameras[c].direct[view]);
-            picked.cameras[c].refracted.push_back(views.cameras[c].refracted[view]);
+            const CameraViews& from = views.cameras[c];
+            CameraViews& to = picked.cameras[c];
+            to.direct.push_back(from.direct[view]);
+            to.refracted.push_back(from.refracted[view]);
+            if (!from.directCovariances.empty())
+                to.directCovariances.push_back(from.directCovariances[view]);
+            if (!from.refractedCovariances.empty())
+                to.refractedCovariances.push_back(from.refractedCovariances[view]);
         }
     }
     return picked;

@@ -64,7 +64,7 @@ std::vector<Pair> readPairs(const Lens& lens, const PixelViews& direct, const Pi
             const Point2d& to = refracted[view][i];
             Vec3d x, w;
             Matx32d dx, dw;
-            if (!isSeen(from) || !isSeen(to) || !bearingOf(lens, from, x, dx) || !bearingOf(lens, to, w, dw))
+            if (!isWhole(from) || !isWhole(to) || !bearingOf(lens, from, x, dx) || !bearingOf(lens, to, w, dw))
                 continue;
             const Matx32d byDirect = crossMatrix(w)*dx, byRefracted = crossMatrix(x)*dw;
             Pair pair;

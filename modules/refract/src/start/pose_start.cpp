@@ -23,7 +23,7 @@ std::vector<PoseSource> poseSources(const RigViews& views, int view, bool direct
     for (int c = 0; c < (int)views.cameras.size(); c++)
     {
         const PixelViews& pixels = direct ? views.cameras[c].direct : views.cameras[c].refracted;
-        const PoseSource source = { c, countSeen(pixels[view]) };
+        const PoseSource source = { c, countWhole(pixels[view]) };
         if (source.count >= 4)
             sources.push_back(source);
     }
@@ -119,8 +119,13 @@ RigViews inlierViews(const Rig& rig, const RigViews& views)
         for (int view = 0; view < views.count(); view++)
         {
             CameraViews& seen = inliers.cameras[c];
-            seen.direct[view] = pointsOfOnePose(bare, views.object[view], seen.direct[view]);
-            seen.refracted[view] = pointsOfOnePose(rig.cameras[c], views.object[view], seen.refracted[view]);
+            const auto keepInliers = [&](const Camera& camera, std::vector<Point2d>& pixels)
+            {
+                if (2*countWhole(pixels) >= countSeen(pixels))      // halves have no rays to sample: they stay
+                    pixels = pointsOfOnePose(camera, views.object[view], pixels);
+            };
+            keepInliers(bare, seen.direct[view]);
+            keepInliers(rig.cameras[c], seen.refracted[view]);
         }
     }
     return inliers;

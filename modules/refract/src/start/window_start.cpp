@@ -19,11 +19,12 @@ const size_t LIKELY_TILTS = 4;
 //! What the camera saw through the window.
 RigViews viewsThrough(const RigViews& views, int camera)
 {
-    RigViews all = { views.object, { views.cameras[camera] } };
+    RigViews all = { views.object, { views.cameras[camera] }, views.variance };
+    all.cameras[0].directCovariances.clear();
     all.cameras[0].direct.assign(views.count(), std::vector<Point2d>());
     std::vector<int> seen;
     for (int view = 0; view < views.count(); view++)
-        if (countSeen(all.cameras[0].refracted[view]) >= 4)
+        if (countWhole(all.cameras[0].refracted[view]) >= 4)
             seen.push_back(view);
     return pick(all, seen);
 }
@@ -127,7 +128,7 @@ int bestObserver(const Rig& rig, int owner, const RigViews& views)
     {
         int seen = 0;
         for (const std::vector<Point2d>& pixels : views.cameras[c].refracted)
-            seen += countSeen(pixels);
+            seen += countWhole(pixels);
         if (rig.owner[c] != owner || seen <= most)
             continue;
         most = seen;
@@ -141,6 +142,8 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
                         OtherMinimum& other)
 {
     GlassWindow window = rig.cameras[owner].window();
+    if ((flags & GLASS_FIX_NORMAL) || !rig.cameras[owner].refracts())
+        return window;
     if (normalOfPairs(rig, owner, views, poses, flags, window.normal) || (flags & GLASS_FREE_INTRINSICS))
         return window;
     const int best = bestObserver(rig, owner, views);
@@ -190,7 +193,7 @@ static bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const
             double u, v;
             uchar status = REFRACT_OK;
             rig.cameras[c].project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
-            if (status != REFRACT_OK && !std::isnan(pixels[i].x))
+            if (status != REFRACT_OK && isSeen(pixels[i]))
                 return false;
         }
     }

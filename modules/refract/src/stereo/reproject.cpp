@@ -92,9 +92,10 @@ private:
         for (int i = 0; i < run.size; i++)
             if (p.status[i] == REFRACT_OK)
                 p.status[i] = run.status2[i];
-        const double PINHOLES_OFF = 10;
+        double pinholesOff[BLOCK];
+        std::fill(pinholesOff, pinholesOff + BLOCK, 10.);
         if (startAsPinholes(run))
-            refineBlock(rectified_.cameras, p, run.size, PINHOLES_OFF, rectified_.enough);
+            refineBlock(rectified_.cameras, p, run.size, pinholesOff, rectified_.enough);
         else
             triangulateBlock(rectified_.cameras, p, run.size, TRIANGULATE_OPTIMAL);
     }

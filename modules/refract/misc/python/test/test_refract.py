@@ -306,6 +306,18 @@ class refract_test(NewOpenCVTests):
         self.assertLess(errors.max(), 1e-6)
         self.assertTrue((covariance[:, [0, 4, 8]] > 0).all())
 
+    def test_half_pixels(self):
+        half = np.array(self.pixels2, dtype=float).reshape(-1, 2)
+        half[:, 1] = np.nan
+        rig = [self.camera1, self.camera2], [np.eye(3), R], [np.zeros(3), T], [self.pixels1, half]
+        points, status = cv.refract.triangulateRefractive(*rig)
+        self.assertEqual(0, status.max())
+        self.assertClose(self.points, points, 1e-6)
+        covariances = [np.tile(4*np.eye(2), (len(half), 1, 1)), np.tile([4., 0, 4], (len(half), 1))]
+        plain = cv.refract.triangulateRefractiveExtended(*rig, 0, 0.2, None)
+        weighted = cv.refract.triangulateRefractiveExtended(*rig, 0, 0.1, None, pixelCovariances=covariances)
+        self.assertClose(plain[2], weighted[2], 1e-9*plain[2].max())
+
     def test_calibrate_normal(self):
         direct = make_views(cv.refract.RefractiveCamera.create(K, D))
         refracted = make_views(self.camera1)
