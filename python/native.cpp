@@ -151,8 +151,8 @@ static PyObject* errorType()
     PyErr_Clear();
     PyObject* const attributes = Py_BuildValue("{s:O,s:O,s:O,s:O,s:O,s:O}", "file", Py_None, "func", Py_None, "line",
                                                Py_None, "code", Py_None, "msg", Py_None, "err", Py_None);
-    PyObject* const error = attributes ? PyErr_NewExceptionWithDoc(MODULESTR ".error", "A wrong argument, or data without an "
-                                                                         "answer: err says what, code is OpenCV's.", NULL, attributes) : NULL;
+    const char* const text = "A wrong argument, or data without an answer: err says what, code is OpenCV's.";
+    PyObject* const error = attributes ? PyErr_NewExceptionWithDoc(MODULESTR ".error", text, NULL, attributes) : NULL;
     Py_XDECREF(attributes);
     return error;
 }

@@ -293,7 +293,8 @@ def test_every_name_has_its_text():
 
 def test_help_tells_fields_and_their_order():
     text = pydoc.render_doc(refract.GlassWindow, renderer=pydoc.plaintext)
-    for part in ("GlassWindow(", "normal=[0.0, 0.0, 1.0]", "unit, camera coordinates", "from the camera outwards", "radians along e1", "atWavelength"):
+    for part in ("GlassWindow(", "normal=[0.0, 0.0, 1.0]", "unit, camera coordinates", "from the camera outwards", "radians along e1",
+                 "atWavelength"):
         assert part in text, part
     text = pydoc.render_doc(refract.RefractiveCamera, renderer=pydoc.plaintext)
     for part in ("create(cameraMatrix, distCoeffs, window=None)", "a copy: see setWindow", "What the rows of stdDeviations", "0x0 where"):
