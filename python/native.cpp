@@ -44,6 +44,7 @@ static bool addObject(PyObject* module, const char* name, PyObject* object)
     return false;
 }
 
+static String nameOf(PyTypeObject* type);
 static void blame(const char* name);
 
 //! Allocates and constructs at once, so that no object without contents can be had. NULL and an exception on failure.
@@ -55,7 +56,7 @@ static PyObject* make(int (*constructor)(Self*, PyObject*, PyObject*), PyTypeObj
     if (!self || (constructor((Self*)self, args, keywords) == 0 && !PyErr_Occurred()))
         return self;
     Py_DECREF(self);
-    blame(getPyObjectNameAttr((PyObject*)type).c_str());
+    blame(nameOf(type).c_str());
     return NULL;
 }
 

@@ -5,6 +5,7 @@
 import inspect
 import multiprocessing
 import pydoc
+import sys
 import time
 import warnings
 from pathlib import Path
@@ -272,6 +273,24 @@ def test_interruptions_are_not_arguments(rig):
             raise KeyboardInterrupt
     with pytest.raises(KeyboardInterrupt):
         refract.RefractiveCamera.read(Interrupting())
+
+
+def test_refusals_leak_nothing(rig):
+    refused = [lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, 5),
+               lambda: refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, -600.),
+               lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, nonsense=5),
+               lambda: refract.GlassWindow((0, 0, 1), "thick", 1.5), lambda: setattr(rig.window1, "distance", "far")]
+
+    def run(count):
+        for _ in range(count):
+            for call in refused:
+                with pytest.raises(refract.error):
+                    call()
+
+    run(500)
+    before = sys.getallocatedblocks()
+    run(1000)
+    assert sys.getallocatedblocks() - before < 100
 
 
 # ---- the reference in Python
