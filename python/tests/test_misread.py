@@ -277,6 +277,7 @@ def test_interruptions_are_not_arguments(rig):
 
 def test_refusals_leak_nothing(rig):
     refused = [lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, 5),
+               lambda: refract.refractiveProjectPoints(object(), ZERO, ZERO, rig.camera1),
                lambda: refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, -600.),
                lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, nonsense=5),
                lambda: refract.GlassWindow((0, 0, 1), "thick", 1.5), lambda: setattr(rig.window1, "distance", "far")]
