@@ -109,14 +109,22 @@ static String textOf(PyObject* o)
     return characters;
 }
 
+static String nameOf(PyTypeObject* type)
+{
+    PySafeObject name(PyObject_GetAttrString((PyObject*)type, "__name__"));     // OpenCV's function for this leaks
+    std::string characters;
+    if (!name || !getUnicodeString(name, characters))
+        PyErr_Clear();
+    return characters;
+}
+
 //! As a sentence says it: a value that is short, else the type.
 static String describe(PyObject* o)
 {
-    const String type = getPyObjectNameAttr((PyObject*)Py_TYPE(o));
     if (o == Py_None)
         return "None";
     const String value = isTruth(o) || isNumber(o) || PyUnicode_Check(o) ? textOf(o) : String();
-    return value.empty() || value.size() > 60 ? "of type " + type : value;
+    return value.empty() || value.size() > 60 ? "of type " + nameOf(Py_TYPE(o)) : value;
 }
 
 static bool isOutput(const Argument& argument) { return argument.kind == OUTPUT || argument.kind == OUTPUTS; }

@@ -51,21 +51,22 @@ static bool fromNumbers(PyObject* o, Mat& m, const ArgInfo& info)
 
 static bool pyopencv_to(PyObject* o, Mat& m, const ArgInfo& info)
 {
-    if (!o || info.outputarg || o == Py_None)
-        return convert(o, info, [&](PyObject* array) { return pyopencv_to<Mat>(array, m, info); });
-    if (isList(o))
-        return fromNumbers(o, m, info);
-    if (isNumber(o) && !PyArray_Check(o))
-    {
-        m = Mat(1, 1, CV_64F, Scalar(PyFloat_AsDouble(o)));
-        return !PyErr_Occurred();
-    }
-    if (PyArray_Check(o) && PyArray_ISINTEGER((PyArrayObject*)o) && !keepsItsType(info.name))
+    const bool isArray = o && PyArray_Check(o);
+    if (isArray && !info.outputarg && PyArray_ISINTEGER((PyArrayObject*)o) && !keepsItsType(info.name))
     {
         PySafeObject reals(PyArray_FROM_OTF(o, NPY_DOUBLE, NPY_ARRAY_CARRAY_RO));
         return reals && pyopencv_to<Mat>((PyObject*)reals, m, info);
     }
-    return convert(o, info, [&](PyObject* array) { return pyopencv_to<Mat>(array, m, info); });
+    if (isArray || !o || info.outputarg || o == Py_None)
+        return convert(o, info, [&](PyObject* array) { return pyopencv_to<Mat>(array, m, info); });
+    if (isList(o))
+        return fromNumbers(o, m, info);
+    if (isNumber(o))
+    {
+        m = Mat(1, 1, CV_64F, Scalar(PyFloat_AsDouble(o)));
+        return !PyErr_Occurred();
+    }
+    return pyopencv_to<Mat>(o, m, info);
 }
 
 //! Each item by its own name, as Rs[1].

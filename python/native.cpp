@@ -44,6 +44,7 @@ static bool addObject(PyObject* module, const char* name, PyObject* object)
     return false;
 }
 
+static String nameOf(PyTypeObject* type);
 static void blame(const char* name);
 
 //! Allocates and constructs at once, so that no object without contents can be had. NULL and an exception on failure.
@@ -55,7 +56,7 @@ static PyObject* make(int (*constructor)(Self*, PyObject*, PyObject*), PyTypeObj
     if (!self || (constructor((Self*)self, args, keywords) == 0 && !PyErr_Occurred()))
         return self;
     Py_DECREF(self);
-    blame(getPyObjectNameAttr((PyObject*)type).c_str());
+    blame(nameOf(type).c_str());
     return NULL;
 }
 
@@ -151,8 +152,8 @@ static PyObject* errorType()
     PyErr_Clear();
     PyObject* const attributes = Py_BuildValue("{s:O,s:O,s:O,s:O,s:O,s:O}", "file", Py_None, "func", Py_None, "line",
                                                Py_None, "code", Py_None, "msg", Py_None, "err", Py_None);
-    PyObject* const error = attributes ? PyErr_NewExceptionWithDoc(MODULESTR ".error", "A wrong argument, or data without an "
-                                                                         "answer: err says what, code is OpenCV's.", NULL, attributes) : NULL;
+    const char* const text = "A wrong argument, or data without an answer: err says what, code is OpenCV's.";
+    PyObject* const error = attributes ? PyErr_NewExceptionWithDoc(MODULESTR ".error", text, NULL, attributes) : NULL;
     Py_XDECREF(attributes);
     return error;
 }

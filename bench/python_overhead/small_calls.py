@@ -29,7 +29,7 @@ CALLS = {
 }
 
 
-def main(rounds=60, count=2000):
+def main(rounds=2000, count=100):
     for name, call in CALLS.items():
         call()
         print(f"{name:30s} {min(timeit.repeat(call, number=count, repeat=rounds))/count*1e6:6.2f} us")

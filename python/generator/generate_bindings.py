@@ -110,7 +110,6 @@ def load_generator(directory):
     sys.path.insert(0, directory)
     import gen2
     import hdr_parser
-    from typing_stubs_generation import generation
 
     class MatOnlyParser(hdr_parser.CppHeaderParser):        # no overloads for UMat and GpuMat
         def __init__(self, preprocessor_definitions=None, **_):

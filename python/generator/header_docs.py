@@ -19,9 +19,11 @@ TOKENS = re.compile(r"""
 
 # What a reader of Python knows by another name.
 WORDS = [(r"\\f[\[$\]](.*?)\\f[\[$\]]", r"\1"), (r"\\(tau|sum|sin|left|right|theta|gamma)\b", r"\1"), (r"@cite (\w+)", r"[\1]"),
-         (r"@(brief|overload|addtogroup \w+|\{)\s*", ""), (r"\bnoArray\(\)", "None"), (r"\bDBL_MAX\b", "infinity"), (r"\bSize\(\)", "(0, 0)"),
+         (r"@(brief|overload|addtogroup \w+|\{)\s*", ""), (r"\bnoArray\(\)", "None"), (r"\bDBL_MAX\b", "infinity"),
+         (r"\bSize\(\)", "(0, 0)"),
          (r"\bcv::fisheye::", "cv2.fisheye."), (r"\bcv::", "cv2."), (r"\bCV_64F\b", "float64"), (r"\bCV_32F\b", "float32"),
-         (r"\bCV_8U\b", "uint8"), (r"\bCV_32S\b", "int32"), (r"\bNx1 (\d)-channel\b", r"(N, 1, \1)"), (r"\bMx1 (\d)-channel\b", r"(M, 1, \1)"),
+         (r"\bCV_8U\b", "uint8"), (r"\bCV_32S\b", "int32"), (r"\bNx1 (\d)-channel\b", r"(N, 1, \1)"),
+         (r"\bMx1 (\d)-channel\b", r"(M, 1, \1)"),
          (r"\s*\(or std::vector<Vec4d>\)", ""), (r"\bmay be 0 \(Python: None\)", "may be None"),
          (r"\s*A std::vector<Matx33d> must have this size before\.", "")]
 

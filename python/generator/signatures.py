@@ -17,15 +17,18 @@ FLAGS = [(r"(c|stereoC)alibrateGlass\w*|selectLensCoefficients|refractiveBundleA
          (r"triangulateRefractive\w*", "TriangulateFlags"), (r"refractiveStereoRectify", "RectifyFlags")]
 # Outputs without an element: the shape after the first 0, and the type. Others are empty matrices of float64.
 EMPTY = {"imagePoints|dst|distorted|lines": (2, "CV_64F"), "points3D|origins|directions|_3dImage": (3, "CV_64F"),
-         "status|mask|imageStatus": (1, "CV_8U"), "inliers": (1, "CV_32S"), "distances|depths|rvec|tvec|T|reprojectionError": (1, "CV_64F")}
+         "status|mask|imageStatus": (1, "CV_8U"), "inliers": (1, "CV_32S"),
+         "distances|depths|rvec|tvec|T|reprojectionError": (1, "CV_64F")}
 REQUIRED_BUT_NONE = "depth"     # and arrays and windows: None is an empty array, and no window
 
 KINDS = {"Mat": "ARRAY", "vector_Mat": "ARRAYS", "vector_vector_Mat": "ARRAYS_OF_VIEWS", "GlassWindow": "WINDOW",
          "Ptr<RefractiveCamera>": "CAMERA", "vector_Ptr_RefractiveCamera": "CAMERAS", "double": "NUMBER", "float": "NUMBER",
          "int": "INTEGER", "bool": "BOOLEAN", "Size": "PAIR", "Vec2d": "VECTOR", "Vec3d": "VECTOR", "Vec4d": "VECTOR",
-         "vector_int": "INTEGERS", "String": "TEXT", "TermCriteria": "CRITERIA", "vector_String": "TEXTS", "c_string": "TEXT", "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
+         "vector_int": "INTEGERS", "String": "TEXT", "TermCriteria": "CRITERIA", "vector_String": "TEXTS", "c_string": "TEXT",
+         "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
 DEFAULTS = {"noArray()": "None", "GlassWindow()": "None", "String()": "''", "Size()": "(0, 0)", "true": "True", "false": "False",
-            "std::vector<int>()": "()", "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None", "vector_Mat()": "None", "vector_int()": "()",
+            "std::vector<int>()": "()", "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None",
+            "vector_Mat()": "None", "vector_int()": "()",
             "RECTIFY_ZERO_DISPARITY": "1024"}
 
 

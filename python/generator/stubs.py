@@ -18,7 +18,8 @@ RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "double": "float",
            "GlassWindow": "GlassWindow", "Ptr<RefractiveCamera>": "RefractiveCamera", "vector_Ptr_RefractiveCamera":
            "tuple[RefractiveCamera, ...]", "Vec2d": "tuple[float, float]", "Rect*": "tuple[int, int, int, int]", "Rect":
            "tuple[int, int, int, int]", "Size": "tuple[int, int]", "vector_int": "tuple[int, ...] | Array", "String": "str",
-           "vector_String": "tuple[str, ...]", "std::vector<String>": "tuple[str, ...]", "std::string": "str", "FileNode": "FileNode", "size_t": "int"}
+           "vector_String": "tuple[str, ...]", "std::vector<String>": "tuple[str, ...]", "std::string": "str",
+           "FileNode": "FileNode", "size_t": "int"}
 FIELDS = {"normal": ("tuple[float, float, float]", "Numbers"), "thickness": ("tuple[float, ...]", "Numbers"), "index":
           ("tuple[float, ...]", "Numbers"), "wedge": ("tuple[tuple[float, float], ...]", "Array | Sequence[Numbers]"),
           "materials": ("tuple[str, ...]", "Sequence[str]")}       # others: float, Number

@@ -5,6 +5,7 @@
 import inspect
 import multiprocessing
 import pydoc
+import sys
 import time
 import warnings
 from pathlib import Path
@@ -274,6 +275,25 @@ def test_interruptions_are_not_arguments(rig):
         refract.RefractiveCamera.read(Interrupting())
 
 
+def test_refusals_leak_nothing(rig):
+    refused = [lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, 5),
+               lambda: refract.refractiveProjectPoints(object(), ZERO, ZERO, rig.camera1),
+               lambda: refract.refractiveUndistortPoints(rig.pixels1, rig.camera1, -600.),
+               lambda: refract.refractiveProjectPoints(rig.points, ZERO, ZERO, rig.camera1, nonsense=5),
+               lambda: refract.GlassWindow((0, 0, 1), "thick", 1.5), lambda: setattr(rig.window1, "distance", "far")]
+
+    def run(count):
+        for _ in range(count):
+            for call in refused:
+                with pytest.raises(refract.error):
+                    call()
+
+    run(500)
+    before = sys.getallocatedblocks()
+    run(1000)
+    assert sys.getallocatedblocks() - before < 100
+
+
 # ---- the reference in Python
 
 def test_every_name_has_its_text():
@@ -293,7 +313,8 @@ def test_every_name_has_its_text():
 
 def test_help_tells_fields_and_their_order():
     text = pydoc.render_doc(refract.GlassWindow, renderer=pydoc.plaintext)
-    for part in ("GlassWindow(", "normal=[0.0, 0.0, 1.0]", "unit, camera coordinates", "from the camera outwards", "radians along e1", "atWavelength"):
+    for part in ("GlassWindow(", "normal=[0.0, 0.0, 1.0]", "unit, camera coordinates", "from the camera outwards", "radians along e1",
+                 "atWavelength"):
         assert part in text, part
     text = pydoc.render_doc(refract.RefractiveCamera, renderer=pydoc.plaintext)
     for part in ("create(cameraMatrix, distCoeffs, window=None)", "a copy: see setWindow", "What the rows of stdDeviations", "0x0 where"):
