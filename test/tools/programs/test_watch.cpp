@@ -40,7 +40,7 @@ TEST_CASE("refract_calib says of each image that comes what the next should show
         images.push_back(entry.path().string());
     std::sort(images.begin(), images.end());
     REQUIRE(images.size() >= 12);
-    const std::string whole = readFile(STEREO + "/measure1/z600_1.jpg");
+    const std::string whole = readFile(STEREO + "/measure1/z1200_1.jpg");
     std::thread camera([&] {
         const auto pause = std::chrono::milliseconds(150);
         writeFile(folder / "direct/00_later.jpg", whole.substr(0, whole.size()/2));       // is complete only later
@@ -154,7 +154,7 @@ TEST_CASE("Both cameras and their pairs are watched at once, straight on to the 
     CHECK(mentions(result.out, "camera 2, direct, air05.jpg: board found, 30 of 30 points, edges "));
     CHECK(mentions(result.out, "pair 3 complete: '"));
     CHECK(mentions(result.out, "direct and glass of all cameras"));
-    CHECK(mentions(result.out, "waiting for the image 'pair1' of camera "));
+    CHECK(mentions(result.out, "'pair1' waits for camera "));
     // Three pairs are the least that is judged, and one degree is met by them: nobody waits for 60 s of quiet.
     CHECK(mentions(result.out, "camera 2: normal +- "));
     CHECK(mentions(result.out, ": enough"));

@@ -36,13 +36,14 @@ std::vector<size_t> LivePairs::expected(const Images& images) const
     return places;
 }
 
-//! "camera 2, glass"; empty: nothing.
+//! "camera 2's glass image"; empty: nothing.
 std::string LivePairs::missing(const Images& images) const
 {
     std::string text;
     for (size_t i : expected(images))
         if (images[i] != FOUND)
-            text += (text.empty() ? "" : " and ") + nameOf(places_[i], cameras_)
+            text += (text.empty() ? "" : " and ") + (cameras_ > 1 ? cv::format("camera %d's ", places_[i].camera + 1) : "its ")
+                    + (places_[i].glass ? "glass image" : "direct image")
                     + (images[i] == WITHOUT_TARGET ? " (the board was not found in it: take it again)" : "");
     return text;
 }
@@ -57,7 +58,7 @@ std::string LivePairs::add(const std::string& stem, size_t place, bool found)
     const std::vector<size_t> all = expected(images);
     const std::string gaps = missing(images);
     if (!gaps.empty())
-        return "waiting for the image '" + stem + "' of " + gaps;
+        return "'" + stem + "' waits for " + gaps;
     const bool onlyDirect = std::none_of(all.begin(), all.end(), [&](size_t i) { return places_[i].glass; });
     const std::string by = cameras_ > 1 && all.size() > 1 ? " of all cameras" : "";
     if (onlyDirect && pairs_)

@@ -126,4 +126,9 @@ std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& s
     return sets;
 }
 
+DetectedImages readDetectedImages(const std::string& source, const Target* target, cv::Size imageSize, bool quiet, Channel channel)
+{
+    return readDetectedImages({{source, imageSize, 0, "images"}}, target, quiet, channel)[0];
+}
+
 } // namespace tools

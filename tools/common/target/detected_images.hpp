@@ -40,6 +40,10 @@ target. */
 std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& sources, const Target* target, bool quiet,
                                                Channel channel = BRIGHTNESS);
 
+//! The same of one source. @param imageSize that its images must have; empty: it is not known
+DetectedImages readDetectedImages(const std::string& source, const Target* target, cv::Size imageSize, bool quiet,
+                                  Channel channel = BRIGHTNESS);
+
 //! A file of points in place of images: there is nothing to look at.
 bool isPointFile(const std::string& source);
 

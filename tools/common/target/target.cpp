@@ -110,7 +110,9 @@ std::vector<std::pair<int, int>> Target::neighbours() const
 std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort) const
 {
     Size seenSize;
-    const int secondsOfChessboard = effort == HURRIED ? 2 : 5, secondsOfDots = effort == HURRIED ? 2 : 20;
+    const int hurried = 2 + (int)(grey.total()/1000000);        // so that a large image is not given up for its size
+    const int secondsOfChessboard = effort == HURRIED ? std::min(hurried, 5) : 5;
+    const int secondsOfDots = effort == HURRIED ? std::min(hurried, 20) : 20;
     if (pattern_ == CHARUCO)
         return detectCharuco(grey, size_, square_, marker_, dictionary_);
     if (partial_)
