@@ -51,6 +51,13 @@ std::string seenRange(const WideDepths& seen)
     return format("%.4g to %.4g", percentile(seen.sorted, RARE), percentile(seen.sorted, 1 - RARE));
 }
 
+//! Beyond, no match can be used: where the calibration says that it is that bad, what it says.
+double mostRows(const RowCheck& rows)
+{
+    const double FEW = 3;
+    return std::fmax(MOST_ROWS, FEW*rows.expected);
+}
+
 std::string rangeText(const cv::Vec2d& range) { return format("--depth=%g,%g", range[0], range[1]); }
 
 } // namespace
@@ -93,10 +100,10 @@ void StereoChecker::judgeRange(const WideDepths& seen, CheckedStereo& result) co
 void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchSupport& support, CheckedStereo& result) const
 {
     const RowCheck& rows = result.rows;
-    if ((!rows.contradicts() && !(rows.found > DOUBTFUL_ROWS) && support.share() > DOUBTFUL_SUPPORT))
+    if (!rows.contradicts() && !(rows.found > DOUBTFUL_ROWS) && support.share() > DOUBTFUL_SUPPORT)
         return;
     const PairDiagnosis diagnosis = diagnosePair(rig_.calibration(), image1, image2);
-    if (!diagnosis.mistake.empty() || diagnosis.rows > MOST_ROWS)
+    if (!diagnosis.mistake.empty() || diagnosis.rows > mostRows(rows))
         result.refusal = whatFeaturesSay(diagnosis);
     if (!rows.contradicts() || !result.refusal.empty())
         return;
@@ -104,7 +111,7 @@ void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchS
                                     "not fit", rows.found, file_.c_str(), rows.expected);
     const std::string causes = rows.causes.empty() ? "has a camera or a window moved?" : "it may be " + rows.causes;
     const std::string wrong = format("depths may be wrong by %.2g %%", 100*rows.depthChange);
-    if (rows.found > MOST_ROWS)
+    if (rows.found > mostRows(rows))
         result.refusal = text + "; " + causes;
     else if (rows.depthChange > MOST_DEPTH_CHANGE)
         result.refusal = text + ", and " + wrong + "; " + causes;

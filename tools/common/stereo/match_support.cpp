@@ -6,6 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -86,13 +87,16 @@ MatchSupport supportOf(const Mat& image1, const Mat& image2, const Mat& disparit
     const float contrast = CONTRAST*noiseOf(variance1 + variance2 - 2*together, matched);
     MatchSupport result;
     result.mask = Mat::zeros(first.size(), CV_8U);
+    result.correlation = Mat::zeros(first.size(), CV_32F);
     for (int y = 0; y < first.rows; y++)
         for (int x = 0; x < first.cols; x++)
         {
             const float v1 = variance1.at<float>(y, x), v2 = variance2.at<float>(y, x), c = together.at<float>(y, x);
             if (!matched.at<uchar>(y, x))
                 continue;
-            const bool alike = v1 > FLAT && v2 > FLAT && c > 0 && c*c > ALIKE*ALIKE*v1*v2;
+            const float correlation = v1 > FLAT && v2 > FLAT ? c/std::sqrt(v1*v2) : 0;
+            const bool alike = correlation > ALIKE;
+            result.correlation.at<float>(y, x) = correlation;
             result.mask.at<uchar>(y, x) = alike ? 255 : 0;
             result.textured += v1 > contrast;
             result.supported += alike && v1 > contrast;

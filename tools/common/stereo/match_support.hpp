@@ -14,6 +14,7 @@ struct MatchSupport
 {
     cv::Mat mask;           //!< CV_8U, 255: the patches of this match look alike
     cv::Mat nearby;         //!< CV_8U, 255: they do, or those of a match beside it
+    cv::Mat correlation;    //!< CV_32F, of the patches; 0: no match, or flat
     int textured = 0;       //!< matches whose patches have more contrast than the noise of the images
     int supported = 0;      //!< those of them that look alike
     //! Of the textured ones; NaN if there are none.

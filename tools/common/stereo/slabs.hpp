@@ -28,8 +28,9 @@ public:
     //! z of its plane in the rectified frame.
     double depth(int k) const
     {
-        const double middle = 0.5*(begin(k) + begin(k + 1));
-        return count_ == 1 ? rig_.planeDepth() : rig_.depthOf(middle);
+        // Disparities are those of the whole image: beyond infinity, and far before the range, there is nothing.
+        const double farthest = std::max(begin(k), rig_.shift()), middle = std::max(0.5*(farthest + begin(k + 1)), rig_.shift() + 0.5);
+        return count_ == 1 ? rig_.planeDepth() : std::max(rig_.depthOf(middle), 0.5*rig_.depthRange()[0]);
     }
     //! First disparity of the smaller images, and how many a matcher takes.
     int from(int k) const { return cvFloor(begin(k)*scale_); }

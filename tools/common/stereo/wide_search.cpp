@@ -67,21 +67,58 @@ Mat smooth(const Mat& image, double scale)
     return result;
 }
 
+//! 255 where a patch is of the raw image, all of it.
+Mat insideOf(const RectifiedRig& rig, const Mat& map, cv::Size raw)
+{
+    const cv::Size PATCH(11, 11);
+    Mat inside(map.size(), CV_8U);
+    for (int y = 0; y < map.rows; y++)
+        for (int x = 0; x < map.cols; x++)
+        {
+            const cv::Vec2f& p = map.at<cv::Vec2f>(y, x);
+            inside.at<uchar>(y, x) = p[0] >= 0 && p[1] >= 0 && p[0] <= (float)(raw.width - 1) && p[1] <= (float)(raw.height - 1) ? 255 : 0;
+        }
+    cv::erode(inside, inside, cv::getStructuringElement(cv::MORPH_RECT, PATCH), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
+    return fromMatcher(rig, inside);
+}
+
+//! Removes matches of what is beyond the raw images: black is alike everywhere.
+void removeBeyond(const RectifiedRig& rig, const RectifiedImages& pair, cv::Size raw, Mat& disparity)
+{
+    const Mat inside1 = insideOf(rig, pair.map[0], raw), inside2 = insideOf(rig, pair.map[1], raw);
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++)
+        {
+            float& d = disparity.at<float>(y, x);
+            const int partner = d == d ? cvRound((float)x - d) : -1;
+            if (partner < 0 || partner >= disparity.cols || !inside1.at<uchar>(y, x) || !inside2.at<uchar>(y, partner))
+                d = NONE;
+        }
+}
+
 //! Disparity in the small rectified images, NaN where they are not alike.
 Mat disparityOf(const RectifiedRig& rig, const Mat& image1, const Mat& image2, double scale)
 {
     const Slabs slabs(rig, scale);
+    const float ALIKE = slabs.count() > 1 ? 0.8f : 0.f;     // of many answers the best is alike by chance
     double seconds = 0;
-    Mat result;
+    Mat result, best;
     for (int k = 0; k < slabs.count(); k++)
     {
         const Mat plane(1, 1, CV_64F, cv::Scalar(slabs.depth(k)));
         const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale, seconds);
         const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
-        const Mat found = match(first, second, slabs.from(k), slabs.disparities(k), MatcherOptions(), seconds);
+        Mat found = match(first, second, slabs.from(k), slabs.disparities(k), MatcherOptions(), seconds);
+        removeBeyond(rig, pair, image1.size(), found);
+        const MatchSupport support = supportOf(first, second, found, false);
         if (result.empty())
+        {
             result = Mat(found.size(), CV_32F, NONE);
-        found.copyTo(result, supportOf(first, second, found, false).mask);
+            best = Mat(found.size(), CV_32F, ALIKE);
+        }
+        const Mat better = support.mask & (support.correlation > best);
+        found.copyTo(result, better);
+        support.correlation.copyTo(best, better);
     }
     return fromMatcher(rig, result);
 }
@@ -115,6 +152,8 @@ WideDepths WideSearch::look(const Mat& image1, const Mat& image2) const
             const auto depthAt = [&](double disparityHere) {
                 return disparityHere > 0 ? (back*(centre + ray*(perInverse/disparityHere)))[2] : INFINITY; };
             const double least = depthAt(d + UNCERTAIN/scale_), most = depthAt(d - UNCERTAIN/scale_);
+            if (most < rig_->depthRange()[0])
+                continue;           // by chance: disparities are those of the near end in all corners
             result.least.at<float>(y, x) = (float)least;
             result.most.at<float>(y, x) = (float)most;
             result.sorted.push_back((float)depthAt(d));
