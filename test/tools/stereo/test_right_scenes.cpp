@@ -62,8 +62,8 @@ private:
     {
         const double focal = between(330, 450), tiltX = between(-0.22, 0.22), tiltY = between(-0.22, 0.22);
         std::string text = "   image_width: 320\n   image_height: 240\n";
-        text += cv::format("   camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ %.2f, 0., %.2f, 0., %.2f, %.2f, 0., 0., 1. ] }\n",
-                           focal, 160 + normal(4), focal*1.001, 120 + normal(4));
+        text += cv::format("   camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ %.2f, 0., %.2f, 0., %.2f, %.2f, 0., 0., "
+                           "1. ] }\n", focal, 160 + normal(4), focal*1.001, 120 + normal(4));
         text += cv::format("   distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: [ %.4f, %.4f, 0., 0. ] }\n",
                            between(-0.2, 0), between(0, 0.1));
         text += cv::format("   glass_window: { normal: [ %.6f, %.6f, %.8f ], distance: %.1f, thickness: [ %.2f ], index: [ %.3f ], "
