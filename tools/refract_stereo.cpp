@@ -11,12 +11,11 @@
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "stereo/checked_stereo.hpp"
 #include "stereo/cloud_file.hpp"
-#include "stereo/dense_stereo.hpp"
 #include "stereo/depth_comparison.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/depth_search.hpp"
-#include "stereo/match_support.hpp"
 #include "stereo/raw_depth.hpp"
 #include "stereo/rectified_pictures.hpp"
 
@@ -43,18 +42,21 @@ are called frame000001 and so on.
 
 The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the median sz; the
 row error stated, which a rectification for one plane leaves over the range (RMS, largest; the second pass removes it); the
-row error found in the images (RMS). If that is more than 0.5 px, calibration and images do not fit.
+row error found in the images (RMS), of one standard deviation of what the calibration's covariance and the noise allow for.
 
-Exit code: 0 done, 1 could not do it, 2 done and written, but rows differ by more than --max-row-error.)";
+Nothing is written at a depth outside --depth, of a match whose patches do not look alike, or where small images, matched over all
+depths, look alike outside --depth. Rows that contradict the calibration are told with the causes that would explain them, and by
+how much these would change depths: up to 2 % the cloud is written, with that in sx, sy, sz; beyond it is refused.
+
+Exit code: 0 done, 1 could not do it, 2 done and written, but images and calibration contradict each other, more than 5 % of what
+both images show lies outside --depth (--crop: on purpose), a pair of several was refused, or rows differ by more than
+--max-row-error.)";
 
 namespace {
 
 using namespace tools;
 namespace fs = std::filesystem;
 
-const double DOUBTFUL_ROWS = 0.5;       // px; a good calibration leaves a tenth
-const double FEWEST_MATCHED = 0.001;    // share of the pixels
-const double FEWEST_SUPPORTED = 0.5;    // share of the matched ones; good images have nearly all
 const int PAIRS_SEARCHED = 5;
 
 struct Options
@@ -62,7 +64,7 @@ struct Options
     std::string calibration, left, right, depth, out, depthMap, picture, rectifiedFolder, folder, truth, matcher = "3way", channels;
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
-    bool ascii = false, noWindow = false;
+    bool ascii = false, noWindow = false, crop = false;
 };
 
 //! Of one pair; empty: not asked for.
@@ -75,7 +77,9 @@ struct PairFiles
 struct PairResult
 {
     std::string stem;
-    double matched = 0, supported = 0, near = 0, far = 0, typicalSigma = NAN, rowOffset = NAN, seconds = 0;
+    double matched = 0, near = 0, far = 0, typicalSigma = NAN, rowsFound = NAN, rowsExpected = NAN, seconds = 0;
+    std::vector<std::string> warnings;
+    std::string refusal;                //!< empty: it is written
 };
 
 cv::Vec2d parseDepthRange(const std::string& text)
@@ -246,13 +250,20 @@ double typicalSigmaZ(const Cloud& cloud)
     return known[known.size()/2];
 }
 
+//! NaN: nothing tells.
+std::string orUnknown(double value, const char* how)
+{
+    return std::isnan(value) ? "unknown" : format(how, value);
+}
+
 void printComparison(const DepthComparison& c)
 {
     Table table({"against the true depth", ""});
     table.add({"pixels with a true depth", std::to_string(c.known)});
-    table.add({"of these matched", format("%.1f %%", 100.*c.matched/c.known)});
-    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), format("%.2f %%", 100.*c.wrong/c.matched)});
-    table.add({"RMS error of the others", format("%.4g", c.rms)});
+    const auto percent = [](int part, int of, const char* how) { return of > 0 ? format(how, 100.*part/of) : "none"; };
+    table.add({"of these matched", percent(c.matched, c.known, "%.1f %%")});
+    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), percent(c.wrong, c.matched, "%.2f %%")});
+    table.add({"RMS error of the others", orUnknown(c.rms, "%.4g")});
     if (c.stated)
         table.add({"points whose error is less than 1.96 sz (95 % expected)", format("%.1f %%", 100.*c.within/c.stated)});
     table.print(std::cout);
@@ -262,7 +273,8 @@ void printComparison(const DepthComparison& c)
 class Tool
 {
 public:
-    Tool(const Options& options, const Calibration& rig, const cv::Vec2d& range) : options_(options), rig_(rig, range)
+    Tool(const Options& options, const Calibration& rig, const cv::Vec2d& range)
+        : options_(options), rig_(rig, range), checker_(rig_, options.matching, options.crop, options.calibration)
     {
         if (!options.channels.empty())
             rig_.correctColours(parseChannels(options.channels), options.calibration);
@@ -270,26 +282,26 @@ public:
 
     const RectifiedRig& rig() const { return rig_; }
 
-    //! False: nothing was matched, and nothing written.
-    bool process(const std::pair<cv::Mat, cv::Mat>& images, const PairFiles& files, const cv::Mat& truth, PairResult& result)
+    //! Writes the pair, unless it is refused.
+    void process(const std::pair<cv::Mat, cv::Mat>& images, const PairFiles& files, const cv::Mat& truth, PairResult& result)
     {
         const int64 start = cv::getTickCount();
-        const DenseStereo stereo = matchPair(rig_, images.first, images.second, options_.matching);
+        const CheckedStereo checked = checker_.match(images.first, images.second);
+        result.warnings = checked.warnings;
+        result.refusal = checked.refusal;
+        if (!result.refusal.empty())
+            return;
+        const DenseStereo& stereo = checked.stereo;
         const Cloud cloud = cloudOf(stereo.points, stereo.rectified1, stereo.sigma);
         const cv::Mat depth = depthOfRawPixels(rig_, stereo);
         const std::vector<float> sorted = sortedDepths(depth);
-        const double supported = supportedMatches(stereo, rig_.vertical());
-        result.matched = (double)sorted.size()/(double)depth.total();
-        result.supported = supported/std::max(1, stereo.matched());
-        if (!(stereo.rowOffset <= DOUBTFUL_ROWS) || result.supported < FEWEST_SUPPORTED)
-            requireNotSwapped(images, supported, result.stem);
-        if (sorted.empty() || supported < FEWEST_MATCHED*(double)depth.total())
-            return false;
         const double rare = 0.01;
+        result.matched = (double)sorted.size()/(double)depth.total();
         result.near = percentile(sorted, rare);
         result.far = percentile(sorted, 1 - rare);
         result.typicalSigma = typicalSigmaZ(cloud);
-        result.rowOffset = stereo.rowOffset;
+        result.rowsFound = checked.rows.found;
+        result.rowsExpected = checked.rows.expected;
         result.seconds = (double)(cv::getTickCount() - start)/cv::getTickFrequency();
         write(files, stereo, cloud, depth);
         if (!truth.empty())
@@ -297,25 +309,11 @@ public:
             comparison_ = compareDepths(depth, truth);
             compareSigmas(cloud, rig_.calibration().cameras[0].camera, truth, comparison_);
         }
-        return true;
     }
 
     const DepthComparison& comparison() const { return comparison_; }
 
 private:
-    //! What each camera saw is given for the other: all disparities then have the wrong sign, and what is matched is chance.
-    void requireNotSwapped(const std::pair<cv::Mat, cv::Mat>& images, double supportedAsGiven, const std::string& stem) const
-    {
-        if (images.first.size() != images.second.size())
-            return;
-        const DenseStereo swapped = matchPair(rig_, images.second, images.first, options_.matching);
-        const double supported = supportedMatches(swapped, rig_.vertical()), pixels = (double)images.first.total();
-        if (swapped.rowOffset <= DOUBTFUL_ROWS && supported >= FEWEST_SUPPORTED*swapped.matched() && supported > 2*supportedAsGiven)
-            throw Failure(format("LEFT and RIGHT of '%s' are swapped: exchanged, %.2g %% of the pixels have a partner that looks "
-                                 "alike, as given %.2g %%; give the image of camera 1 first", stem.c_str(), 100*supported/pixels,
-                                 100*supportedAsGiven/pixels));
-    }
-
     void write(const PairFiles& files, const DenseStereo& stereo, const Cloud& cloud, const cv::Mat& depth) const
     {
         const std::string unit = rig_.calibration().unit;
@@ -334,19 +332,19 @@ private:
 
     Options options_;
     RectifiedRig rig_;
+    StereoChecker checker_;             // of rig_
     DepthComparison comparison_;
 };
 
-//! NaN: nothing tells.
-std::string orUnknown(double value, const char* how)
+std::string rowsFound(const PairResult& r)
 {
-    return std::isnan(value) ? "unknown" : format(how, value);
+    return std::isnan(r.rowsFound) ? "unknown" : format("%.2f of %.2f", r.rowsFound, r.rowsExpected);
 }
 
 std::vector<std::string> rowOf(const PairResult& r, const RectifiedRig& rig)
 {
     return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.typicalSigma, "%.3g"),
-            format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), orUnknown(r.rowOffset, "%.2f"), format("%.1f", r.seconds)};
+            format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), rowsFound(r), format("%.1f", r.seconds)};
 }
 
 //! All pairs in one row: means, the whole range, the worst rows.
@@ -363,7 +361,8 @@ PairResult summaryOf(const std::vector<PairResult>& results)
         all.typicalSigma += isKnown(r) ? r.typicalSigma : 0;
         all.near = std::min(all.near, r.near);
         all.far = std::max(all.far, r.far);
-        all.rowOffset = std::fmax(all.rowOffset, r.rowOffset);
+        all.rowsFound = std::fmax(all.rowsFound, r.rowsFound);
+        all.rowsExpected = std::fmax(all.rowsExpected, r.rowsExpected);
         all.seconds += r.seconds;
     }
     all.typicalSigma /= known;
@@ -383,18 +382,14 @@ void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
     table.print(std::cout);
 }
 
-//! Says what the row errors mean; false if they are beyond the caller's limit.
-bool checkRows(const Options& options, const std::vector<PairResult>& results, const Command& command)
+//! False if the row errors are beyond the caller's limit.
+bool areRowsWithin(const Options& options, const std::vector<PairResult>& results, const Command& command)
 {
     const PairResult worst = *std::max_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
-        return std::isnan(a.rowOffset) ? !std::isnan(b.rowOffset) : a.rowOffset < b.rowOffset; });
-    if (worst.rowOffset > DOUBTFUL_ROWS)
-        command.warn(format("matches have a row error of %.2f px (RMS) in '%s': calibration and images do not fit. Has a "
-                            "camera or a window moved, is '%s' of this rig, are LEFT and RIGHT swapped?", worst.rowOffset,
-                            worst.stem.c_str(), options.calibration.c_str()));
-    if (options.maxRowError > 0 && std::isnan(worst.rowOffset))
+        return std::isnan(a.rowsFound) ? !std::isnan(b.rowsFound) : a.rowsFound < b.rowsFound; });
+    if (options.maxRowError > 0 && std::isnan(worst.rowsFound))
         command.warn("the row error could not be measured, so --max-row-error is not met");
-    return !(options.maxRowError > 0) || worst.rowOffset <= options.maxRowError;
+    return !(options.maxRowError > 0) || worst.rowsFound <= options.maxRowError;
 }
 
 //! Which light the answer is of.
@@ -411,15 +406,18 @@ void sayColour(const Options& options, const Calibration& rig, bool colourImages
         std::cout << "rectified " << notice << "\n\n";
 }
 
-//! A matcher finds partners in anything.
-void sayUnsupported(const std::vector<PairResult>& results, const Command& command)
+/* What the images say against the calibration or the range: of many pairs mostly the same, so that the first is told, and how many
+there are. False if there is any. */
+bool sayContradictions(const std::vector<PairResult>& results, const Command& command)
 {
-    const PairResult worst = *std::min_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
-        return a.supported < b.supported; });
-    if (worst.supported < FEWEST_SUPPORTED)
-        command.warn(format("only %.0f %% of the matched pixels look alike in both images of '%s', the rest is guesswork: has "
-                            "the scene a texture, does it lie within --depth, are both images of one moment?",
-                            100*worst.supported, worst.stem.c_str()));
+    size_t count = 0;
+    for (const PairResult& r : results)
+        for (const std::string& warning : r.warnings)
+            if (count++ == 0 || results.size() == 1)
+                command.warn("'" + r.stem + "': " + warning);
+    if (results.size() > 1 && count > 1)
+        command.warn(format("%d more such contradictions in other pairs", (int)count - 1));
+    return count == 0;
 }
 
 void warnUnpaired(const std::vector<std::string>& stems, int camera, const Command& command)
@@ -452,6 +450,7 @@ void addOptions(CLI::App& app, Options& options)
         ->check(CLI::Range(1, 2))->capture_default_str();
     app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel of colour images, nm, as 610,540,465; each "
                    "is rectified by itself, as a window in front of water bends blue more than red");
+    app.add_flag("--crop", options.crop, "a part of the scene outside --depth is left out on purpose: no warning of it");
     app.add_option("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more")->check(moreThanZero());
     app.add_flag("--ascii", options.ascii, "cloud as text, not binary");
     app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
@@ -488,8 +487,7 @@ int main(int argc, char** argv)
                                                       : givenRange(options, rig));
         if (!command.quiet())
             sayColour(options, rig, images.first.channels() == 3);
-        std::vector<PairResult> results;
-        std::vector<std::string> unmatched;
+        std::vector<PairResult> results, refused;
         {
             Progress progress("matching", (int)frames.pairs.size(), command.quiet());
             for (size_t i = 0; i < frames.pairs.size(); i++)
@@ -499,25 +497,22 @@ int main(int argc, char** argv)
                     images = reader.read(frames.pairs[i]);
                 PairResult result;
                 result.stem = frames.pairs[i].stem;
-                if (tool.process(images, files[i], truth, result))
-                    results.push_back(result);
-                else
-                    unmatched.push_back(result.stem);
+                tool.process(images, files[i], truth, result);
+                (result.refusal.empty() ? results : refused).push_back(result);
                 progress.step();
             }
         }
         if (results.empty())
-            throw Failure("hardly anything looks alike in both images: do they show the same textured scene, of one moment, "
-                          "within --depth? Are LEFT and RIGHT swapped?");
-        if (!unmatched.empty())
-            command.warn("nothing is written of pairs in which hardly anything looks alike: " + listed(unmatched));
+            throw Failure("'" + refused[0].stem + "': " + refused[0].refusal);
+        for (const PairResult& r : refused)
+            command.warn("nothing is written of '" + r.stem + "': " + r.refusal);
         if (!command.quiet())
         {
             if (!truth.empty())
                 printComparison(tool.comparison());
             printTable(results, tool.rig());
         }
-        sayUnsupported(results, command);
-        return checkRows(options, results, command) ? DONE : LIMIT_NOT_MET;
+        const bool fits = sayContradictions(results, command), rowsFit = areRowsWithin(options, results, command);
+        return fits && rowsFit && refused.empty() ? DONE : LIMIT_NOT_MET;
     });
 }

@@ -275,29 +275,56 @@ TEST_CASE("refract_stereo says so if the images do not fit the calibration", "[t
 {
     const TemporaryFolder folder;
     // Camera 2 looks a little higher than when it was calibrated.
-    cv::Mat right = cv::imread(RIGHT), shifted;
-    cv::warpAffine(right, shifted, cv::Matx23d(1, 0, 0, 0, 1, 1.2), right.size());
-    cv::imwrite(folder / "moved.png", shifted);
-    const std::string call = "refract_stereo " + CALIB + " " + LEFT + " " + (folder / "moved.png") + DEPTH + " --out="
-                             + (folder / "c.ply");
-    const ToolResult result = runTool(call + " --quiet"), limited = runTool(call + " --max-row-error=0.5");
-    CAPTURE(result.err, limited.err);
-    CHECK(result.code == 0);
-    CHECK(result.err.find("moved") != std::string::npos);
-    CHECK(limited.code == 2);
+    const cv::Mat right = cv::imread(RIGHT);
+    for (const double off : {0.6, 1.8})
+    {
+        cv::Mat shifted;
+        cv::warpAffine(right, shifted, cv::Matx23d(1, 0, 0, 0, 1, off), right.size());
+        cv::imwrite(folder/cv::format("moved%g.png", 10*off), shifted);
+    }
+    const std::string call = "refract_stereo " + CALIB + " " + LEFT + " ", out = DEPTH + " --out=" + (folder / "c.ply");
+    const ToolResult result = runTool(call + (folder / "moved6.png") + out + " --quiet");
+    CAPTURE(result.err);
+    CHECK(result.code == 2);
+    CHECK(result.err.find("off their rows") != std::string::npos);
+    CHECK(result.err.find("a turn of camera 2") != std::string::npos);
     CHECK(fs::exists(folder / "c.ply"));            // written all the same
-    const ToolResult swapped = runTool("refract_stereo " + CALIB + " " + RIGHT + " " + LEFT + DEPTH + " --out="
-                                       + (folder / "s.ply"));
-    CAPTURE(swapped.out, swapped.err);
-    CHECK(swapped.code == 1);
-    CHECK(swapped.err.find("LEFT and RIGHT of 'scene' are swapped") != std::string::npos);
-    CHECK_FALSE(fs::exists(folder / "s.ply"));
+    fs::remove(folder / "c.ply");
+    const ToolResult refused = runTool(call + (folder / "moved18.png") + out);
+    CAPTURE(refused.err);
+    CHECK(refused.code == 1);
+    CHECK(refused.err.find("off their rows") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "c.ply"));
     const ToolResult good = runTool("refract_stereo " + CALIB + PAIR + DEPTH + " --max-row-error=0.2 --out="
                                     + (folder / "g.ply"));
     CAPTURE(good.err);
     CHECK(good.code == 0);
-    const ToolResult far = runTool("refract_stereo " + CALIB + PAIR + " --depth=5000,inf --out=" + (folder / "f.ply"));
-    CHECK((far.code == 1 || far.err.find("guesswork") != std::string::npos));
+    CHECK(runTool("refract_stereo " + CALIB + PAIR + DEPTH + " --max-row-error=0.001 --out=" + (folder / "g.ply")).code == 2);
+}
+
+TEST_CASE("refract_stereo holds the range of depths against the images", "[tools][stereo]")
+{
+    const TemporaryFolder folder;
+    const std::string call = "refract_stereo " + CALIB + PAIR + " --quiet --depth-map=" + (folder / "d.tiff");
+    const ToolResult narrow = runTool(call + " --depth=700,900"), crop = runTool(call + " --depth=700,900 --crop");
+    CAPTURE(narrow.err, crop.err);
+    CHECK(narrow.code == 2);
+    CHECK(narrow.err.find("lies outside") != std::string::npos);
+    CHECK(crop.code == 0);
+    CHECK(crop.err.empty());
+    const cv::Mat depth = cv::imread(folder / "d.tiff", cv::IMREAD_UNCHANGED);
+    CHECK(pixelsWithDepth(depth) > 0.15*depth.total());
+    CHECK(cv::countNonZero((depth < 700) | (depth > 900)) == 0);
+    fs::remove(folder / "d.tiff");
+    for (const std::string range : {"1500,3000", "200,400", "5000,inf"})
+        for (const std::string how : {"", " --crop"})
+        {
+            const ToolResult elsewhere = runTool(call + how + " --depth=" + range);
+            CAPTURE(range, elsewhere.err);
+            CHECK(elsewhere.code == 1);
+            CHECK(elsewhere.err.find("give the range of the scene") != std::string::npos);
+            CHECK_FALSE(fs::exists(folder / "d.tiff"));
+        }
 }
 
 TEST_CASE("refract_stereo refuses with one sentence and writes nothing", "[tools][stereo]")

@@ -3,7 +3,6 @@
 
 #include "scene_pair.hpp"
 #include "stereo/depth_search.hpp"
-#include "stereo/match_support.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -53,26 +52,4 @@ TEST_CASE("What lies before or in the window is told from what lies beyond", "[t
         CHECK(!isBeyondWindows(scene.rig, z));
     for (const double z : {100., 450., 1e6, (double)INFINITY})
         CHECK(isBeyondWindows(scene.rig, z));
-}
-
-TEST_CASE("Matches of flat areas and of noise rest on nothing", "[tools][stereo][support]")
-{
-    const cv::Size size(120, 90);
-    DenseStereo stereo;
-    cv::RNG random(3);
-    cv::Mat texture(size.height, size.width + 8, CV_8U), other(size, CV_8U);
-    random.fill(texture, cv::RNG::NORMAL, 120, 40);
-    random.fill(other, cv::RNG::NORMAL, 120, 40);
-    stereo.disparity = cv::Mat(size, CV_32F, cv::Scalar(8));
-    stereo.disparity.colRange(0, 20).setTo(std::numeric_limits<float>::quiet_NaN());
-    // What is at x in the first is at x - 8 in the second.
-    stereo.rectified1 = texture(cv::Rect(0, 0, size.width, size.height)).clone();
-    stereo.rectified2 = texture(cv::Rect(8, 0, size.width, size.height)).clone();
-    CHECK(supportedMatches(stereo, false) > 0.95*100*size.height);
-    CHECK(supportedMatches(stereo, false) <= 100*size.height);
-    CHECK(supportedMatches(stereo, true) < 0.01*100*size.height);
-    stereo.rectified2 = other;
-    CHECK(supportedMatches(stereo, false) < 0.01*100*size.height);
-    stereo.rectified1 = stereo.rectified2 = cv::Mat(size, CV_8UC3, cv::Scalar::all(90));
-    CHECK(supportedMatches(stereo, false) == 0);
 }

@@ -114,7 +114,7 @@ Calibration firstPair(const Calibration& rig)
     const RigModel all = modelOf(rig);
     const int ofPair = columnsOf(all, 1).end, place = extrinsicsColumn(all, 1);
     const Range here[] = {Range(0, ofPair), Range(ofPair, ofPair + 6)}, there[] = {Range(0, ofPair), Range(place, place + 6)};
-    pair.covariance = Mat::zeros(ofPair + 6, ofPair + 6, CV_64F);
+    pair.covariance = Mat(ofPair + 6, ofPair + 6, CV_64F, Scalar(0));       // Mat::zeros would be written into the rig's
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++)
             rig.covariance(there[i], there[j]).copyTo(pair.covariance(here[i], here[j]));

@@ -3,6 +3,7 @@
 
 #include "stereo/coarse_depth.hpp"
 #include "stereo/rectified_match.hpp"
+#include "stereo/slabs.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -13,32 +14,6 @@ namespace tools {
 using cv::Mat;
 
 namespace {
-
-/* The first pass is made in slabs of depths, each rectified for a plane of its own: for so many that rows agree to a fraction of
-its pixels. Mostly one will do; a wide lens before water needs a dozen. */
-class Slabs
-{
-public:
-    explicit Slabs(const RectifiedRig& rig) : rig_(rig)
-    {
-        const double TYPICAL = 0.6, LARGEST = 3;        // px, full size; images of half the size have half of it
-        const int MOST = 64;
-        count_ = std::clamp(cvCeil(std::max(rig.rowError[0]/TYPICAL, rig.rowError[1]/LARGEST)), 1, MOST);
-    }
-    int count() const { return count_; }
-    //! First disparity of a slab, full size; of the one after the last, the end.
-    double begin(int k) const { return rig_.minDisparity() + k*(double)rig_.disparities()/count_; }
-    //! z of its plane in the rectified frame.
-    double depth(int k) const
-    {
-        const double middle = 0.5*(begin(k) + begin(k + 1));
-        return count_ == 1 ? rig_.planeDepth() : rig_.depthOf(middle);
-    }
-
-private:
-    const RectifiedRig& rig_;
-    int count_;
-};
 
 //! How little two rectified images are alike round each pixel of the first, at its disparity; infinite where that is NaN.
 Mat unlikeness(const Mat& first, const Mat& second, const Mat& disparity)
@@ -63,15 +38,14 @@ Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image
                     double& mapSeconds, double& matchSeconds)
 {
     const double scale = 0.5;
-    const Slabs slabs(rig);
+    const Slabs slabs(rig, scale);
     Mat best, least;
     for (int k = 0; k < slabs.count(); k++)
     {
         const Mat plane(1, 1, CV_64F, cv::Scalar(slabs.depth(k)));
         const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale, mapSeconds);
         const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
-        const int from = cvFloor(slabs.begin(k)*scale), count = cvCeil((slabs.begin(k + 1)*scale + 1 - from)/16)*16;
-        const Mat found = match(first, second, from, count, options, matchSeconds);
+        const Mat found = match(first, second, slabs.from(k), slabs.disparities(k), options, matchSeconds);
         if (slabs.count() == 1)
             return fromMatcher(rig, found);
         const Mat unlike = unlikeness(first, second, found);

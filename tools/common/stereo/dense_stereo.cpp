@@ -4,7 +4,6 @@
 #include "stereo/dense_stereo.hpp"
 #include "stereo/coarse_depth.hpp"
 #include "stereo/epipolar_check.hpp"
-#include "stereo/point_sigma.hpp"
 #include "stereo/rectified_match.hpp"
 #include "stereo/refine_disparity.hpp"
 
@@ -16,20 +15,13 @@ using cv::Mat;
 
 namespace {
 
-void refine(const RectifiedRig& rig, DenseStereo& result, const Mat& first, const Mat& second, Mat& sigma)
+void refine(const RectifiedRig& rig, DenseStereo& result, const Mat& first, const Mat& second)
 {
     const int64 start = cv::getTickCount();
     const RefinedDisparity refined = refineDisparity(first, second, result.disparity);
     result.disparity = fromMatcher(rig, refined.disparity);
-    sigma = fromMatcher(rig, refined.sigma);
-    result.rowOffset = refined.rowOffset;
-    std::vector<float> sigmas;
-    std::copy_if(sigma.begin<float>(), sigma.end<float>(), std::back_inserter(sigmas), [](float s) { return s == s; });
-    if (!sigmas.empty())
-    {
-        std::nth_element(sigmas.begin(), sigmas.begin() + sigmas.size()/2, sigmas.end());
-        result.disparitySigma = sigmas[sigmas.size()/2];
-    }
+    result.disparitySigmas = fromMatcher(rig, refined.sigma);
+    result.rowOffset = fromMatcher(rig, refined.rowOffset);
     result.refineSeconds += secondsSince(start);
 }
 
@@ -67,10 +59,8 @@ DenseStereo matchPair(const RectifiedRig& rig, const Mat& image1, const Mat& ima
     result.rectified2 = rectified.image[1];
     const Mat first = forMatcher(rig, result.rectified1), second = forMatcher(rig, result.rectified2);
     result.disparity = match(first, second, rig.minDisparity(), rig.disparities(), options, result.matchSeconds[1]);
-    Mat sigma;
-    refine(rig, result, first, second, sigma);
+    refine(rig, result, first, second);
     findPoints(rig, rectified, result);
-    result.sigma = pointSigma(rig, result, sigma);
     return result;
 }
 

@@ -23,9 +23,9 @@ struct DenseStereo
     cv::Mat disparity;                  //!< CV_32F, px, of rectified1; NaN: none
     cv::Mat depth1, depth2;             //!< what the last pass' maps were made for
     cv::Mat points;                     //!< CV_32FC3, camera-1 frame, of each pixel of rectified1; NaN: none
-    cv::Mat sigma;                      //!< CV_32FC3, one standard deviation of each of points' coordinates; NaN: none, or unknown
-    double disparitySigma = NAN;        //!< of a typical match, px; NaN: too few matches tell
-    double rowOffset = NAN;             //!< RMS by which matches miss each other's row, px, noise of single ones aside; as above
+    cv::Mat sigma;                      //!< CV_32FC3, one standard deviation of each of points' coordinates (pointSigma); NaN: unknown
+    cv::Mat disparitySigmas;            //!< CV_32F, one standard deviation of disparity, px; NaN: none, or too few matches tell
+    cv::Mat rowOffset;                  //!< CV_32F, px, by how much each match misses its row (refineDisparity)
     double matchSeconds[2] = {0, 0};    //!< of the matcher, each pass
     double mapSeconds = 0;              //!< of maps, coarse depth and points: what windows cost
     double refineSeconds = 0;           //!< of disparity's fractions and sigmas

@@ -28,10 +28,10 @@ struct Details
     Mat descriptors;
 };
 
-Details detailsOf(const Mat& grey)
+Details detailsOf(const Mat& grey, int most)
 {
     Details details;
-    cv::SIFT::create(MOST_DETAILS)->detectAndCompute(grey, cv::noArray(), details.places, details.descriptors);
+    cv::SIFT::create(most)->detectAndCompute(grey, cv::noArray(), details.places, details.descriptors);
     return details;
 }
 
@@ -47,22 +47,23 @@ std::vector<int> bestOf(const Details& from, const Details& to)
     return best;
 }
 
-//! Pairs that choose each other.
-void findPartners(const Mat& grey1, const Mat& grey2, std::vector<Point2d>& pixels1, std::vector<Point2d>& pixels2)
+} // namespace
+
+Partners findPartners(const Mat& grey1, const Mat& grey2, int mostFeatures)
 {
-    const Details first = detailsOf(grey1), second = detailsOf(grey2);
+    Partners partners;
+    const Details first = detailsOf(grey1, mostFeatures), second = detailsOf(grey2, mostFeatures);
     if (first.places.size() < 2 || second.places.size() < 2)
-        return;
+        return partners;
     const std::vector<int> forth = bestOf(first, second), back = bestOf(second, first);
     for (size_t i = 0; i < forth.size(); i++)
         if (forth[i] >= 0 && back[forth[i]] == (int)i)
         {
-            pixels1.push_back(first.places[i].pt);
-            pixels2.push_back(second.places[forth[i]].pt);
+            partners.pixels1.push_back(first.places[i].pt);
+            partners.pixels2.push_back(second.places[forth[i]].pt);
         }
+    return partners;
 }
-
-} // namespace
 
 bool isBeyondWindows(const Calibration& calibration, double z)
 {
@@ -77,8 +78,8 @@ bool isBeyondWindows(const Calibration& calibration, double z)
 
 std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {
-    std::vector<Point2d> pixels1, pixels2;
-    findPartners(greyOf(image1, calibration.channel), greyOf(image2, calibration.channel), pixels1, pixels2);
+    const Partners partners = findPartners(greyOf(image1, calibration.channel), greyOf(image2, calibration.channel), MOST_DETAILS);
+    const std::vector<Point2d> &pixels1 = partners.pixels1, &pixels2 = partners.pixels2;
     std::vector<float> depths;
     if (pixels1.empty())
         return depths;

@@ -12,6 +12,14 @@ namespace tools {
 //! What findDepthRange needs at least.
 const int MIN_FEATURES = 30;
 
+//! Pixels of features that choose each other.
+struct Partners
+{
+    std::vector<cv::Point2d> pixels1, pixels2;
+};
+//! @param mostFeatures of each image, the strongest
+Partners findPartners(const cv::Mat& grey1, const cv::Mat& grey2, int mostFeatures);
+
 //! Cameras in which imageSize() is known and a z that their windows leave free.
 bool isBeyondWindows(const Calibration& calibration, double z);
 

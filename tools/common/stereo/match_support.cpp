@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/match_support.hpp"
+#include "console/images.hpp"
 
 #include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 namespace tools {
 
@@ -12,8 +17,9 @@ using cv::Mat;
 namespace {
 
 const cv::Size PATCH(11, 11);
-const double ALIKE = 0.6;           // correlation; true partners have more even where noise is half of the contrast
-const double FLAT = 0.25;           // variance, grey levels squared, as rounding to 8 bits leaves
+const float ALIKE = 0.6f;           // correlation; true partners have more even where noise is half of the contrast
+const float FLAT = 0.25f;           // variance, grey levels squared, as rounding to 8 bits leaves
+const float CONTRAST = 4;           // times the variance of the noise: true partners then correlate by 0.75
 
 Mat greyFloat(const Mat& image)
 {
@@ -27,12 +33,15 @@ Mat moved(const Mat& second, const Mat& disparity, bool vertical)
 {
     Mat mapX(disparity.size(), CV_32F), mapY(disparity.size(), CV_32F), result;
     for (int y = 0; y < disparity.rows; y++)
+    {
+        const float* row = disparity.ptr<float>(y);
         for (int x = 0; x < disparity.cols; x++)
         {
-            const float d = disparity.at<float>(y, x), by = d == d ? d : 0;
+            const float d = row[x], by = d == d ? d : 0;
             mapX.at<float>(y, x) = (float)x - (vertical ? 0 : by);
             mapY.at<float>(y, x) = (float)y - (vertical ? by : 0);
         }
+    }
     cv::remap(second, result, mapX, mapY, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
     return result;
 }
@@ -44,23 +53,58 @@ Mat averaged(const Mat& values)
     return result;
 }
 
+/* Variance of the pixels' noise: what the best matches leave, of both images together. If all are wrong, it is the contrast of
+the scene, and nothing has more than that. */
+float noiseOf(const Mat& left, const Mat& matched)
+{
+    const int FEW = 20, EVERY = 3;
+    const double BEST = 0.1;
+    std::vector<float> values;
+    for (int y = 0; y < left.rows; y += EVERY)
+        for (int x = 0; x < left.cols; x += EVERY)
+            if (matched.at<uchar>(y, x))
+                values.push_back(left.at<float>(y, x));
+    if ((int)values.size() < FEW)
+        return FLAT;
+    const auto at = values.begin() + (int)(BEST*(double)values.size());
+    std::nth_element(values.begin(), at, values.end());
+    return std::max(FLAT, *at/2);
+}
+
 } // namespace
 
-int supportedMatches(const DenseStereo& stereo, bool vertical)
+double MatchSupport::share() const
 {
-    const Mat first = greyFloat(stereo.rectified1), second = moved(greyFloat(stereo.rectified2), stereo.disparity, vertical);
-    const Mat mean1 = averaged(first), mean2 = averaged(second);
+    return textured > 0 ? (double)supported/textured : std::numeric_limits<double>::quiet_NaN();
+}
+
+MatchSupport supportOf(const Mat& image1, const Mat& image2, const Mat& disparity, bool vertical)
+{
+    const Mat first = greyFloat(image1), second = moved(greyFloat(image2), disparity, vertical), matched = disparity == disparity;
+    const Mat mean1 = averaged(first), mean2 = averaged(second), product = averaged(first.mul(second));
     const Mat variance1 = averaged(first.mul(first)) - mean1.mul(mean1), variance2 = averaged(second.mul(second)) - mean2.mul(mean2);
-    const Mat together = averaged(first.mul(second)) - mean1.mul(mean2);
-    int count = 0;
+    const Mat together = product - mean1.mul(mean2);
+    const float contrast = CONTRAST*noiseOf(variance1 + variance2 - 2*together, matched);
+    MatchSupport result;
+    result.mask = Mat::zeros(first.size(), CV_8U);
+    result.correlation = Mat::zeros(first.size(), CV_32F);
     for (int y = 0; y < first.rows; y++)
         for (int x = 0; x < first.cols; x++)
         {
-            const double v1 = variance1.at<float>(y, x), v2 = variance2.at<float>(y, x), c = together.at<float>(y, x);
-            const float d = stereo.disparity.at<float>(y, x);
-            count += d == d && v1 > FLAT && v2 > FLAT && c > 0 && c*c > ALIKE*ALIKE*v1*v2;
+            const float v1 = variance1.at<float>(y, x), v2 = variance2.at<float>(y, x), c = together.at<float>(y, x);
+            if (!matched.at<uchar>(y, x))
+                continue;
+            const float correlation = v1 > FLAT && v2 > FLAT ? c/std::sqrt(v1*v2) : 0;
+            const bool alike = correlation > ALIKE;
+            result.correlation.at<float>(y, x) = correlation;
+            result.mask.at<uchar>(y, x) = alike ? 255 : 0;
+            result.textured += v1 > contrast;
+            result.supported += alike && v1 > contrast;
         }
-    return count;
+    // At an edge of the scene a patch has two depths, and one beside it only one.
+    cv::dilate(result.mask, result.nearby, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3*PATCH.width - 2, 3*PATCH.height - 2)));
+    result.nearby &= matched;
+    return result;
 }
 
 } // namespace tools

@@ -4,15 +4,28 @@
 #ifndef REFRACT_TOOLS_MATCH_SUPPORT_HPP
 #define REFRACT_TOOLS_MATCH_SUPPORT_HPP
 
-#include "stereo/dense_stereo.hpp"
+#include <opencv2/core.hpp>
 
 /* A matcher fills areas without texture from their neighbours, and finds a best match for noise too. Afterwards the two patches of a
 match are compared: both must have texture, and the same. */
 namespace tools {
 
-/** The number of matched pixels of rectified1 whose patch correlates with that of the match; in flat areas and by chance it does not.
+struct MatchSupport
+{
+    cv::Mat mask;           //!< CV_8U, 255: the patches of this match look alike
+    cv::Mat nearby;         //!< CV_8U, 255: they do, or those of a match beside it
+    cv::Mat correlation;    //!< CV_32F, of the patches; 0: no match, or flat
+    int textured = 0;       //!< matches whose patches have more contrast than the noise of the images
+    int supported = 0;      //!< those of them that look alike
+    //! Of the textured ones; NaN if there are none.
+    double share() const;
+};
+
+/** In flat areas and by chance the patches of a match do not correlate.
+@param first, second rectified, 8-bit, grey or colour
+@param disparity CV_32F, px, of the first; NaN: no match
 @param vertical disparity runs along columns */
-int supportedMatches(const DenseStereo& stereo, bool vertical);
+MatchSupport supportOf(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity, bool vertical);
 
 } // namespace tools
 

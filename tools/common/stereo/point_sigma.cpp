@@ -105,7 +105,7 @@ private:
 
 } // namespace
 
-Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, const Mat& disparitySigma)
+Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction)
 {
     const CalibrationVariance calibration(rig);
     const Vec3d centre = Matx33d(rig.R1.ptr<double>()).t()*rig.centre();
@@ -119,7 +119,8 @@ Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, const Mat& di
                     continue;
                 const double d = stereo.disparity.at<float>(y, x);
                 // a pinhole's point is its centre + something/(d - shift)
-                const Vec3d along = (Vec3d(X) - centre)*(disparitySigma.at<float>(y, x)/(d - rig.shift()));
+                const double byMatch = stereo.disparitySigmas.at<float>(y, x)/(d - rig.shift());
+                const Vec3d along = (Vec3d(X) - centre)*std::sqrt(byMatch*byMatch + contradiction*contradiction);
                 const Vec3d variance = along.mul(along) + calibration.at(x, y, d);
                 result.at<Vec3f>(y, x) = Vec3f((float)std::sqrt(variance[0]), (float)std::sqrt(variance[1]), (float)std::sqrt(variance[2]));
             }

@@ -10,8 +10,8 @@ namespace tools {
 
 /** One standard deviation of x, y and z of each point (camera-1 frame): that of its disparity, along the line of sight, and what
 the calibration's covariance, if there is one, does to all points; CV_32FC3.
-@param disparitySigma CV_32F */
-cv::Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, const cv::Mat& disparitySigma);
+@param contradiction share of its distance by which a point may be off beside that, as the images contradict the calibration */
+cv::Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction);
 
 } // namespace tools
 

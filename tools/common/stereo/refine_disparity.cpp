@@ -100,29 +100,6 @@ double inflation(const Mat& disparity, const Mat& sigma)
     return (int)ratios.size() < ENOUGH ? NONE : quantile(ratios, 0.95)/1.96;
 }
 
-//! RMS of the medians of cells that know enough of them; NaN: unknown.
-double rmsOfMedians(const Mat& values)
-{
-    const int COLUMNS = 8, ROWS = 6;
-    double squares = 0;
-    int count = 0;
-    for (int i = 0; i < COLUMNS*ROWS; i++)
-    {
-        const int column = i % COLUMNS, row = i/COLUMNS;
-        std::vector<float> cell;
-        for (int y = values.rows*row/ROWS; y < values.rows*(row + 1)/ROWS; y += 2)
-            for (int x = values.cols*column/COLUMNS; x < values.cols*(column + 1)/COLUMNS; x += 2)
-                if (values.at<float>(y, x) == values.at<float>(y, x))
-                    cell.push_back(values.at<float>(y, x));
-        if ((int)cell.size() < ENOUGH)
-            continue;
-        const double median = quantile(cell, 0.5);
-        squares += median*median;
-        count++;
-    }
-    return count ? std::sqrt(squares/count) : NONE;
-}
-
 } // namespace
 
 RefinedDisparity refineDisparity(const Mat& first, const Mat& second, const Mat& disparity)
@@ -154,7 +131,7 @@ RefinedDisparity refineDisparity(const Mat& first, const Mat& second, const Mat&
     for (Mat* values : {&current, &sigma, &across})
         values->setTo(NONE, none);
     sigma *= inflation(current, sigma);
-    return {current, sigma, rmsOfMedians(across)};
+    return {current, sigma, across};
 }
 
 } // namespace tools

@@ -17,9 +17,8 @@ struct RefinedDisparity
     /** CV_32F, one standard deviation; NaN as disparity. Patches with more contrast have a smaller one; the scale of all is that
     by which neighbours on smooth surfaces differ, and NaN if there are too few. */
     cv::Mat sigma;
-    /** RMS over the image of the medians, in some regions, by which patches would have to move across the row: 0 if the
-    calibration is right. NaN if there are too few. */
-    double rowOffset;
+    //! CV_32F, row in the first image - row in the second, px: about 0 if the calibration is right; NaN as disparity.
+    cv::Mat rowOffset;
 };
 
 /** @param first, second rectified, 8-bit grey; disparity along the rows

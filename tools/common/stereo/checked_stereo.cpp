@@ -1,0 +1,143 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stereo/checked_stereo.hpp"
+#include "stereo/depth_picture.hpp"
+#include "stereo/pair_mistakes.hpp"
+#include "stereo/point_sigma.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace tools {
+
+using cv::Mat;
+using cv::format;
+
+namespace {
+
+const double FEWEST_MATCHED = 0.001;        // share of the pixels
+const double FEWEST_SUPPORTED = 0.5;        // share of the matched ones with texture; good images have nearly all
+const double MOST_OUTSIDE = 0.05;           // share of the details: fewer are chance
+const double DOUBTFUL_SUPPORT = 0.85;
+const double DOUBTFUL_ROWS = 0.3;           // px; a good calibration leaves a tenth
+const double MOST_ROWS = 1;                 // px: beyond, a matcher finds only what agrees by chance
+const double MOST_DEPTH_CHANGE = 0.02;      // share of the depth
+
+const cv::Vec3f NO_POINT = cv::Vec3f::all(std::numeric_limits<float>::quiet_NaN());
+
+void removeOutside(const cv::Vec2d& range, Mat& points)
+{
+    for (cv::Vec3f& X : cv::Mat_<cv::Vec3f>(points))
+        if (!(X[2] >= range[0] && X[2] <= range[1]))
+            X = NO_POINT;
+}
+
+//! Disparities of pixels that have a point.
+Mat matchedDisparity(const DenseStereo& stereo)
+{
+    Mat result = stereo.disparity.clone();
+    for (int y = 0; y < result.rows; y++)
+        for (int x = 0; x < result.cols; x++)
+            if (!(stereo.points.at<cv::Vec3f>(y, x)[2] == stereo.points.at<cv::Vec3f>(y, x)[2]))
+                result.at<float>(y, x) = NO_POINT[0];
+    return result;
+}
+
+//! "450 to 1150": of the details but for the rarest.
+std::string seenRange(const WideDepths& seen)
+{
+    const double RARE = 0.02;
+    return format("%.4g to %.4g", percentile(seen.sorted, RARE), percentile(seen.sorted, 1 - RARE));
+}
+
+//! Beyond, no match can be used: where the calibration says that it is that bad, what it says.
+double mostRows(const RowCheck& rows)
+{
+    const double FEW = 3;
+    return std::fmax(MOST_ROWS, FEW*rows.expected);
+}
+
+std::string rangeText(const cv::Vec2d& range) { return format("--depth=%g,%g", range[0], range[1]); }
+
+} // namespace
+
+StereoChecker::StereoChecker(const RectifiedRig& rig, const MatcherOptions& options, bool crop, const std::string& file)
+    : rig_(rig), options_(options), crop_(crop), file_(file), wide_(rig.calibration(), rig) {}
+
+CheckedStereo StereoChecker::match(const Mat& image1, const Mat& image2) const
+{
+    CheckedStereo result;
+    DenseStereo& stereo = result.stereo;
+    const WideDepths seen = wide_.look(image1, image2);
+    const bool isElsewhere = seen.outside() > MOST_OUTSIDE;
+    stereo = matchPair(rig_, image1, image2, options_);
+    removeOutside(rig_.depthRange(), stereo.points);
+    wide_.removeContradicted(seen, isElsewhere, stereo.points);
+    const MatchSupport support = supportOf(stereo.rectified1, stereo.rectified2, matchedDisparity(stereo), rig_.vertical());
+    stereo.points.setTo(NO_POINT, ~(isElsewhere ? support.mask : support.nearby));
+    result.rows = checkRows(rig_, stereo);
+    if (!(support.supported >= FEWEST_MATCHED*(double)image1.total()) || !(support.share() >= FEWEST_SUPPORTED))
+        result.refusal = whyNothingFits(seen, image1, image2);
+    else
+    {
+        judgeRows(image1, image2, support, result);
+        judgeRange(seen, result);
+    }
+    if (result.refusal.empty())
+        stereo.sigma = pointSigma(rig_, stereo, result.rows.depthChange);
+    return result;
+}
+
+void StereoChecker::judgeRange(const WideDepths& seen, CheckedStereo& result) const
+{
+    if (crop_ || !result.refusal.empty() || seen.outside() <= MOST_OUTSIDE)
+        return;
+    result.warnings.push_back(rangeText(rig_.depthRange()) + format(": %.0f %% of what both images show lies outside and is left out, at "
+                              "depths of ", 100*seen.outside()) + seenRange(seen) + " (--crop: on purpose)");
+}
+
+void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchSupport& support, CheckedStereo& result) const
+{
+    const RowCheck& rows = result.rows;
+    if (!rows.contradicts() && !(rows.found > DOUBTFUL_ROWS) && support.share() > DOUBTFUL_SUPPORT)
+        return;
+    const PairDiagnosis diagnosis = diagnosePair(rig_.calibration(), image1, image2);
+    if (!diagnosis.mistake.empty() || diagnosis.rows > mostRows(rows))
+        result.refusal = whatFeaturesSay(diagnosis);
+    if (!rows.contradicts() || !result.refusal.empty())
+        return;
+    const std::string text = format("matches are %.2g px (RMS) off their rows, where '%s' allows for %.2g: calibration and images do "
+                                    "not fit", rows.found, file_.c_str(), rows.expected);
+    const std::string causes = rows.causes.empty() ? "has a camera or a window moved?" : "it may be " + rows.causes;
+    const std::string wrong = format("depths may be wrong by %.2g %%", 100*rows.depthChange);
+    if (rows.found > mostRows(rows))
+        result.refusal = text + "; " + causes;
+    else if (rows.depthChange > MOST_DEPTH_CHANGE)
+        result.refusal = text + ", and " + wrong + "; " + causes;
+    else
+        result.warnings.push_back(text + "; " + wrong + ", which is in sx, sy, sz; " + causes);
+}
+
+std::string StereoChecker::whatFeaturesSay(const PairDiagnosis& diagnosis) const
+{
+    const std::string rows = std::isnan(diagnosis.rows) ? "" : format("features that are alike in both images are %.2g px off their rows "
+                                                                      "(median): ", diagnosis.rows);
+    if (!diagnosis.mistake.empty())
+        return rows + diagnosis.mistake;
+    return rows + "calibration and images do not fit; has a camera or a window moved, is '" + file_ + "' of this rig?";
+}
+
+std::string StereoChecker::whyNothingFits(const WideDepths& seen, const Mat& image1, const Mat& image2) const
+{
+    const PairDiagnosis diagnosis = diagnosePair(rig_.calibration(), image1, image2);
+    if (!diagnosis.mistake.empty() || diagnosis.rows > MOST_ROWS)
+        return whatFeaturesSay(diagnosis);
+    if (seen.outside() > MOST_OUTSIDE)
+        return rangeText(rig_.depthRange()) + ": hardly anything that both images show lies there, but at depths of " + seenRange(seen)
+               + "; give the range of the scene";
+    return "hardly anything looks alike in both images: do they show the same textured scene, of one moment, within --depth? Are LEFT "
+           "and RIGHT swapped?";
+}
+
+} // namespace tools
