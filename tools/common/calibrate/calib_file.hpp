@@ -18,7 +18,7 @@ Per camera: image_width, image_height, camera_matrix, distortion_coefficients, l
 thickness, index, inner_index, outer_index, wedge, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index,
 outer_index, wedge}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and
 target_square (of the board), channel (of colour images, that it is for), verdict, contradictions (what the data say against
-what was given, a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+what was given, a sentence each), weak_points (a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 class Command;
@@ -64,6 +64,7 @@ struct Calibration
     std::string verdict;    //!< of refract_calib; empty where unknown
     /** Between the images and given values, a sentence each: errors of points may be larger than their +-. */
     std::vector<std::string> contradictions;
+    std::vector<std::string> weakPoints;    //!< which the verdict counts on the reader to look at
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()

@@ -26,6 +26,7 @@ const double USUAL = 3., FEW = 5., GROSS = 20.;
 const double MEDIAN = 0.6745;           // of |N(0, 1)|
 const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
 const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
+const size_t TELLING = 8;               // points, fewer of which do not tell noise from a wrong match
 
 /* Of the root mean square of `freedom` numbers with deviation 1: where it lies with the probability of a normal number's
 `deviations` (Wilson and Hilferty's cube root; of a single number exactly). */
@@ -175,7 +176,7 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
         const auto farOff = [&](double deviations) { return rmsAt(deviations, residuals[i].dof)*expected; };
         if (!(residual == residual))
             continue;
-        const double limit = known ? std::min(times, NOISIER)*farOff(FEW) : GROSS_PIXELS;
+        const double limit = known ? std::min(times, m.points.size() < TELLING ? 1. : NOISIER)*farOff(FEW) : GROSS_PIXELS;
         if (known)
         {
             const double beyond = std::max(0., residual*residual - std::pow(times*farOff(USUAL), 2));
