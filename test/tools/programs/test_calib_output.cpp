@@ -155,14 +155,14 @@ TEST_CASE("A limit is not met by one image, and PASS says what it does not know"
         CHECK(r.code == c.code);
         const std::string verdict = summaryOf(f)["verdict"];
         CHECK(verdict.substr(0, c.verdict.size()) == c.verdict);
-        CHECK(r.out.substr(0, 8) == (verdict + "\n").substr(0, 8));
+        CHECK(r.out.substr(0, 4) == verdict.substr(0, 4));
         const FileStorage file(f / "calib.yml", FileStorage::READ);
         CHECK((std::string)file["verdict"] == verdict);
         CHECK(file["weak_points"].size() == summaryOf(f)["findings"]["weak"].size());
         if (c.code == 2)
         {
             CHECK(mentions(r.err, "cannot be judged on one image through the window"));
-            CHECK(mentions(r.out, "cannot be judged on one image through the"));
+            CHECK(mentions(r.out, "cannot be judged on one image"));
             CHECK(mentions(r.out, format("Next: take %d more pairs", ENOUGH_PAIRS - 1)));
         }
     }
@@ -182,7 +182,7 @@ TEST_CASE("As many pairs as README, guide and --help ask for are enough for the 
         REQUIRE(r.code == 0);
         const std::string only = format("only %d pairs: take at least %d", ENOUGH_PAIRS - 1, ENOUGH_PAIRS);
         CHECK(mentions(summaryOf(f)["findings"]["weak"].dump(), only) == (pairs < ENOUGH_PAIRS));
-        CHECK((summaryOf(f)["verdict"] == "Good") == (pairs == ENOUGH_PAIRS));
+        CHECK(summaryOf(f)["findings"]["weak"].empty() == (pairs == ENOUGH_PAIRS));
     }
     const auto page = [](const char* name) {
         std::string text = readFile(paths::bundled() + "/../../" + name);

@@ -167,7 +167,7 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
     std::vector<ConsistencyResidual> residuals;
     for (size_t i = 0; i < m.points.size(); i++)
         residuals.push_back(residualOf(i));
-    const double times = known ? timesNoisier(residuals, pixelSigma) : 1.;
+    const double times = known && m.points.size() >= TELLING ? timesNoisier(residuals, pixelSigma) : 1.;
     if (times > 1)
         m.noise = times*pixelSigma;
     for (size_t i = 0; i < m.points.size(); i++)
@@ -176,7 +176,7 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
         const auto farOff = [&](double deviations) { return rmsAt(deviations, residuals[i].dof)*expected; };
         if (!(residual == residual))
             continue;
-        const double limit = known ? std::min(times, m.points.size() < TELLING ? 1. : NOISIER)*farOff(FEW) : GROSS_PIXELS;
+        const double limit = known ? std::min(times, NOISIER)*farOff(FEW) : GROSS_PIXELS;
         if (known)
         {
             const double beyond = std::max(0., residual*residual - std::pow(times*farOff(USUAL), 2));

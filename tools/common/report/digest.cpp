@@ -131,8 +131,8 @@ void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a
     if (f.contradictions.empty())       // they make numbers of it wrong
     {
         append(tail, broken("A measured point: +- " + errorAtThreeRanges(c, a)));
-        append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "on a plane square to the camera")
-                            + ", at the worst point of the image)"));
+        append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "plane square to the camera")
+                            + ", worst point of the image)"));
         facts = {metLimits(f), heldOutBoards(c), leftOut(c), tilts(c)};
     }
     append(tail, firstOf(broken("Next: " + nextStep(c, a, f) + "."), 3, DIGEST_COLUMNS));

@@ -80,16 +80,24 @@ void setOnSheet(data& page, const std::string& name, const std::vector<std::stri
 {
     const size_t shown = std::min(room, sentences.size());
     page.set(name, listOf({sentences.begin(), sentences.begin() + shown}));
-    page.set("has_" + name, !sentences.empty());
+    page.set("has_" + name, shown > 0);
     page.set("has_more_" + name, sentences.size() > shown);
     page.set("more_" + name, std::to_string(sentences.size() - shown));
 }
 
+//! For a picture, and for what is no reason of the verdict.
+bool hasRoom(const Findings& f)
+{
+    const size_t FEW = 4;
+    return f.contradictions.size() + f.weak.size() + f.limits.size() <= FEW;
+}
+
 void setSheet(data& page, const RigCalibration& c, const Assessment& a, const Findings& f)
 {
-    const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14;
+    const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14, CANNOT_TELL = 4;
     setOnSheet(page, "sheet_contradictions", f.contradictions, CONTRADICTIONS);
     setOnSheet(page, "sheet_weak", f.weak, WEAK);
+    setOnSheet(page, "sheet_cannot_tell", f.cannotTell, hasRoom(f) ? CANNOT_TELL : 0);
     std::vector<SummaryRow> given = givenRows(c);
     page.set("has_more_given", given.size() > GIVEN);
     given.resize(std::min(GIVEN, given.size()));
@@ -220,15 +228,18 @@ void setTable(data& page, const std::string& name, const std::vector<SummaryRow>
     page.set("has_" + name, !rows.empty());
 }
 
-//! How well it measures: pictures of the expected error, over the range and over the image.
-data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progress)
+data errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
 {
-    data list{data::type::list};
-    const Vec2d scale = commonScale(a.errors);
-    list << figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
-                   "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
-                   "where they meet, only a better image would");
     progress.step();
+    return figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
+                  "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
+                  "where they meet, only a better image would");
+}
+
+//! Over the image, at each range.
+void addErrorMaps(data& list, const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    const Vec2d scale = commonScale(a.errors);
     for (const ErrorMap& map : a.errors)
     {
         if (map.seen())
@@ -240,7 +251,6 @@ data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progre
                                                     "all ranges are those of one scale");
         progress.step();
     }
-    return list;
 }
 
 //! The rig from two sides.
@@ -338,11 +348,8 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     setSheet(page, c, assessment, findings);
     page.set("given", rowsOf(givenRows(c)));
     page.set("contradictions", listOf(findings.contradictions));
-    page.set("has_contradictions", !findings.contradictions.empty());
     page.set("weak", listOf(findings.weak));
-    page.set("has_weak", !findings.weak.empty());
     page.set("cannot_tell", listOf(findings.cannotTell));
-    page.set("has_cannot_tell", !findings.cannotTell.empty());
     page.set("assumed", listOf(findings.assumed));
     page.set("without_target", listOf(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
@@ -373,7 +380,11 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     const std::vector<Photo> photos = photosToShow(c);
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
-    page.set("error_figures", errorFigures(c, assessment, progress));
+    data onSheet{data::type::list}, after{data::type::list};
+    (hasRoom(findings) ? onSheet : after) << errorOverRange(c, assessment, progress);
+    addErrorMaps(after, c, assessment, progress);
+    page.set("sheet_figures", onSheet);
+    page.set("error_figures", after);
     if (isRig)
     {
         page.set("rig_figures", rigFigures(c, progress));
