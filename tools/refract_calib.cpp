@@ -36,8 +36,9 @@ index it took; the wrong value that it tries is what the colours of light and th
 
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
 --max-normal-std, --max-error-at) is not met, which one image through the window never does, or the images contradict a given
-value. A PASS that is not the whole truth says so: "PASS; look at the weak points", "PASS, but not checked". The same input gives the same bytes: outputs
-carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
+value. A PASS that is not the whole truth says so: "PASS; look at the weak points", "PASS, but not checked".
+
+The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "diagnose/diagnosis.hpp"
 #include "calibrate/data_checks.hpp"

@@ -256,7 +256,8 @@ std::string contradictionIn(const std::vector<MeasuredView>& measured, const std
 }
 
 //! Points outside of their images; empty: there are none.
-std::string outsideImages(const Calibration& calibration, const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
+std::string outsideImages(const Calibration& calibration, const std::vector<MeasuredView>& measured,
+                          const std::vector<Measurement>& results)
 {
     for (size_t i = 0; i < results.size(); i++)
     {

@@ -68,17 +68,22 @@ nlohmann::json summaryOf(const TemporaryFolder& f) { return nlohmann::json::pars
 
 TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_lines]")
 {
-    const struct { const char* name; int views; bool stereo; std::string more, says; int code; } cases[] = {
-        {"one camera", 10, false, PANE + std::string(" --lens=opencv4"), "Good\n", 0},
-        {"stereo", 10, true, PANE, "lengths right within", 0},
-        {"limits met", 10, false, PANE + std::string(" --max-rms=0.2 --max-error-at=600:5"), "Met: --max-rms=0.2 (0.1", 0},
+    const struct { const char* name; int views; bool stereo; std::string more, says, next; int code; } cases[] = {
+        {"one camera", 10, false, PANE + std::string(" --lens=opencv4"), "Good\n",
+            "measure (refract_measure); to do so better, take another pair", 0},
+        {"stereo", 10, true, PANE, "lengths right within", "measure", 0},
+        {"limits met", 10, false, PANE + std::string(" --max-rms=0.2 --max-error-at=600:5"), "Met: --max-rms=0.2 (0.1", "measure", 0},
         {"limits not met", 10, false, PANE + std::string(" --max-rms=0.01 --max-normal-std=1e-5 --max-error-at=600:1e-4 "
-            "--max-error-at=700:1e-4 --max-error-at=800:1e-4 --max-error-at=900:1e-4"), "FAIL\n", 2},
-        {"contradicted", 10, false, " --thickness=26 --index=1.5437 --no-robust", "Not usable: the images contradict", 2},
-        {"contradicted, stereo", 10, true, " --thickness=26 --index=1.5437 --no-robust", "- the images contradict --thickness=26", 2},
-        {"weak", 1, false, PANE + std::string(" --free=thickness,index"), "- and ", 0},
+            "--max-error-at=700:1e-4 --max-error-at=800:1e-4 --max-error-at=900:1e-4"), "FAIL\n",
+            "look at the images that fit worst, first 'view", 2},
+        {"limit of the error not met", 10, false, PANE + std::string(" --max-error-at=600:1e-4"), "FAIL\n", "take another pair", 2},
+        {"contradicted", 10, false, " --thickness=26 --index=1.5437 --no-robust", "Not usable: the images contradict",
+            "put right what the images contradict", 2},
+        {"contradicted, stereo", 10, true, " --thickness=26 --index=1.5437 --no-robust", "- the images contradict --thickness=26",
+            "put right what the images contradict", 2},
+        {"weak", 1, false, PANE + std::string(" --free=thickness,index"), "- and ", "take 3 more pairs, first: ", 0},
         {"weak, stereo, limits", 2, true, PANE + std::string(" --max-rms=1 --max-normal-std=3"), "PASS; look at the weak points; "
-            "not checked:", 0}};
+            "not checked:", "take 2 more pairs, first: ", 0}};
     for (const auto& c : cases)
     {
         const TemporaryFolder f;
@@ -94,7 +99,7 @@ TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_line
         checkTenLines(screen);
         CHECK(screen.code == c.code);
         CHECK(mentions(screen.text, c.says));
-        CHECK(mentions(screen.text, "Next: "));
+        CHECK(mentions(screen.text, "\nNext: " + c.next));
         CHECK(mentions(screen.text, "--verbose"));
         CHECK_FALSE(mentions(screen.text, "nan"));
         const bool contradicted = !summaryOf(f)["findings"]["contradictions"].empty();
@@ -235,4 +240,33 @@ TEST_CASE("The first page of the report prints on one sheet of A4", "[calib_tool
         }
         CHECK(mentions(second, "How well it measures"));
     }
+}
+
+TEST_CASE("Given values stand with their deviations, and who said them", "[calib_tool][given]")
+{
+    const TemporaryFolder f;
+    writeScene(f, {}, 136);
+    std::string command = brief(f, lens(f) + " --thickness=20 --thickness-std=0.05 --index=N-BK7 --wedge-std=0 --no-cross-validation "
+                                   "--verbose --summary=" + f / "s.json");
+    const std::string exact = " --exact";
+    command.erase(command.find(exact), exact.size());
+    const ToolResult r = runTool(command);
+    INFO(r.out << r.err);
+    REQUIRE(r.code != 1);
+    const auto of = [&](const std::string& what) {
+        for (const auto& row : summaryOf(f)["given"])
+            if (row["what"] == what)
+                return std::vector<std::string>{row["value"], row["known_to"], row["source"]};
+        return std::vector<std::string>();
+    };
+    using Row = std::vector<std::string>;
+    CHECK(of("square of the board") == Row{"39 mm", "0.019 mm", "default"});
+    CHECK(of("thickness") == Row{"20 mm", "0.05 mm", "given"});
+    CHECK(of("index") == Row{"1.51852", "0.0031", "N-BK7, light of 450 to 650 nm"});
+    CHECK(of("wedge of each layer") == Row{"0'", "exact", ""});
+    CHECK(of("index of the scene's medium") == Row{"1", "exact", ""});
+    CHECK(of("motion of all boards, direct to glass") == Row{"0 mm", "0.02 mm", "default"});
+    CHECK(of("lens") == Row{"its file's", "exact", "--camera"});
+    CHECK(summaryOf(f)["given"].size() == 7);
+    CHECK(mentions(r.out, "Given values, and how well they are known:"));
 }

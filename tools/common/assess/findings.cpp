@@ -366,8 +366,9 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
         f.assumed.push_back("the poses of the target, within their given standard deviations");
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.std.thickness == 0.)
-        f.assumed.push_back("the thickness, " + listOf(window.thickness) + " " + c.unit + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
-                            "the distance, as the media on its two sides differ)"));
+        f.assumed.push_back("the thickness, " + listOf(window.thickness) + " " + c.unit
+                            + (equalMedia(window) ? "" : " (an error in it is largely taken up by the distance, as the media on its "
+                               "two sides differ)"));
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && !c.options.std.ofIndices())
         f.assumed.push_back("the index, " + listOf(window.index));
     std::vector<GivenIndex> indices = c.options.layers;

@@ -39,7 +39,8 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map, Vec2d scale)
     Plot plot(size);
     plot.data("cells", rows);
     plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << scale[0] << ':' << scale[1]
-         << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\n" : "") << "unset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
+         << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\n" : "")
+         << "unset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
     return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, at worst %.3g %s",
                                map.median(), c.unit.c_str(), map.percentile95(), c.unit.c_str(), map.worst(), c.unit.c_str())};

@@ -108,7 +108,8 @@ Figure drawViewRms(const RigCalibration& c, int camera)
     }
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel 'RMS, px'\nset yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
+    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel 'RMS, px'\n"
+         << "set yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
          << "set style fill solid 0.9 noborder\nset boxwidth 0.36\nset key outside top center horizontal maxrows 1 samplen 2\n"
          << "unset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using ($1-0.19):2 with boxes linecolor rgb '" << DIRECT_COLOUR << "' title 'direct', "

@@ -73,8 +73,8 @@ void addLenses(const RigCalibration& c, GivenRows& rows)
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.lensSources[k].kind == LensSource::FROM_FILE)
             rows.add(c.data.cameraCount == 1 ? std::string("lens") : format("lens of camera %d", k + 1), "its file's",
-                     c.options.flags & GLASS_FREE_INTRINSICS ? "refined" : c.options.knownCovariance[k].empty() ? "exact" : "its covariance",
-                     "--camera");
+                     c.options.flags & GLASS_FREE_INTRINSICS ? "refined"
+                     : c.options.knownCovariance[k].empty() ? "exact" : "its covariance", "--camera");
 }
 
 } // namespace
