@@ -22,9 +22,10 @@ what several cameras see is matched by view and x, y, z. If all inputs are such 
 rotation vector, translation, and their standard deviations about and along each axis (none: exact). Lengths in --unit, or in
 that of the name (tx_mm); the rotation may also be rx_rad,... or the matrix r11,r12,...,r33.
 
-Judge the result by the held-out boards (calibrated on the others in turn), not by the residuals of the fit: the table,
---summary (for machines) and --report (to keep) begin with the verdict and say how well points can be measured where, what wrong
-values would do, and what the next images should show.
+It prints ten lines: the verdict and its reasons, the error of a measured point at three ranges, what to do next. The tables of
+--verbose, --summary (for machines) and --report (to keep; its first page prints on one sheet) have the rest: what the +- is made
+of, what wrong values would do, what the next images should show. Judge the result by the held-out boards (calibrated on the
+others in turn), not by the residuals of the fit.
 
 --watch waits while cameras fill the folders of --direct, --glass, --direct2, ... (--watch=FOLDER: only that one), says after each
 image whether the board was found, how sharp and how well exposed it is, which image its name still waits for, and what the next one
@@ -37,8 +38,10 @@ of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=10
 index it took; the wrong value that it tries is what the colours of light and the kinds of the material change it by.
 
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
---max-normal-std, --max-error-at) is not met, or the images contradict a given value. The same input gives the same bytes: outputs
-carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
+--max-normal-std, --max-error-at) is not met, which one image through the window never does, or the images contradict a given
+value. A PASS that is not the whole truth says so: "PASS; look at the weak points", "PASS, but not checked".
+
+The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/live_limits.hpp"
 #include "diagnose/diagnosis.hpp"
@@ -53,9 +56,11 @@ carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
+#include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "report/digest.hpp"
 #include "report/plot.hpp"
 #include "report/report.hpp"
 #include "report/summary.hpp"
@@ -88,6 +93,7 @@ struct Options
     Limits limits;
     Label label;
     std::string unit = "mm";
+    bool verbose = false;
 };
 
 const std::map<std::string, int> FREE = {
@@ -186,6 +192,7 @@ Options parseOptions(Command& command)
         ->capture_default_str();
     app.add_option("--serial", o.label.serial, "serial number of the window, carried into all outputs");
     app.add_option("--note", notes, "repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
+    app.add_flag("--verbose", o.verbose, "print all tables, in place of ten lines")->excludes("--quiet");
     command.parse();
     for (const std::string& text : maxErrors)
         o.limits.errors.push_back(parseErrorLimit(text));
@@ -564,6 +571,7 @@ Calibration withFindings(Calibration file, const Findings& findings)
 {
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
+    file.weakPoints = findings.weak;
     return file;
 }
 
@@ -574,6 +582,16 @@ void writePinhole(const std::string& path, const RigCalibration& calibration, co
     pinhole.command = command;
     pinhole.time = timeOfFiles(calibration.inputs);
     writeCalibration(path, pinhole);
+}
+
+//! Why it ends with exit code 2, a line each.
+void printErrors(const Findings& findings)
+{
+    for (const LimitCheck& limit : findings.limits)
+        if (!limit.met())
+            std::cerr << "refract_calib: limit not met: " << limit.sentence() << ".\n";
+    for (const std::string& sentence : findings.contradictions)
+        std::cerr << "refract_calib: " << sentence << ".\n";
 }
 
 } // namespace
@@ -593,13 +611,12 @@ int main(int argc, char** argv)
         if (!options.report.empty())
             writeText(options.report, makeReport(calibration, assessment, findings, command.line(), command.quiet()));
         writeCalibration(options.out, withFindings(toFile(calibration, command.line()), findings));
-        if (!command.quiet())
+        if (options.verbose)
             printSummary(std::cout, calibration, assessment, findings);
-        for (const LimitCheck& limit : findings.limits)
-            if (!limit.met())
-                std::cerr << "refract_calib: limit not met: " << limit.sentence() << ".\n";
-        for (const std::string& sentence : findings.contradictions)
-            std::cerr << "refract_calib: " << sentence << ".\n";
+        else if (!command.quiet())
+            printDigest(std::cout, calibration, assessment, findings, options.report);
+        if (command.quiet() || !errorsFollowOutput())
+            printErrors(findings);
         return findings.pass() ? DONE : LIMIT_NOT_MET;
     });
 }

@@ -3,6 +3,7 @@
 
 #include "measure/consistency.hpp"
 #include "measure/measurement.hpp"
+#include "measure/outside_image.hpp"
 #include "measure/target_lengths.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
@@ -16,6 +17,7 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -31,7 +33,7 @@ images of different cameras belong together when their file stems are equal; '' 
 without target or without partner are skipped, and named on stderr.
 
 --points: a table with the heading id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a
-camera did not see it. With --plane the u1,v1 will do.
+camera did not see it. With --plane the u1,v1 will do. Each id may stand once.
 
 points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point (rigs of more cameras go on with u3,v3,... after v2);
 image is the file's stem (of camera 1), id counts within the target or is that of --points; s* is one standard deviation, from
@@ -39,12 +41,12 @@ the pixel noise that the calibration found and from the calibration's own covari
 no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 1 also where fewer than two cameras saw the point);
 9 the pixels contradict each other by more than 5 standard deviations of noise and calibration: the
 point has the s* of that misfit, and far beyond it is nan; of a pose that its points contradict, all s* are nan. Look for
-swapped images, images of two moments, a moved camera.
+swapped images, images of two moments, a moved camera. 11: a pixel of the point lies outside of its image, so there is no answer.
 
 The table compares the distances between neighbouring points with --square, which must be in the unit of the calibration.
 
-Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9,
-or the distances between neighbouring points are on average more than 20 % off.)";
+Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9 or
+11, or the distances between neighbouring points are on average more than 20 % off.)";
 
 namespace {
 
@@ -153,9 +155,14 @@ std::vector<MeasuredView> readPoints(const Options& options, const Calibration& 
     if (table.find(format("u%d", cameras + 1)) >= 0)
         throw Failure(format("'%s' has pixels of camera %d, the calibration '%s' has %d camera%s", options.points.c_str(),
                              cameras + 1, options.calibration.c_str(), cameras, cameras == 1 ? "" : "s"));
+    std::map<std::string, int> lineOf;
     for (const CsvTable::Row& row : table.rows())
     {
         view.ids.push_back(table.text(row, "id"));
+        const auto first = lineOf.emplace(view.ids.back(), row.line);
+        if (!first.second)
+            throw Failure(table.where(row) + format(": the id '%s' stands in line %d already: give each point an id of its own, in one "
+                                                    "row with its pixels in all cameras", view.ids.back().c_str(), first.first->second));
         view.objectPoints.emplace_back();
         for (int c = 0; c < cameras; c++)
         {
@@ -179,7 +186,7 @@ double pixelSigma(const Options& options, const Calibration& calibration)
     return options.pixelSigma > 0 ? options.pixelSigma : pixelSigmaOf(calibration);
 }
 
-Measurement measure(const Options& options, const Calibration& calibration, const MeasuredView& view)
+Measurement measureAnyPixels(const Options& options, const Calibration& calibration, const MeasuredView& view)
 {
     const double sigma = pixelSigma(options, calibration);
     if (options.triangulates())
@@ -187,6 +194,13 @@ Measurement measure(const Options& options, const Calibration& calibration, cons
     if (options.plane.empty())
         return measureTarget(calibration, view.objectPoints, view.glass[0], sigma);
     return measureOnPlane(calibration, view.glass[0], parsePlane(options.plane), sigma);
+}
+
+Measurement measure(const Options& options, const Calibration& calibration, const MeasuredView& view)
+{
+    Measurement m = measureAnyPixels(options, calibration, view);
+    forgetOutside(calibration, m);
+    return m;
 }
 
 std::vector<Measurement> measureAll(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
@@ -241,13 +255,26 @@ std::string contradictionIn(const std::vector<MeasuredView>& measured, const std
                  : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
 }
 
+//! Points outside of their images; empty: there are none.
+std::string outsideImages(const Calibration& calibration, const std::vector<MeasuredView>& measured,
+                          const std::vector<Measurement>& results)
+{
+    for (size_t i = 0; i < results.size(); i++)
+    {
+        const std::string text = outsideIn(calibration, results[i], measured[i].ids);
+        if (!text.empty())
+            return (results.size() > 1 ? "'" + measured[i].stem + "': " : "") + text;
+    }
+    return "";
+}
+
 bool mostContradict(const std::vector<Measurement>& results)
 {
     int all = 0, wrong = 0;
     for (const Measurement& m : results)
     {
         all += m.seenPoints();
-        wrong += m.inconsistent();
+        wrong += m.inconsistent() + (int)std::count(m.status.begin(), m.status.end(), OUTSIDE_IMAGE);
     }
     return 2*wrong > all;
 }
@@ -354,11 +381,14 @@ std::vector<std::string> rowOf(const std::string& name, const std::vector<Measur
         answers += m.answers();
         points += (int)m.points.size();
     }
-    std::vector<std::string> row = {name, format("%d of %d", answers, points), format("%.1f ... %.1f", near, far),
-                                    std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma/answers)};
-    if (lengthsMeasured)
+    std::vector<std::string> row = {name, format("%d of %d", answers, points),
+                                    answers ? format("%.1f ... %.1f", near, far) : "-",
+                                    !answers ? "-" : std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma/answers)};
+    if (lengthsMeasured && lengths)
         row.insert(row.end(), {format("%.4f", std::sqrt(squares/lengths)), format("%+.4f", sum/lengths),
                                format("%.4f", largest)});
+    else if (lengthsMeasured)
+        row.insert(row.end(), {"-", "-", "-"});
     return row;
 }
 
@@ -380,9 +410,10 @@ void printTable(const Options& options, const Calibration& calibration, const st
 {
     const bool lengthsMeasured = options.lengthsMeasured()
         && std::any_of(measured.begin(), measured.end(), [](const MeasuredView& s) { return !s.neighbours.empty(); });
-    Table table(lengthsMeasured ? std::vector<std::string>{"", "points", "depth z", "mean sz", "length RMS error",
-                                                           "mean error", "largest"}
-                                : std::vector<std::string>{"", "points", "depth z", "mean sz"});
+    std::vector<std::string> heading = {"", "points", "depth z", "mean sz"};
+    if (lengthsMeasured)
+        heading.insert(heading.end(), {"length RMS error", "mean error", "largest"});
+    Table table(heading, 80);
     if (options.compare)
         table.add(rowOf("glass ignored", measured, measureAll(options, withoutWindows(calibration), measured),
                         lengthsMeasured));
@@ -465,15 +496,16 @@ int main(int argc, char** argv)
         const std::vector<MeasuredView> measured = readMeasuredViews(options, calibration, target.get(), command);
         std::vector<Measurement> results = measureAll(options, calibration, measured);
         checkMeasurements(options, calibration, results);
-        const std::string contradiction = contradictionIn(measured, results);
+        const std::string contradiction = contradictionIn(measured, results), outside = outsideImages(calibration, measured, results);
         int answers = 0;
         for (const Measurement& m : results)
             answers += m.answers();
         if (!answers)
-            throw Failure(contradiction.empty() ? "no point could be measured: are images and calibration of the "
-                                                  "same cameras?" : contradiction);
-        if (!contradiction.empty())
-            command.warn(contradiction);
+            throw Failure(!outside.empty() ? outside : !contradiction.empty() ? contradiction
+                          : "no point could be measured: are images and calibration of the same cameras?");
+        for (const std::string& text : {outside, contradiction})
+            if (!text.empty())
+                command.warn(text);
         const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);

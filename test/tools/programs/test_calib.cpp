@@ -2,119 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // refract_calib as a user runs it: on corners files with known truth, on wrong input, on real images.
-#include "run_tool.hpp"
-#include "scenes.hpp"
+#include "calib_scene.hpp"
 #include "paths.hpp"
 #include <nlohmann/json.hpp>
-#include <opencv2/calib3d.hpp>
-#include <iomanip>
 #include <map>
-#include <sstream>
+#include <set>
 
 using namespace cv;
 using namespace cv::refract;
+using namespace calib_scene;
 
 namespace {
-
-const double SIGMA = 0.1;
-const Size IMAGE(1280, 1024), BOARD(6, 5);
-const double SQUARE = 39.;
-const char* const TARGET = " --pattern=chessboard --size=6x5 --square=39 --image-size=1280x1024";
-
-//! The paper's windows before its left camera, twice almost.
-struct PaperRig
-{
-    Mat K[2] = {Mat(paper::K1),
-                Mat(Matx33d(2437.50, 0, 640.00, 0, 2437.60, 510.00, 0, 0, 1))};
-    Mat dist = Mat(paper::D1, true);
-    Vec3d normal[2] = {normalize(paper::NORMAL1), normalize(paper::NORMAL2)};
-    Vec3d rvec{0.02, 0.35, 0.01}, T{-220, 5, 40};
-
-    GlassWindow window(int camera) const { return paper::pane(50, normal[camera]); }
-};
-
-struct SceneOptions
-{
-    int views = 10;
-    bool direct = true, stereo = false;
-    double missing = 0.;                            // share of corners that are not seen
-    double wrong = 0.;                              // share of corners that are 5 to 20 px off
-    std::function<GlassWindow(int)> window;         // default: the rig's
-};
-
-std::vector<Point3d> boardPoints()
-{
-    std::vector<Point3d> points;
-    for (int row = 0; row < BOARD.height; row++)
-        for (int column = 0; column < BOARD.width; column++)
-            points.emplace_back(SQUARE*column, SQUARE*row, 0);
-    return points;
-}
-
-//! Writes direct1.vnl, glass1.vnl (, direct2.vnl, glass2.vnl) and camera1.yml, camera2.yml into a folder.
-void writeScene(const TemporaryFolder& folder, const SceneOptions& options, unsigned salt)
-{
-    const PaperRig rig;
-    scenes::Random random(salt);
-    const std::vector<Point3d> object = boardPoints();
-    std::ostringstream files[2][2];
-    for (int m = 0; m < options.views; m++)
-    {
-        const Vec3d rvec = random.vector(0.4);
-        Matx33d board, R;
-        Rodrigues(rvec, board);
-        const Vec3d middle(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
-        const Vec3d tvec = middle - board*Vec3d(2.5*SQUARE, 2*SQUARE, 0);
-        for (int c = 0; c < (options.stereo ? 2 : 1); c++)
-        {
-            Vec3d rvecC = rvec, tvecC = tvec;
-            if (c == 1)
-                composeRT(rvec, tvec, rig.rvec, rig.T, rvecC, tvecC);
-            for (int through = 0; through < 2; through++)
-            {
-                if (!through && !options.direct)
-                    continue;
-                const GlassWindow window = !through ? GlassWindow() : options.window ? options.window(c) : rig.window(c);
-                std::vector<Point2d> pixels;
-                refractiveProjectPoints(object, rvecC, tvecC, rig.K[c], rig.dist, window, pixels);
-                std::ostringstream& file = files[c][through];
-                for (const Point2d& p : pixels)
-                {
-                    file << (through ? "glass" : "direct") << c + 1 << "/view" << std::setfill('0') << std::setw(2) << m << ".png ";
-                    Point2d seen(p.x + random.normal(SIGMA), p.y + random.normal(SIGMA));
-                    if (options.wrong > 0 && random.uniform(0, 1) < options.wrong)
-                        seen.x += random.uniform(5, 20);
-                    if (random.uniform(0, 1) < options.missing || !Rect2d(0, 0, IMAGE.width, IMAGE.height).contains(seen))
-                        file << "- - -\n";
-                    else
-                        file << std::setprecision(10) << seen.x << ' ' << seen.y << " 0\n";
-                }
-            }
-        }
-    }
-    for (int c = 0; c < 2; c++)
-    {
-        for (int through = 0; through < 2; through++)
-            std::ofstream(folder/format("%s%d.vnl", through ? "glass" : "direct", c + 1))
-                << "# filename x y level\n" << files[c][through].str();
-        FileStorage out(folder/format("camera%d.yml", c + 1), FileStorage::WRITE);
-        out << "camera_matrix" << rig.K[c] << "distortion_coefficients" << rig.dist
-            << "image_width" << IMAGE.width << "image_height" << IMAGE.height;
-    }
-}
-
-std::string inputs(const TemporaryFolder& f, const std::string& more = "", bool direct = true)
-{
-    return std::string("refract_calib") + TARGET + (direct ? " --direct=" + f / "direct1.vnl" : "") + " --glass="
-        + f / "glass1.vnl" + " --exact --out=" + f / "calib.yml" + ' ' + more;     // the scenes are
-}
-
-std::string stereoInputs(const TemporaryFolder& f, const std::string& more)
-{
-    return inputs(f, " --direct2=" + f / "direct2.vnl" + " --glass2=" + f / "glass2.vnl" + ' ' + more);
-}
-
-std::string lens(const TemporaryFolder& f) { return " --camera=" + f / "camera1.yml"; }
 
 double degreesBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b))*180/CV_PI; }
 
@@ -139,8 +37,6 @@ double rmsThrough(const TemporaryFolder& f, const GlassWindow& window)
     }
     return std::sqrt(squares/views.size());
 }
-
-const char* const PANE = " --thickness=20 --index=1.5437";
 
 } // namespace
 
@@ -673,6 +569,21 @@ TEST_CASE("refract_calib says that direct and glass images are swapped, or no pa
     CHECK(f.count() == 6);
 }
 
+//! What stands beside a picture's scale of colours: the texts right of the image.
+static std::vector<std::string> colourTicks(const std::string& figure)
+{
+    const double RIGHT = 480.;
+    std::vector<std::string> ticks;
+    const std::string place = "translate(", before = "<text>";
+    for (size_t at = figure.find(place); at != std::string::npos; at = figure.find(place, at + 1))
+    {
+        const size_t text = figure.find(before, at) + before.size();
+        if (std::stod(figure.substr(at + place.size())) > RIGHT)
+            ticks.push_back(figure.substr(text, figure.find('<', text) - text));
+    }
+    return ticks;
+}
+
 TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
 {
     const TemporaryFolder f;
@@ -703,6 +614,25 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
         pictures++;
     // 9 of the camera, one of the error over the range and one for each of the six ranges.
     CHECK(pictures == 16);
+    // The first sheet of paper has the verdict, the error of a point, the given values and the next step.
+    const size_t begin = page.find("<section class=\"sheet\">"), end = page.find("<h2>");
+    REQUIRE(begin < end);
+    const std::string sheet = page.substr(begin, end - begin);
+    for (const char* part : {"Good, but not checked", "Expected error of a measured point", "<td>20 mm</td>", "<td>1.5437</td>",
+                             "<td>exact</td>", "What to do next", "Newest of its images and files: 2"})
+        CHECK(mentions(sheet, part));
+    CHECK(mentions(page, "@page { size: A4"));
+    CHECK(mentions(page, ".sheet { break-after: page; }"));
+    CHECK(mentions(page, "The same input gives the same page, so it has no time of its making"));
+    for (const char* axis : {"u, px", "v, px", "z, away from the camera, mm", "x, to the right, mm", "y, downwards, mm", "RMS, px",
+                             "view (name of its images)", "turn of the normal, deg", "share of the residuals per px",
+                             "expected error, mm", "z from camera 1, mm"})
+        CHECK(mentions(page, axis));
+    // One scale of colours: the ticks of all maps of the expected error are the same.
+    std::set<std::vector<std::string>> scales;
+    for (size_t at = page.find("<h3>Expected error at z"); at != std::string::npos; at = page.find("<h3>Expected error at z", at + 1))
+        scales.insert(colourTicks(page.substr(at, page.find("</figure>", at) - at)));
+    CHECK(scales.size() == 1);
     for (const char* outside : {"src=\"http", "href=\"http", "<script", "url(http", "@import", "{{"})
         CHECK_FALSE(mentions(page, outside));
 }
@@ -717,7 +647,7 @@ TEST_CASE("refract_calib's report shows the images with their points", "[calib_t
     const TemporaryFolder f;
     const std::string data = paths::bundled() + "/stereo";
     const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --direct='" + data + "/direct1/*.jpg' --glass='" + data
-        + "/glass1/*.jpg'" + PANE + " --no-cross-validation --out=" + f / "calib.yml" + " --report=" + f / "report.html");
+        + "/glass1/*.jpg'" + PANE + " --no-cross-validation --verbose --out=" + f / "calib.yml" + " --report=" + f / "report.html");
     INFO(r.out << r.err);
     REQUIRE(r.code == 0);
     const std::string page = readFile(f / "report.html");
@@ -752,7 +682,7 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     REQUIRE(r.code == 2);
     CHECK(mentions(r.err, "--max-error-at=600:0.001"));
     CHECK_FALSE(mentions(r.err, "--max-rms"));
-    CHECK(r.out.compare(0, 4, "FAIL") == 0);
+    CHECK(r.out.compare(0, 5, "FAIL\n") == 0);
     CHECK(mentions(r.out, "On boards that took no part"));
     CHECK(mentions(r.out, "What the next images would bring"));
 

@@ -194,7 +194,7 @@ sets:
     REQUIRE(runTool("refract_simulate " + (f / "rig.yml") + " --out-dir=" + (f / "s")).code == 0);
     const std::string calib = "refract_calib --size=5x7 --square=30 --direct='" + (f / "s/direct/*.png") + "' --glass='"
         + (f / "s/glass/*.png") + "' --no-cross-validation --thickness=10 --index=N-BK7 --outer-index=water";
-    const ToolResult green = runTool(calib + " --channel=green --out=" + (f / "green.yml"));
+    const ToolResult green = runTool(calib + " --channel=green --verbose --out=" + (f / "green.yml"));
     INFO(green.out << green.err);
     REQUIRE(green.code == 0);
     CHECK(mentions(green.out, "green channel"));

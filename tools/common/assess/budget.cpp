@@ -138,7 +138,7 @@ std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& c)
         left -= square;
         add(source.name, source.given, square);
     }
-    add("noise of the calibration's images", "", left);
+    add(CALIBRATION_NOISE, "", left);
     add("noise of the point's own pixels", "", pixelNoise);
     add("total", "", total);
     return rows;

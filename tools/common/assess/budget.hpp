@@ -9,6 +9,8 @@
 /* The uncertainty budget of a measured point (GUM, JCGM 100:2008, 5.1): what each source contributes to its +-. */
 namespace tools {
 
+const char* const CALIBRATION_NOISE = "noise of the calibration's images";
+
 struct BudgetRow
 {
     std::string source;             //!< "thickness, camera 1"

@@ -5,9 +5,11 @@
 #include "measure/f_distribution.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 using namespace cv;
@@ -28,7 +30,8 @@ const double OUTLYING_VIEW = 2.5;           // times the median RMS of the views
 const double INFLUENTIAL = 3.;              // standard deviations that one view may turn the normal
 const double LOW_COVERAGE = 0.5;
 const double NARROW_RANGE = 1.2;            // farthest / nearest
-const int FEW_VIEWS = 5;
+const int ENOUGH_WITHOUT_PAIRS = 5;         // images through the window
+const size_t FLAT_IMAGES_TO_JUDGE = 2;      // a pose fits itself to one
 const double HELD_OUT_CHANCE = 1e-3;        // that true +- look so wrong on held-out boards
 
 //! "camera 2: " where there are several.
@@ -39,20 +42,49 @@ std::string of(const RigCalibration& c, int camera)
 
 bool equalMedia(const GlassWindow& window) { return window.innerIndex == window.outerIndex; }
 
+//! What a weak point puts in doubt; the first is told first.
+enum Doubt { THE_STATED_ERROR, THE_FIT, THE_DATA, A_PARAMETER, AN_IMAGE };
+
+//! Findings, and their weak points by what these put in doubt.
+struct Collected : Findings
+{
+    std::multimap<Doubt, std::string> doubts;
+
+    void add(Doubt doubt, const std::string& sentence) { doubts.emplace(doubt, sentence); }
+};
+
+/** Why a limit cannot be judged; empty: it can. The pose of a flat target fits itself to its image: of one image nothing is left that
+could contradict it. A target with depth contradicts itself where the window is wrong.
+@param camera -1: all together */
+std::string whyNotJudged(const RigCalibration& c, int camera)
+{
+    size_t images = 0;
+    bool solid = false;
+    for (int i : c.fit.views)
+    {
+        const View& view = c.data.views[i];
+        images += camera < 0 ? view.hasGlass() : view.hasGlass(camera);
+        solid = solid || isSolid(view.objectPoints);
+    }
+    return solid || images >= FLAT_IMAGES_TO_JUDGE ? "" : "cannot be judged on one image through the window";
+}
+
 void checkLimits(const RigCalibration& c, const Assessment& a, Findings& f)
 {
     const Limits& limits = c.limits;
+    const std::string notJudged = whyNotJudged(c, -1);
     if (limits.rms > 0)
-        f.limits.push_back({format("--max-rms=%g", limits.rms), "RMS over all corners", limits.rms, c.fit.rms, "px"});
+        f.limits.push_back({format("--max-rms=%g", limits.rms), "RMS over all corners", limits.rms, c.fit.rms, "px", notJudged});
     for (int k = 0; k < c.data.cameraCount && limits.normalStdDeg > 0; k++)
         f.limits.push_back({format("--max-normal-std=%g", limits.normalStdDeg), of(c, k) + "standard deviation of the normal",
-                            limits.normalStdDeg, windowStd(c.fit, k).normalDeg[0], "deg"});
+                            limits.normalStdDeg, windowStd(c.fit, k).normalDeg[0], "deg",
+                            c.fit.rig.ownsWindow(k) ? whyNotJudged(c, k) : notJudged});
     for (size_t i = 0; i < limits.errors.size(); i++)
     {
         const ErrorLimit& limit = limits.errors[i];
         f.limits.push_back({format("--max-error-at=%g:%g", limit.range, limit.error),
                             format("expected error of the worst point at z = %g %s", limit.range, c.unit.c_str()), limit.error,
-                            a.limits[i].worst(), c.unit});
+                            a.limits[i].worst(), c.unit, notJudged});
     }
 }
 
@@ -80,13 +112,13 @@ double normalStdOfNoise(const RigCalibration& c, int camera)
     return normalStdDeg(conditional(c.fit, known), c.fit.rig, camera)[0];
 }
 
-void checkTilt(const RigCalibration& c, int camera, Findings& f)
+void checkTilt(const RigCalibration& c, int camera, Collected& f)
 {
     const double std = windowStd(c.fit, camera).normalDeg[0], ofNoise = normalStdOfNoise(c, camera);
     const bool pairs = c.data.countPairs(camera) > 0;
     if (ofNoise > WEAK_NORMAL_DEG)
     {
-        f.weak.push_back(of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std)
+        f.add(A_PARAMETER, of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std)
                          + (pairs ? "take more pairs, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
         if (!pairs)
@@ -101,28 +133,28 @@ void checkTilt(const RigCalibration& c, int camera, Findings& f)
                                ofNoise));
 }
 
-void checkWindow(const RigCalibration& c, int camera, Findings& f)
+void checkWindow(const RigCalibration& c, int camera, Collected& f)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const WindowStd std = windowStd(c.fit, camera);
     checkTilt(c, camera, f);
     if (std.distance > WEAK_RELATIVE*window.distance)
-        f.weak.push_back(of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
+        f.add(A_PARAMETER, of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
                                                 window.distance, std.distance, c.unit.c_str()));
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         if (c.options.flags & GLASS_FREE_THICKNESS && std.thickness[i] > WEAK_RELATIVE*window.thickness[i])
-            f.weak.push_back(of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
+            f.add(A_PARAMETER, of(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
                                                     "a caliper and give it by --thickness", window.thickness[i],
                                                     std.thickness[i], c.unit.c_str()));
         if (c.options.flags & GLASS_FREE_INDEX && std.index[i] > WEAK_INDEX)
-            f.weak.push_back(of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
+            f.add(A_PARAMETER, of(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
                                                     "by --index", window.index[i], std.index[i]));
     }
     const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (other && !other->isExcluded())
-        f.weak.push_back(of(c, camera) + other->sentence());
+        f.add(THE_DATA, of(c, camera) + other->sentence());
     if (equalMedia(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");
@@ -190,39 +222,43 @@ void checkCorrelations(const RigCalibration& c, Findings& f)
         }
 }
 
-void checkFit(const RigCalibration& c, int camera, Findings& f)
+void checkFit(const RigCalibration& c, int camera, Collected& f)
 {
     const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
     // What the direct images reach without the window; in the joint fit a wrong window drags them along.
     const LensSource& lens = c.lensSources[camera];
     const double alone = lens.kind == LensSource::FROM_DIRECT ? std::min(lens.rms, direct.px) : direct.px;
     if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO*alone)
-        f.weak.push_back(of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
+        f.add(THE_FIT, of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
                          "together, direct alone %.3f px): check thickness and index, whether the board moved within a pair, "
                          "and whether the window is flat", direct.px, glass.px, alone));
     const double through = c.baselines.throughGlass[camera];
     if (glass.px > MISFIT_RATIO*through)
-        f.weak.push_back(of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
+        f.add(THE_FIT, of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
                          "(%.3f px) than lens and window together (%.3f px): the lens or the given values may be wrong",
                          through, glass.px));
     else if (glass.px > 0.8*through)
         f.cannotTell.push_back(of(c, camera) + format("from the residuals alone that the window is needed: a pinhole camera "
                                "calibrated on these same images fits them about as well (%.3f px). It does so only near the "
                                "poses it was calibrated on", through));
-    if (glass.views < FEW_VIEWS)
-        f.weak.push_back(of(c, camera) + format("only %d image(s) through the window: take at least %d, better 10", glass.views,
-                                                FEW_VIEWS));
+    const int pairs = c.data.countPairs(camera);
+    if (pairs < ENOUGH_PAIRS && glass.views < ENOUGH_WITHOUT_PAIRS)
+    {
+        const int count = pairs ? pairs : glass.views;
+        f.add(THE_DATA, of(c, camera) + format("only %d %s%s%s: take at least %d pairs", count, pairs ? "pair" : "image",
+                                               count == 1 ? "" : "s", pairs ? "" : " through the window and no pair", ENOUGH_PAIRS));
+    }
     const double covered = coverage(c, camera);
     if (covered < LOW_COVERAGE)
-        f.weak.push_back(of(c, camera) + format("the board covers only %.0f %% of the image through the window: show it in the "
+        f.add(THE_DATA, of(c, camera) + format("the board covers only %.0f %% of the image through the window: show it in the "
                                                 "corners too", 100.*covered));
     const Vec3d depth = workingDepth(c, camera);
     if (depth[2] < NARROW_RANGE*depth[0])
-        f.weak.push_back(of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
+        f.add(THE_DATA, of(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
                                                 depth[2], c.unit.c_str()));
 }
 
-void checkViews(const RigCalibration& c, int camera, Findings& f)
+void checkViews(const RigCalibration& c, int camera, Collected& f)
 {
     for (bool glass : {true, false})
     {
@@ -239,14 +275,14 @@ void checkViews(const RigCalibration& c, int camera, Findings& f)
         const double median = views[views.size()/2].first;
         for (const auto& view : views)
             if (view.first > OUTLYING_VIEW*median)
-                f.weak.push_back(of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the median view has %.3f px; look at "
+                f.add(AN_IMAGE, of(c, camera) + format("view '%s' (%s) fits badly: %.3f px, the median view has %.3f px; look at "
                                  "the image, leave it out if corners are wrong", c.data.views[view.second].stem.c_str(),
                                  glass ? "through the window" : "direct", view.first, median));
     }
     const double sigma = windowStd(c.fit, camera).normalDeg[0];
     for (const Influence& influence : c.influences)
         if (influence.turnDeg[camera] > INFLUENTIAL*sigma)
-            f.weak.push_back(of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
+            f.add(AN_IMAGE, of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
                              c.data.views[influence.view].stem.c_str(), influence.turnDeg[camera],
                              influence.turnDeg[camera]/sigma));
 }
@@ -273,7 +309,7 @@ std::string whyNotChecked(const RigCalibration& c)
 }
 
 //! The errors on held-out boards against the stated ones.
-void checkHeldOut(const RigCalibration& c, Findings& f)
+void checkHeldOut(const RigCalibration& c, Collected& f)
 {
     const HeldOutTest& m = c.heldOut.covarianceTest;
     f.notChecked = whyNotChecked(c);
@@ -286,7 +322,7 @@ void checkHeldOut(const RigCalibration& c, Findings& f)
     // The folds share most of their images: as if there were only one.
     const int pairsOfDirections = std::max(1, m.directions/c.heldOut.folds/2);
     if (upperTailF(pairsOfDirections, c.fit.dof, perDirection) < HELD_OUT_CHANCE)
-        f.weak.push_back(format("the errors on held-out boards are %.1f times as large as the calibration's +- says: the stated "
+        f.add(THE_STATED_ERROR, format("the errors on held-out boards are %.1f times as large as the calibration's +- says: the stated "
                                 "uncertainties are too small. A given value, the lens model or the target may be wrong, or "
                                 "the window not flat", std::sqrt(perDirection)));
 }
@@ -309,6 +345,14 @@ std::string scaleInWords(const RigCalibration& c)
     return text;
 }
 
+std::string listOf(const std::vector<double>& values)
+{
+    std::string text;
+    for (double value : values)
+        text += (text.empty() ? "" : ", ") + format("%.6g", value);
+    return text;
+}
+
 void checkAssumptions(const RigCalibration& c, Findings& f)
 {
     for (int k = 0; k < c.data.cameraCount; k++)
@@ -322,17 +366,18 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
         f.assumed.push_back("the poses of the target, within their given standard deviations");
     const GlassWindow& window = c.options.window;
     if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_THICKNESS) && c.options.std.thickness == 0.)
-        f.assumed.push_back(std::string("the thickness") + (equalMedia(window) ? "" : " (an error in it is largely taken up by "
-                            "the distance, as the media on its two sides differ)"));
+        f.assumed.push_back("the thickness, " + listOf(window.thickness) + " " + c.unit
+                            + (equalMedia(window) ? "" : " (an error in it is largely taken up by the distance, as the media on its "
+                               "two sides differ)"));
     if (!window.index.empty() && !(c.options.flags & GLASS_FREE_INDEX) && !c.options.std.ofIndices())
-        f.assumed.push_back("the index");
+        f.assumed.push_back("the index, " + listOf(window.index));
     std::vector<GivenIndex> indices = c.options.layers;
     indices.insert(indices.end(), {c.options.inner, c.options.outer});
     for (const GivenIndex& index : indices)
         if (index.isNamed() && std::find(f.assumed.begin(), f.assumed.end(), index.sentence()) == f.assumed.end())
             f.assumed.push_back(index.sentence());
     if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.)
-        f.assumed.push_back("the distance");
+        f.assumed.push_back("the distance, " + listOf({window.distance}) + " " + c.unit);
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.data.countPairs(k) && c.options.std.placement == 0.)
             f.assumed.push_back(of(c, k) + "that neither board nor camera moved between the two images of a pair, also not "
@@ -381,6 +426,8 @@ void mergeCameras(const RigCalibration& c, std::vector<std::string>& sentences)
 
 std::string LimitCheck::sentence() const
 {
+    if (!notJudged.empty())
+        return what + " " + notJudged + ", so " + option + " is not met";
     if (std::isnan(value))
         return what + " is not known there (nothing is seen), so " + option + " is not met";
     return what + format(" is %.3g %s, ", value, unit.c_str()) + (met() ? "within " : "above ") + option;
@@ -391,21 +438,28 @@ bool Findings::pass() const
     return contradictions.empty() && std::all_of(limits.begin(), limits.end(), [](const LimitCheck& l) { return l.met(); });
 }
 
+Tone Findings::tone() const
+{
+    return !pass() ? Tone::BAD : weak.empty() && notChecked.empty() ? Tone::GOOD : Tone::DOUBTFUL;
+}
+
 std::string Findings::verdict() const
 {
-    if (!limits.empty())
-        return pass() ? "PASS" : "FAIL";
-    if (!contradictions.empty())
-        return "Not usable: the images contradict what was given";
+    if (!pass())
+        return limits.empty() ? "Not usable: the images contradict what was given" : "FAIL";
+    std::string text = limits.empty() ? weak.empty() ? "Good" : "" : "PASS";
     if (!weak.empty())
-        return "Look at the weak points";
-    return notChecked.empty() ? "Good" : "Good, but not checked: " + notChecked;
+        text += text.empty() ? "Look at the weak points" : "; look at the weak points";
+    if (!notChecked.empty())
+        text += (weak.empty() ? ", but not checked: " : "; not checked: ") + notChecked;
+    return text;
 }
 
 Findings findingsOf(const RigCalibration& calibration, const Assessment& assessment)
 {
-    Findings findings;
-    findings.weak = calibration.notices;
+    Collected findings;
+    for (const std::string& notice : calibration.notices)
+        findings.add(THE_FIT, notice);
     checkLimits(calibration, assessment, findings);
     for (int c = 0; c < calibration.data.cameraCount; c++)
     {
@@ -417,8 +471,13 @@ Findings findingsOf(const RigCalibration& calibration, const Assessment& assessm
     checkCorrelations(calibration, findings);
     checkHeldOut(calibration, findings);
     for (const Contradiction& contradiction : assessment.contradictions)
-        (contradiction.isSure ? findings.contradictions : findings.weak).push_back(contradiction.sentence);
+        if (contradiction.isSure)
+            findings.contradictions.push_back(contradiction.sentence);
+        else
+            findings.add(THE_STATED_ERROR, contradiction.sentence);
     checkAssumptions(calibration, findings);
+    for (const auto& doubt : findings.doubts)
+        findings.weak.push_back(doubt.second);
     for (std::vector<std::string>* list : {&findings.weak, &findings.cannotTell, &findings.assumed})
         mergeCameras(calibration, *list);
     return findings;

@@ -5,8 +5,13 @@
 #define REFRACT_TOOLS_FINDINGS_HPP
 
 #include "assess/assessment.hpp"
+#include "console/colour.hpp"
 
 namespace tools {
+
+/** Pairs that a calibration needs: of the bundled rig four state the normal within 10 % and the worst point within 0.2 % of what five
+do, and leave two for each half of the range, which tests the other. README.md, --help and doc/ ask for as many (a test reads them). */
+const int ENOUGH_PAIRS = 4;
 
 //! A limit that the caller set, and the value to compare with it.
 struct LimitCheck
@@ -14,8 +19,9 @@ struct LimitCheck
     std::string option, what;       //!< "--max-rms=0.3", "RMS over all corners"
     double limit, value;            //!< value NaN: unknown, which does not meet the limit
     std::string unit;
+    std::string notJudged = "";     //!< why no value could meet it; empty: values do
 
-    bool met() const { return value <= limit; }
+    bool met() const { return notJudged.empty() && value <= limit; }
     std::string sentence() const;
 };
 
@@ -24,13 +30,15 @@ struct Findings
 {
     std::vector<LimitCheck> limits;
     std::vector<std::string> contradictions;    //!< between the images and given values
-    std::vector<std::string> weak;          //!< weak points, and how to improve them
+    std::vector<std::string> weak;          //!< weak points, and how to improve them; what puts more in doubt first
     std::vector<std::string> cannotTell;    //!< what these data do not determine
     std::vector<std::string> assumed;       //!< taken as exact
     std::string notChecked;                 //!< why held-out boards do not test the +-; empty: they do
 
-    bool pass() const;              //!< all limits are met
-    std::string verdict() const;    //!< PASS or FAIL if there are limits, otherwise in words
+    bool pass() const;              //!< all limits are met, and nothing is contradicted
+    Tone tone() const;              //!< DOUBTFUL: there are weak points, or the +- is not checked
+    //! PASS or FAIL if there are limits, otherwise in words; beside PASS what it does not say.
+    std::string verdict() const;
 };
 
 Findings findingsOf(const RigCalibration& calibration, const Assessment& assessment);

@@ -259,6 +259,8 @@ Calibration readCalibration(const std::string& filename)
         fs["verdict"] >> calibration.verdict;
     if (fs["contradictions"].isSeq())
         fs["contradictions"] >> calibration.contradictions;
+    if (fs["weak_points"].isSeq())
+        fs["weak_points"] >> calibration.weakPoints;
     if (fs["calibration_time"].isString())
         fs["calibration_time"] >> calibration.time;
     if (fs["command"].isString())
@@ -321,6 +323,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
             fs << "verdict" << calibration.verdict;
         if (!calibration.contradictions.empty())
             fs << "contradictions" << calibration.contradictions;
+        if (!calibration.weakPoints.empty())
+            fs << "weak_points" << calibration.weakPoints;
         writeLabel(fs, calibration.label);
         if (!calibration.unit.empty())
             fs << "unit" << calibration.unit;

@@ -14,11 +14,11 @@
 /* calib.yml: one camera at top level; two under `camera1`, `camera2` with `R`, `T` beside them; more: `camera3` with `R3`, `T3`
 and so on; window_of_camera where some share a window: equal numbers look through the same one.
 
-Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance,
-thickness, index, inner_index, outer_index, wedge, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index,
-outer_index, wedge}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and
-target_square (of the board), channel (of colour images, that it is for), verdict, contradictions (what the data say against
-what was given, a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance, thickness,
+index, inner_index, outer_index, wedge, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index, outer_index,
+wedge}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
+board), channel (of colour images, that it is for), verdict, contradictions (what the data say against what was given, a sentence each),
+weak_points (a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 class Command;
@@ -64,6 +64,7 @@ struct Calibration
     std::string verdict;    //!< of refract_calib; empty where unknown
     /** Between the images and given values, a sentence each: errors of points may be larger than their +-. */
     std::vector<std::string> contradictions;
+    std::vector<std::string> weakPoints;    //!< which the verdict counts on the reader to look at
     Label label;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()

@@ -11,18 +11,20 @@
 
 namespace tools {
 
-/** A plain text table: the first column flush left, the others flush right. Fits a terminal of 100 columns: where it is wider,
-the cells of the widest columns are broken between words. */
+/** A plain text table: the first column flush left, the others flush right. Fits a terminal: where it is wider, the cells of the
+widest columns are broken between words. */
 class Table
 {
 public:
-    explicit Table(const std::vector<std::string>& heading);
+    //! @param screen columns of the terminal
+    explicit Table(const std::vector<std::string>& heading, size_t screen = 100);
     void add(const std::vector<std::string>& row);      //!< missing cells are empty
     void print(std::ostream& out) const;
 private:
     std::vector<size_t> columnWidths() const;
 
     std::vector<std::vector<std::string>> rows_;
+    size_t screen_;
 };
 
 using cv::format;   //!< printf for a cell

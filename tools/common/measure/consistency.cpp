@@ -26,6 +26,7 @@ const double USUAL = 3., FEW = 5., GROSS = 20.;
 const double MEDIAN = 0.6745;           // of |N(0, 1)|
 const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
 const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
+const size_t TELLING = 8;               // points, fewer of which do not tell noise from a wrong match
 
 /* Of the root mean square of `freedom` numbers with deviation 1: where it lies with the probability of a normal number's
 `deviations` (Wilson and Hilferty's cube root; of a single number exactly). */
@@ -166,7 +167,7 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
     std::vector<ConsistencyResidual> residuals;
     for (size_t i = 0; i < m.points.size(); i++)
         residuals.push_back(residualOf(i));
-    const double times = known ? timesNoisier(residuals, pixelSigma) : 1.;
+    const double times = known && m.points.size() >= TELLING ? timesNoisier(residuals, pixelSigma) : 1.;
     if (times > 1)
         m.noise = times*pixelSigma;
     for (size_t i = 0; i < m.points.size(); i++)

@@ -13,6 +13,9 @@ namespace tools {
 explain. */
 const uchar INCONSISTENT = 9;
 
+//! Another one: a pixel of the point lies outside of its image. (10 is the library's REFRACT_TOO_FEW_VIEWS.)
+const uchar OUTSIDE_IMAGE = 11;
+
 //! A pixel of each point in each camera, NaN where it was not seen.
 using RigPixels = std::vector<std::vector<cv::Point2d>>;
 
@@ -22,7 +25,7 @@ struct Measurement
     RigPixels pixels;                               //!< as seen
     std::vector<cv::Point3d> points;
     std::vector<cv::Vec3d> sigma;                   //!< one standard deviation of x, y, z
-    std::vector<uchar> status;                      //!< cv::refract::RefractiveStatus, or INCONSISTENT
+    std::vector<uchar> status;                      //!< cv::refract::RefractiveStatus, or INCONSISTENT, or OUTSIDE_IMAGE
     double noise = 0.;          //!< of a pixel coordinate, as this view shows it; 0: no more than stated, or nothing tells
     double worstResidual = 0.;  //!< px, of the inconsistent points
 

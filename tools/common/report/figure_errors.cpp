@@ -4,6 +4,7 @@
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/plot.hpp"
+#include <cmath>
 
 /* How well points can be measured: over the image at one range, and over the range. */
 
@@ -11,7 +12,22 @@ using namespace cv;
 
 namespace tools {
 
-Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
+namespace {
+
+const double DECADE = 10.;      // errors that differ by more are told apart only by their logarithms
+
+}
+
+Vec2d commonScale(const std::vector<ErrorMap>& maps)
+{
+    Vec2d scale(NONE, NONE);
+    for (const ErrorMap& map : maps)
+        if (map.seen())
+            scale = Vec2d(std::fmin(scale[0], map.best()), std::fmax(scale[1], map.percentile95()));
+    return scale;
+}
+
+Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map, Vec2d scale)
 {
     const Size size = c.data.imageSize[0];
     const double halfWidth = 0.5*(size.width - 1.)/(map.grid.width - 1);
@@ -22,10 +38,11 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map)
             rows.push_back({map.pixels[i].x, map.pixels[i].y, halfWidth, halfHeight, map.total[i]});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << map.best() << ':' << map.percentile95()
-         << "]\nunset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
+    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << scale[0] << ':' << scale[1]
+         << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\n" : "")
+         << "unset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
-    return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, where the colours end; at worst %.3g %s",
+    return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, at worst %.3g %s",
                                map.median(), c.unit.c_str(), map.percentile95(), c.unit.c_str(), map.worst(), c.unit.c_str())};
 }
 

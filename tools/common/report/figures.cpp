@@ -108,7 +108,8 @@ Figure drawViewRms(const RigCalibration& c, int camera)
     }
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, views) << "set ylabel 'RMS, px'\nset yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
+    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel 'RMS, px'\n"
+         << "set yrange [0:*]\nset xrange [-0.7:" << rows.size() - 0.3 << "]\n"
          << "set style fill solid 0.9 noborder\nset boxwidth 0.36\nset key outside top center horizontal maxrows 1 samplen 2\n"
          << "unset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using ($1-0.19):2 with boxes linecolor rgb '" << DIRECT_COLOUR << "' title 'direct', "
@@ -185,7 +186,7 @@ Figure drawResidualHistogram(const RigCalibration& c, int camera)
         rows.push_back({(i + 0.5)*width - 5.*sigma, density[i]});
     Plot plot(560, 320);
     plot.data("bins", rows);
-    plot << "set xlabel 'residual in u and v, px'\nset ylabel 'density'\nset yrange [0:*]\nset samples 300\n"
+    plot << "set xlabel 'residual in u and v, px'\nset ylabel 'share of the residuals per px'\nset yrange [0:*]\nset samples 300\n"
          << "set style fill solid 0.6 noborder\nset boxwidth " << 0.9*width << "\nset key top right\n"
          << "set xrange [" << -5.*sigma << ':' << 5.*sigma << "]\n"
          << "plot $bins using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'corners', "
@@ -227,7 +228,7 @@ Figure drawInfluence(const RigCalibration& c, int camera)
     const double sigma = windowStd(c.fit, camera).normalDeg[0];
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, views) << "set ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
+    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
          << "set xrange [-0.7:" << rows.size() - 0.3 << "]\nset style fill solid 0.9 noborder\nset boxwidth 0.6\n"
          << "set key outside top center horizontal maxrows 1 samplen 2\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'without this view', "

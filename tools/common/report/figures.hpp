@@ -42,8 +42,11 @@ Figure drawCoverage(const RigCalibration& calibration, int camera);
 //! How far the normal turns without each view.
 Figure drawInfluence(const RigCalibration& calibration, int camera);
 
-//! Expected error of a measured point over the image of camera 1.
-Figure drawErrorMap(const RigCalibration& calibration, const ErrorMap& map);
+//! Expected error of a measured point over the image of camera 1. @param scale of the colours, that all maps of a report share
+Figure drawErrorMap(const RigCalibration& calibration, const ErrorMap& map, cv::Vec2d scale);
+
+//! From the best point of all maps to what 95 % of the worst map's points are within; NaN where nothing is seen.
+cv::Vec2d commonScale(const std::vector<ErrorMap>& maps);
 
 //! The same over the range: worst, typical, of pixel noise alone, and the limits.
 Figure drawErrorOverRange(const RigCalibration& calibration, const Assessment& assessment);

@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/report.hpp"
+#include "assess/next_step.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
+#include "report/given_values.hpp"
 #include "report/report_template.hpp"
 #include "report/summary.hpp"
 #include "report/thumbnails.hpp"
 #include <kainjow/mustache.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 using namespace cv;
 using namespace kainjow::mustache;
@@ -62,12 +65,51 @@ std::string headline(const RigCalibration& c)
     return text + ".";
 }
 
+//! Which time it is: pages of the same input are the same, so it is none of their making.
+std::string timeText(const RigCalibration& c)
+{
+    const char* const epoch = std::getenv("SOURCE_DATE_EPOCH");
+    const std::string time = timeOfFiles(c.inputs);             // 2026-11-26T04:31:57Z
+    return (epoch && *epoch ? "Time as set by SOURCE_DATE_EPOCH: " : "Newest of its images and files: ") + time.substr(0, 10) + " "
+        + time.substr(11, 8) + " UTC";
+}
+
+/** The first sheet of paper has room for so many sentences and rows; the pages after it have all.
+@param name of the list in the template; it also gets has_NAME and more_NAME */
+void setOnSheet(data& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
+{
+    const size_t shown = std::min(room, sentences.size());
+    page.set(name, listOf({sentences.begin(), sentences.begin() + shown}));
+    page.set("has_" + name, shown > 0);
+    page.set("has_more_" + name, sentences.size() > shown);
+    page.set("more_" + name, std::to_string(sentences.size() - shown));
+}
+
+//! For a picture, and for what is no reason of the verdict.
+bool hasRoom(const Findings& f)
+{
+    const size_t FEW = 4;
+    return f.contradictions.size() + f.weak.size() + f.limits.size() <= FEW;
+}
+
+void setSheet(data& page, const RigCalibration& c, const Assessment& a, const Findings& f)
+{
+    const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14, CANNOT_TELL = 4;
+    setOnSheet(page, "sheet_contradictions", f.contradictions, CONTRADICTIONS);
+    setOnSheet(page, "sheet_weak", f.weak, WEAK);
+    setOnSheet(page, "sheet_cannot_tell", f.cannotTell, hasRoom(f) ? CANNOT_TELL : 0);
+    std::vector<SummaryRow> given = givenRows(c);
+    page.set("has_more_given", given.size() > GIVEN);
+    given.resize(std::min(GIVEN, given.size()));
+    page.set("sheet_given", rowsOf(given));
+    page.set("next_step", nextStep(c, a, f));
+}
+
 //! Verdict in plain words: the class colours the card.
 void setVerdict(data& page, const RigCalibration& c, const Findings& f)
 {
     page.set("verdict", f.verdict());
-    page.set("verdict_class", !f.pass() ? "bad" : !f.limits.empty() || (f.weak.empty() && f.notChecked.empty()) ? "good"
-                              : "weak");
+    page.set("verdict_class", f.tone() == Tone::BAD ? "bad" : f.tone() == Tone::GOOD ? "good" : "weak");
     const int FEW = 2;                  // of more cameras a window is told once
     std::string windows;
     for (int k = 0; k < c.data.cameraCount; k++)
@@ -90,6 +132,7 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
         limits << entry;
     }
     page.set("limits", limits);
+    page.set("time", timeText(c));
     page.set("serial", c.label.serial);
     page.set("has_serial", !c.label.serial.empty());
     data notes{data::type::list};
@@ -185,26 +228,29 @@ void setTable(data& page, const std::string& name, const std::vector<SummaryRow>
     page.set("has_" + name, !rows.empty());
 }
 
-//! How well it measures: pictures of the expected error, over the range and over the image.
-data errorFigures(const RigCalibration& c, const Assessment& a, Progress& progress)
+data errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
 {
-    data list{data::type::list};
-    list << figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
-                   "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
-                   "where they meet, only a better image would");
     progress.step();
+    return figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
+                  "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
+                  "where they meet, only a better image would");
+}
+
+//! Over the image, at each range.
+void addErrorMaps(data& list, const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    const Vec2d scale = commonScale(a.errors);
     for (const ErrorMap& map : a.errors)
     {
         if (map.seen())
-            list << figure(drawErrorMap(c, map), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
+            list << figure(drawErrorMap(c, map, scale), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
                            c.data.cameraCount > 1 ? std::string("Over the image of camera 1; white parts are not seen by ")
                                                     + (c.data.cameraCount == 2 ? "both cameras" : "any other camera")
-                                                    + ", each picture has its own colour scale"
-                                                  : "Over the image, for points on a plane square to the camera; each picture "
-                                                     "has its own colour scale");
+                                                    + ". The colours of all ranges are those of one scale"
+                                                  : "Over the image, for points on a plane square to the camera. The colours of "
+                                                    "all ranges are those of one scale");
         progress.step();
     }
-    return list;
 }
 
 //! The rig from two sides.
@@ -299,12 +345,11 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
 {
     data page;
     setVerdict(page, c, findings);
+    setSheet(page, c, assessment, findings);
+    page.set("given", rowsOf(givenRows(c)));
     page.set("contradictions", listOf(findings.contradictions));
-    page.set("has_contradictions", !findings.contradictions.empty());
     page.set("weak", listOf(findings.weak));
-    page.set("has_weak", !findings.weak.empty());
     page.set("cannot_tell", listOf(findings.cannotTell));
-    page.set("has_cannot_tell", !findings.cannotTell.empty());
     page.set("assumed", listOf(findings.assumed));
     page.set("without_target", listOf(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
@@ -335,7 +380,11 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     const std::vector<Photo> photos = photosToShow(c);
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
-    page.set("error_figures", errorFigures(c, assessment, progress));
+    data onSheet{data::type::list}, after{data::type::list};
+    (hasRoom(findings) ? onSheet : after) << errorOverRange(c, assessment, progress);
+    addErrorMaps(after, c, assessment, progress);
+    page.set("sheet_figures", onSheet);
+    page.set("error_figures", after);
     if (isRig)
     {
         page.set("rig_figures", rigFigures(c, progress));
@@ -358,7 +407,6 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("command", commandLine);
     page.set("version", REFRACT_VERSION);
     page.set("opencv_version", CV_VERSION);
-    page.set("time", timeOfFiles(c.inputs));
 
     mustache page_template(REPORT_TEMPLATE);
     const std::string html = page_template.render(page);

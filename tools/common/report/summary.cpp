@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/summary.hpp"
+#include "report/given_values.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/units.hpp"
 #include "console/colour.hpp"
@@ -297,19 +298,12 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     return rows;
 }
 
-static Tone toneOf(const Findings& findings)
-{
-    if (!findings.pass() || !findings.contradictions.empty())
-        return Tone::BAD;
-    return findings.weak.empty() && findings.notChecked.empty() ? Tone::GOOD : Tone::DOUBTFUL;
-}
-
 void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& assessment, const Findings& findings)
 {
     std::vector<std::string> limits;
     for (const LimitCheck& limit : findings.limits)
         limits.push_back(limit.sentence());
-    out << toned(out, findings.verdict(), toneOf(findings)) << '\n';
+    out << toned(out, findings.verdict(), findings.tone()) << '\n';
     printSentences(out, "Limits:", limits);
     out << '\n';
     std::vector<SummaryRow> rows = windowRows(c);
@@ -344,6 +338,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     printSentences(out, "Contradictions:", findings.contradictions);
     printSentences(out, "Weak:", findings.weak);
     printSentences(out, "The data cannot tell:", findings.cannotTell);
+    printRows(out, "Given values, and how well they are known:", {"", "value", "one std", "source"}, givenRows(c));
     printSentences(out, "Taken as given:", findings.assumed);
 }
 

@@ -3,7 +3,9 @@
 
 #include "report/summary_json.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "assess/next_step.hpp"
 #include "console/table.hpp"
+#include "report/given_values.hpp"
 #include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
@@ -161,7 +163,7 @@ Json limitsJson(const Findings& findings)
     Json list = Json::array();
     for (const LimitCheck& limit : findings.limits)
         list.push_back({{"option", limit.option}, {"what", limit.what}, {"limit", limit.limit}, {"value", limit.value},
-                        {"unit", limit.unit}, {"met", limit.met()}});
+                        {"unit", limit.unit}, {"met", limit.met()}, {"not_judged", limit.notJudged}});
     return list;
 }
 
@@ -176,6 +178,14 @@ Json shotsJson(const std::vector<PlannedImage>& shots)
     Json list = Json::array();
     for (const PlannedImage& image : shots)
         list.push_back({{"image", image.placement}, {"predicted", qualityJson(image.quality)}});
+    return list;
+}
+
+Json givenJson(const RigCalibration& c)
+{
+    Json list = Json::array();
+    for (const SummaryRow& row : givenRows(c))
+        list.push_back({{"what", row.name}, {"value", row.cells[0]}, {"known_to", row.cells[1]}, {"source", row.cells[2]}});
     return list;
 }
 
@@ -207,6 +217,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         notes[note.first] = note.second;
     Json json = {
         {"verdict", findings.verdict()},
+        {"next_step", nextStep(c, assessment, findings)},
         {"limits", limitsJson(findings)},
         {"window_serial", c.label.serial},
         {"notes", notes},
@@ -222,6 +233,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         cameras.push_back(cameraJson(c, k));
     json["cameras"] = cameras;
     json["rig"] = parameters(estimatedRigParameters(c.fit));
+    json["given"] = givenJson(c);
     addAssessment(json, assessment);
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;

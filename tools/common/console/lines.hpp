@@ -1,0 +1,29 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_LINES_HPP
+#define REFRACT_TOOLS_LINES_HPP
+
+#include <string>
+#include <vector>
+
+namespace tools {
+
+//! Characters on the screen: UTF-8 continuation bytes take no place.
+size_t columnsOf(const std::string& text);
+
+enum class LongWords { WHOLE, BROKEN };
+
+/** Lines of so many columns at most, broken between words; `indent` begins the second and on. A word that is longer than a line stays
+whole, and the line is longer, or is broken. */
+std::vector<std::string> brokenInto(const std::string& text, size_t columns, const std::string& indent, LongWords longWords);
+
+//! The first of these lines; where some are missing the last ends with "...".
+std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t count, size_t columns);
+
+//! What goes to stderr comes out where stdout does: on one terminal, in one file, into one pipe.
+bool errorsFollowOutput();
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_LINES_HPP

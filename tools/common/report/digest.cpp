@@ -1,0 +1,161 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "report/digest.hpp"
+#include "assess/next_step.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "console/lines.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+using Lines = std::vector<std::string>;
+
+namespace tools {
+
+namespace {
+
+const size_t LEAST_OF_REASON = 2;       // lines, where there are many reasons
+
+Lines broken(const std::string& text, const std::string& indent = "  ")
+{
+    return brokenInto(text, DIGEST_COLUMNS, indent, LongWords::BROKEN);
+}
+
+void append(Lines& lines, const Lines& more) { lines.insert(lines.end(), more.begin(), more.end()); }
+
+//! As many reasons as there is room for, and how many more there are.
+Lines reasonsWithin(const Lines& reasons, size_t room)
+{
+    Lines lines;
+    const size_t each = std::max(LEAST_OF_REASON, room/std::max<size_t>(1, reasons.size()));
+    for (size_t i = 0; i < reasons.size(); i++)
+    {
+        const Lines all = broken("- " + reasons[i] + "."), next = firstOf(all, each, DIGEST_COLUMNS);
+        const size_t kept = i + 1 < reasons.size() ? 1 : 0;     // for what may not fit after it
+        if (lines.size() + next.size() + kept <= room)
+        {
+            append(lines, next);
+            continue;
+        }
+        if (i == 0 && room > 1)
+            append(lines, firstOf(all, room - kept, DIGEST_COLUMNS));
+        const size_t more = reasons.size() - std::max<size_t>(i, room > 1 && i == 0);
+        if (more > 0)
+            lines.push_back(format("- and %zu more: --verbose", more));
+        break;
+    }
+    return lines;
+}
+
+//! What stands against the result.
+Lines reasonsOf(const Findings& f)
+{
+    Lines reasons = f.contradictions;
+    for (const LimitCheck& limit : f.limits)
+        if (!limit.met())
+            reasons.push_back(limit.sentence());
+    append(reasons, f.weak);
+    return reasons;
+}
+
+std::string metLimits(const Findings& f)
+{
+    std::string text;
+    for (const LimitCheck& limit : f.limits)
+        if (limit.met())
+            text += (text.empty() ? "Met: " : ", ") + limit.option + format(" (%.3g %s)", limit.value, limit.unit.c_str());
+    return text;
+}
+
+std::string heldOutBoards(const RigCalibration& c)
+{
+    const HeldOut& h = c.heldOut;
+    if (!h.folds || std::isnan(h.px))
+        return "";
+    return format("Held-out boards: seen within %.3f px RMS", h.px)
+        + (std::isnan(h.lengthRms) ? "" : format(", lengths right within %.2g %s", h.lengthRms, c.unit.c_str()));
+}
+
+std::string tilts(const RigCalibration& c)
+{
+    const size_t FEW = 4;
+    Lines windows;
+    for (int k = 0; k < c.data.cameraCount; k++)
+        if (c.fit.rig.ownsWindow(k))
+        {
+            const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2]))*180./CV_PI;
+            windows.push_back(plusMinus(tilt, windowStd(c.fit, k).normalDeg[0]));
+        }
+    std::string text = windows.size() == 1 ? "The window is tilted by " : "The windows are tilted by ";
+    for (size_t i = 0; i < std::min(FEW, windows.size()); i++)
+        text += (i ? ", " : "") + windows[i];
+    return text + (windows.size() > FEW ? ", ..." : "") + " degrees";
+}
+
+std::string leftOut(const RigCalibration& c)
+{
+    int points = 0;
+    const std::vector<Rejected> all = rejectedOf(c);
+    for (const Rejected& rejected : all)
+        points += rejected.points;
+    std::string text;
+    if (points)
+        text = format("Left out: %d point%s of %zu image%s", points, points == 1 ? "" : "s", all.size(), all.size() == 1 ? "" : "s");
+    const size_t without = c.withoutTarget.size();
+    if (without)
+        text += (text.empty() ? "No target in " : "; no target in ") + format("%zu image%s", without, without == 1 ? "" : "s");
+    return text;
+}
+
+} // namespace
+
+std::string errorAtThreeRanges(const RigCalibration& c, const Assessment& a)
+{
+    std::string text;
+    for (size_t i = 1; i <= 3 && i < a.errors.size(); i++)
+    {
+        const ErrorMap& map = a.errors[i];
+        const std::string unit = text.empty() ? " " + c.unit : "";
+        text += (text.empty() ? "" : ", ") + (map.seen() ? format("%.2g", map.worst()) + unit : "nothing seen")
+            + (text.empty() ? " at z = " : " at ") + format("%.4g", map.range) + unit;
+    }
+    return text;
+}
+
+void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a, const Findings& f, const std::string& report)
+{
+    const Lines head = broken(f.verdict());
+    Lines tail, facts;
+    if (f.contradictions.empty())       // they make numbers of it wrong
+    {
+        append(tail, broken("A measured point: +- " + errorAtThreeRanges(c, a)));
+        append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "plane square to the camera")
+                            + ", worst point of the image)"));
+        facts = {metLimits(f), heldOutBoards(c), leftOut(c), tilts(c)};
+    }
+    append(tail, firstOf(broken("Next: " + nextStep(c, a, f) + "."), 3, DIGEST_COLUMNS));
+    append(tail, firstOf(broken("More: --verbose, " + (report.empty() ? "--report=report.html" : report)), 1, DIGEST_COLUMNS));
+
+    size_t room = DIGEST_LINES - std::min(DIGEST_LINES, head.size() + tail.size());
+    const Lines reasons = reasonsWithin(reasonsOf(f), room);
+    room -= reasons.size();
+    for (const std::string& line : head)
+        out << toned(out, line, f.tone()) << '\n';
+    for (const std::string& line : reasons)
+        out << line << '\n';
+    for (const std::string& fact : facts)
+    {
+        const Lines lines = broken(fact);
+        if (fact.empty() || lines.size() > room)
+            continue;
+        room -= lines.size();
+        for (const std::string& line : lines)
+            out << line << '\n';
+    }
+    for (const std::string& line : tail)
+        out << line << '\n';
+}
+
+} // namespace tools
