@@ -43,8 +43,8 @@ value. A PASS that is not the whole truth says so: "PASS; look at the weak point
 
 The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
+#include "assess/calibrate_images.hpp"
 #include "assess/live_limits.hpp"
-#include "diagnose/diagnosis.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
 #include "calibrate/image_fit.hpp"
@@ -424,32 +424,6 @@ void takeImages(const Options& o, const Target* target, RigImages sets, RigCalib
         c.options.window.distance = startDistance(c.data, c.square);
 }
 
-//! Lens and start, wrong points, the fit; then what a user would do instead.
-void fit(const Options& o, RigCalibration& c, Progress& progress)
-{
-    if (o.robust)
-        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources);
-    else
-        c.start = startModel(c.data, c.options, c.lensSources);
-    progress.step();
-    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags);
-    c.residuals = residualsOf(c.data, c.fit);
-    progress.step();
-    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
-    progress.step();
-}
-
-//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
-bool isSlowToStart(const CalibrationInput& input)
-{
-    bool solid = false, known = true;
-    for (const View& view : input.data.views)
-        solid = solid || isSolid(view.objectPoints);
-    for (int k = 0; k < input.data.cameraCount; k++)
-        known = known && input.options.known[k];
-    return solid && !known;
-}
-
 //! All that is known before the images.
 RigCalibration prepare(const Options& o, const Target* target)
 {
@@ -522,27 +496,8 @@ RigCalibration calibrate(const Options& o, bool quiet)
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())
         setLens(c.lens.lens(), c.options);
-    const CalibrationInput input{c.data, c.options, c.square, c.notices};
     Progress progress("calibrating", 5, quiet);
-    try
-    {
-        fit(o, c, progress);
-    }
-    catch (const CalibrationError& e)
-    {
-        throw Failure(explainError(e, input));
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure(explainError(e.err, input));
-    }
-    catch (const Failure& e)
-    {
-        if (isSlowToStart(input))
-            throw;
-        throw Failure(explainError(e.what(), input));
-    }
-    requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
+    calibrateImages(c, o.robust, [&progress] { progress.step(); });
     if (!o.crossValidation)
         return c;
     c.heldOut = holdOut(c.data, c.fit, c.options.flags);

@@ -157,15 +157,16 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     return fit;
 }
 
-Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags)
+Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
+                 int maxIterations)
 {
-    const Fit held = fitImages(data, start, usefulViews(data, flags), flags);
+    const Fit held = fitImages(data, start, usefulViews(data, flags), flags, maxIterations);
     const bool fromImages = std::any_of(lensSources.begin(), lensSources.end(),
                                         [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
     if (!fromImages || (flags & GLASS_FREE_INTRINSICS))
         return held;
     flags |= GLASS_FREE_INTRINSICS;
-    Fit fit = fitImages(data, held.rig, usefulViews(data, flags), flags);
+    Fit fit = fitImages(data, held.rig, usefulViews(data, flags), flags, maxIterations);
     fit.otherMinima = held.otherMinima;     // only looked for while the lens is held
     return fit;
 }

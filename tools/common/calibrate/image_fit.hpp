@@ -19,7 +19,8 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
 images are views too, each with its own pose. The windows are found first, with the lenses held.
 @param flags gets GLASS_FREE_INTRINSICS if so */
-Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags);
+Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
+                 int maxIterations = MAX_ITERATIONS);
 
 } // namespace tools
 

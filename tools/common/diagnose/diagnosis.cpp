@@ -4,6 +4,7 @@
 #include "diagnose/diagnosis.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_mistakes.hpp"
+#include "diagnose/image_mixups.hpp"
 #include "diagnose/target_mistakes.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "console/failure.hpp"
@@ -19,7 +20,9 @@ namespace {
 
 const double IMPLAUSIBLE = 10.;         // times the RMS of the same corners if each camera is fitted separately:
 const double MIN_IMPLAUSIBLE_PX = 1.;   // then the given values do not belong to the images
+const double CLEAN = 1.3;               // times what the lens's own images leave: no more than noise
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
+const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
 const double AS_GOOD = 3.;              // as the best of them
 
 const char* const NOTHING_TRIED = "neither another square, thickness, index or medium, nor images exchanged or wrongly paired "
@@ -54,62 +57,138 @@ bool hasBoardsOnly(const CalibrationInput& input)
     return std::all_of(input.data.views.begin(), input.data.views.end(), [](const View& view) { return !view.neighbours.empty(); });
 }
 
-bool canSwapCameras(const CalibrationInput& input)
-{
-    return hasPairs(input.data) && input.data.cameraCount > 1 && input.data.cameraCount <= MAX_SWAPPED_CAMERAS;
-}
-
 bool sharesWindows(const CalibrationInput& input)
 {
     const std::vector<int>& windows = input.options.windows;
     return std::set<int>(windows.begin(), windows.end()).size() < windows.size();
 }
 
-//! The mistakes that are tried, in the order in which they are reported.
+bool isRig(const CalibrationInput& input) { return input.data.cameraCount > 1; }
+
+bool hasBothStates(const CalibrationInput& input)
+{
+    bool direct = false, glass = false;
+    for (const View& view : input.data.views)
+    {
+        direct = direct || view.countDirect() > 0;
+        glass = glass || view.hasGlass();
+    }
+    return direct && glass;
+}
+
+//! Not a value near what is given.
+const Mistake FAR_OFF[] = {
+    {hasBothStates, swappedStates},
+    {[](const CalibrationInput&) { return true; }, wrongMedium},
+    {sharesWindows, separateWindows}};
+
+//! The mistakes that are tried, the quick ones first: what leaves no more than noise ends the search.
 const Mistake MISTAKES[] = {
     {[](const CalibrationInput& input) { return hasPairs(input.data) && !input.options.window.thickness.empty(); }, wrongScale},
     {[](const CalibrationInput& input) { return !hasPairs(input.data) && !(input.square > 0); }, wrongUnitOfPoints},
     {[](const CalibrationInput& input) { return !hasBoardsOnly(input); }, mirroredPoints},
-    {[](const CalibrationInput& input) { return hasPairs(input.data) && input.options.window.index.size() == 1; }, wrongIndex},
-    {[](const CalibrationInput& input) { return hasPairs(input.data); }, swappedStates},
-    {[](const CalibrationInput& input) { return hasPairs(input.data) && input.data.cameraCount > 1; }, swappedStatesOfOneCamera},
-    {canSwapCameras, swappedGlassImages},
-    {[](const CalibrationInput& input) { return canSwapCameras(input) && hasKnownLens(input); }, swappedDirectImages},
-    {[](const CalibrationInput&) { return true; }, wrongMedium},
-    {sharesWindows, separateWindows},
-    {[](const CalibrationInput& input) { return hasPairs(input.data); }, unpairedImages}};
+    {[](const CalibrationInput& input) { return hasPairs(input.data) && isRig(input); }, swappedStatesOfOneCamera},
+    {[](const CalibrationInput& input) { return hasPairs(input.data) && input.options.window.index.size() == 1; }, wrongIndex}};
 
-//! What each camera explains by itself, any mistake in what they have in common explains better: tried if nothing else explains.
+//! What gives each image or each camera a place of its own explains any mistake in what they have in common: if nothing else does.
 const Mistake LAST_MISTAKES[] = {
-    {[](const CalibrationInput& input) { return input.data.cameraCount > 1; }, unrelatedViews}};
+    {[](const CalibrationInput& input) { return hasPairs(input.data); }, unpairedImages},
+    {isRig, unrelatedViews}};
+
+//! px, that correct input leaves: as much as the lens's own images do; 0 where there are none.
+double cleanError(const CalibrationInput& input)
+{
+    double worst = 0.;
+    for (int c = 0; c < input.data.cameraCount; c++)
+        try
+        {
+            std::vector<LensSource> sources;
+            const CalibrationInput one = oneCamera(input, c);
+            startModel(one.data, one.options, sources);
+            worst = std::max(worst, sources[0].kind == LensSource::FROM_DIRECT ? sources[0].rms : 0.);
+        }
+        catch (const std::exception&) {}        // told elsewhere
+    return CLEAN*worst;
+}
 
 template <size_t N>
-std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mistake (&mistakes)[N], double maxPx)
+std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mistake (&mistakes)[N], double maxPx, double clean)
 {
     std::vector<Explanation> tried;
     for (const Mistake& mistake : mistakes)
-        if (mistake.appliesTo(input))
-            tried.push_back(mistake.undo(input));
+    {
+        if (!mistake.appliesTo(input))
+            continue;
+        tried.push_back(mistake.undo(input));
+        if (tried.back().px < std::min(clean, maxPx))
+            break;
+    }
     return bestBelow(maxPx, tried);
+}
+
+std::string fits(double px, const std::string& sentence)
+{
+    return format("the same images fit within %.2g px with ", px) + sentence;
 }
 
 } // namespace
 
-std::vector<std::string> diagnose(const CalibrationInput& input)
+namespace {
+
+//! Of what makes the images agree, what fits.
+std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps)
 {
-    const double now = medianErrorOfFit(input.data, input.options);
+    std::vector<Explanation> tried;
+    for (const MixUp& mixUp : mixUps)
+        tried.push_back({mixUp.sentence, medianErrorOfFit(mixUp.undone, input.options)});
     std::vector<std::string> sentences;
-    for (const std::string& sentence : {badCorners(input), partOfBoard(input)})
-        if (!sentence.empty())
-            sentences.push_back(sentence);
-    const double most = std::min(EXPLAINS*now, largestSoundError(input.data));
-    std::vector<Explanation> explaining = explanationsOf(input, MISTAKES, most);
-    if (explaining.empty())
-        explaining = explanationsOf(input, LAST_MISTAKES, most);
-    for (const Explanation& e : explaining)
-        sentences.push_back(format("the same images fit within %.2g px with ", e.px) + e.sentence);
+    for (const Explanation& e : bestBelow(largestSoundError(input.data), tried))
+        sentences.push_back(fits(e.px, e.sentence));
     return sentences;
 }
+
+//! A contradicted value and others that explain the images about as well, the best first.
+std::vector<std::string> toldBeside(const Contradiction& value, const std::vector<Explanation>& others)
+{
+    const double MEDIAN = 1.1774;       // length of an error of two coordinates, in their standard deviations
+    std::vector<std::string> sentences = {value.sentence};
+    for (const Explanation& e : bestBelow(AS_GOOD*MEDIAN*value.sigma, others))
+    {
+        const bool isBest = e.px < MEDIAN*value.sigma/VALUE_BEFORE;
+        sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(e.px, e.sentence));
+        if (AS_GOOD*e.px < MEDIAN*value.sigma)
+            return {sentences[0]};
+    }
+    return sentences;
+}
+
+} // namespace
+
+std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain)
+{
+    std::vector<std::string> sentences = confirmed(input, findMixUps(input));
+    if (!sentences.empty())
+        return sentences;
+    for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
+        if (!sentence.empty())
+            return {sentence};
+    const double sound = largestSoundError(input.data), clean = cleanError(input);
+    if (plain.explained)        // a given value; what is much further from what is given may explain it too
+        return toldBeside(*plain.explained, explanationsOf(input, FAR_OFF, sound, clean));
+    const double most = std::min(EXPLAINS*plain.px, sound);
+    std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
+    if (explaining.empty() || !(explaining[0].px < clean))
+        for (const Explanation& e : explanationsOf(input, MISTAKES, most, clean))
+            explaining.push_back(e);
+    explaining = bestBelow(most, explaining);
+    if (explaining.empty())
+        explaining = explanationsOf(input, LAST_MISTAKES, most, clean);
+    for (const Explanation& e : explaining)
+        sentences.push_back(fits(e.px, e.sentence));
+    return sentences;
+}
+
+std::vector<std::string> diagnose(const CalibrationInput& input) { return diagnose(input, fitPlainly(input)); }
 
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input)
@@ -127,6 +206,16 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
         reasons.insert(reasons.end(), input.notices.begin(), input.notices.end());
         throw Failure(fault + ": " + joined(reasons));
     }
+}
+
+void requireNoCause(const CalibrationInput& input, const PlainFit& plain)
+{
+    const double px = plain.px;
+    const std::vector<std::string> reasons = diagnose(input, plain);
+    if (!reasons.empty())
+        throw Failure((px < NO_FIT ? format("the calibration does not fit its images: half of the corners lie more than %.2g px from "
+                                            "where it puts them", px) : std::string("no calibration fits these images"))
+                      + ": " + joined(reasons));
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_DIAGNOSIS_HPP
 
 #include "diagnose/calibration_input.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "calibrate/fit.hpp"
 
 /* A calibration that cannot be right: its residuals are larger than detection errors are, or all pairs contradict it. Then something
@@ -14,12 +15,16 @@ namespace tools {
 
 //! The mistakes that explain images which do not fit, the likely ones first; empty if no known mistake does.
 std::vector<std::string> diagnose(const CalibrationInput& input);
+std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain);
 
 /** Throws Failure with the explanations if a calibration cannot be right.
 @param data what is left without outliers. @param residuals of the fit to them
 @param rmsOfSeparateFits px, of fits of each camera by itself */
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input);
+
+//! Throws Failure if a mistake explains why the images fit no better.
+void requireNoCause(const CalibrationInput& input, const PlainFit& plain);
 
 //! An error of a calibration, with the explanations.
 std::string explainError(const std::string& error, const CalibrationInput& input);

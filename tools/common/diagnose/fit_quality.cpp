@@ -49,8 +49,12 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result)
+double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result)
 {
+    // What is known of a value does not matter to pixels; a wedge that is free makes each iteration slow.
+    RigOptions options = given;
+    options.std = GivenStd();
+    options.window.wedge.clear();
     try
     {
         std::vector<LensSource> sources;

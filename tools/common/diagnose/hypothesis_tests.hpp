@@ -17,7 +17,8 @@ struct Contradiction
 {
     std::string sentence;       //!< which value, and its estimate
     double sigma;               //!< of a pixel coordinate, of the fit with the value free
-    bool isSure = true;         //!< false: three standard deviations or more, too few to decide
+    bool isSure = true;         //!< false: too few standard deviations to decide
+    double singleImages = 0.;   //!< px, the same with a pose for each image alone: what no wrong value hides in
 };
 
 //! The one with the best fit first; others only if they fit about as well.

@@ -48,24 +48,6 @@ RigData mirroredData(const RigData& given, Mirror mirror, int only)
 
 Explanation better(const Explanation& a, const Explanation& b) { return b.px < a.px ? b : a; }
 
-//! The best pair of cameras, with their images of one state exchanged.
-Explanation swappedCameras(const CalibrationInput& input, bool glass)
-{
-    Explanation best{"", NO_FIT};
-    for (int b = 1; b < input.data.cameraCount; b++)
-        for (int a = 0; a < b; a++)
-        {
-            RigData data = input.data;
-            for (View& view : data.views)
-                glass ? std::swap(view.glass[a], view.glass[b]) : std::swap(view.direct[a], view.direct[b]);
-            const std::string first = cameraSuffix(a), second = cameraSuffix(b), direct = "--direct" + first + " and --direct" + second;
-            const std::string sentence = glass ? "--glass" + first + " and --glass" + second + " exchanged" : direct + " exchanged";
-            best = better(best, {sentence + (hasKnownLens(input) ? "" : " (or " + direct + ")"),
-                                 medianErrorOfFit(data, input.options)});
-        }
-    return best;
-}
-
 } // namespace
 
 Explanation swappedStates(const CalibrationInput& input)
@@ -84,10 +66,6 @@ Explanation swappedStatesOfOneCamera(const CalibrationInput& input)
     }
     return best;
 }
-
-Explanation swappedGlassImages(const CalibrationInput& input) { return swappedCameras(input, true); }
-
-Explanation swappedDirectImages(const CalibrationInput& input) { return swappedCameras(input, false); }
 
 Explanation unrelatedViews(const CalibrationInput& input)
 {

@@ -9,18 +9,13 @@
 /* Images that are not what they are given for. Each function undoes one mix-up, and fits the same images again. */
 namespace tools {
 
-const int MAX_SWAPPED_CAMERAS = 4;      // each two of them need a fit of all
+const int MAX_SWAPPED_CAMERAS = 4;      // each needs a fit of all
 
 //! --direct and --glass exchanged, of all cameras.
 Explanation swappedStates(const CalibrationInput& input);
 
 //! The same of one camera of several: the one that explains most.
 Explanation swappedStatesOfOneCamera(const CalibrationInput& input);
-
-/** The images of two cameras exchanged, in one state only. Without a known lens the cameras cannot be told apart: then the glass
-images exchanged back explain exchanged direct images as well. */
-Explanation swappedGlassImages(const CalibrationInput& input);
-Explanation swappedDirectImages(const CalibrationInput& input);
 
 //! Equal names of different cameras are not of the same moment.
 Explanation unrelatedViews(const CalibrationInput& input);

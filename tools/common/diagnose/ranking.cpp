@@ -30,8 +30,13 @@ std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypoth
     if (!(gained > VERY_STRONG))
         return {};
     const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, AS_GOOD_SHARE*gained) : VERY_STRONG;
-    const double worst = criterion(ranked[0]) + margin;
-    ranked.erase(std::find_if(ranked.begin(), ranked.end(), [&](const Hypothesis& h) { return !(criterion(h) <= worst); }), ranked.end());
+    // What is as good needs no more than to explain as much: the penalty of its parameters says which is simpler, not which is true. A
+    // motion of all boards has six, a thickness one, and along the axis images do not tell one from the other.
+    const double most = ranked[0].squares/variance + margin, leastGain = criterion(asGiven) - VERY_STRONG,
+                 best = criterion(ranked[0]);
+    const auto isMuchWorse = [&](const Hypothesis& h) {
+        return !(criterion(h) <= best + margin) && !(h.squares/variance <= most && criterion(h) < leastGain); };
+    ranked.erase(std::remove_if(ranked.begin() + 1, ranked.end(), isMuchWorse), ranked.end());
     return ranked;
 }
 

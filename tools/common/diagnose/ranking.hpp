@@ -22,7 +22,7 @@ struct Hypothesis
     int parameters;             //!< set free, beside those of the fit as given
 };
 
-/** The hypotheses that explain the observations, the best first; others only if they do so about as well. Empty if none is clearly
+/** The hypotheses that explain the observations, the best first; others only if they explain about as much. Empty if none is clearly
 better than nothing wrong (a difference of 10, "very strong evidence" of Kass and Raftery, JASA 90, 1995).
 @param asGiven the fit with nothing given up. @param observations their number (two a point)
 @param noise px, the least standard deviation that a coordinate of these observations can have; 0: not known */

@@ -1,0 +1,154 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+/* Is every mistake called by its name? A matrix of mistakes and rigs, from simulated images. Where physics does not tell two causes
+apart (square, thickness and index in air; which of two images is the mirrored one; a motion of the boards and a tilt of the window),
+both are named with "or", and that is right; a tilt that hides a motion is in the +- of the normal, and nothing is said. */
+#include "diagnose/mistake_scenes.hpp"
+#include "measure/chi_squared.hpp"
+#include <ctime>
+#include <set>
+
+using namespace mistakes;
+
+namespace {
+
+//! How a cause is told; any of these.
+std::vector<std::string> namesOf(Mistake mistake)
+{
+    switch (mistake)
+    {
+    case THICKNESS: return {"contradict --thickness"};
+    case INDEX: return {"contradict --index"};
+    case MEDIUM: return {"--outer-index="};
+    case SQUARE: return {"contradict --square"};
+    case MOTION: return {"--placement-std"};
+    case WEDGE: return {"--wedge-std"};
+    case FOCUS: return {"focus or zoom"};
+    case PLACE: return {"moved in the rig"};
+    case TURNED: return {"turned by 180 degrees"};
+    case MIRRORED: return {"mirrored"};
+    case SWAPPED_STATES: return {"--direct and --glass exchanged"};
+    case SWAPPED_CAMERAS: return {"--glass and --glass", "--direct and --direct"};
+    case UNPAIRED: return {"--unpaired"};
+    case UNRELATED: return {"not the same moment"};
+    case BOARD_SIZE: return {"--size is smaller than the board"};
+    default: return {};
+    }
+}
+
+bool isNamed(Mistake mistake, const std::string& text)
+{
+    for (const std::string& name : namesOf(mistake))
+        if (text.find(name) != std::string::npos)
+            return true;
+    return false;
+}
+
+//! A rig that takes the mistake for a tilt or a distance, which are estimated, shows nothing.
+bool mayHide(Mistake mistake, RigKind kind)
+{
+    return mistake == MOTION || (mistake == WEDGE && kind == STEREO_IN_WATER) || (mistake == SQUARE && kind == STEREO_IN_WATER);
+}
+
+struct Score
+{
+    int first = 0, beside = 0, silent = 0, wrong = 0;
+    double longest = 0.;
+
+    int count() const { return first + beside + silent + wrong; }
+};
+
+Score scoreOf(Mistake mistake, RigKind kind, int trials)
+{
+    Score score;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        const Scene scene = mistaken(mistake, kind, 5000 + 100*mistake + 17*trial);
+        const std::clock_t start = std::clock();
+        const std::string text = saidOf(scene);
+        score.longest = std::max(score.longest, double(std::clock() - start)/CLOCKS_PER_SEC);
+        if (text.empty())
+            score.silent++;
+        else if (isNamed(mistake, text.substr(0, text.find("; or "))))
+            score.first++;
+        else if (isNamed(mistake, text))
+            score.beside++;
+        else
+        {
+            score.wrong++;
+            std::cout << "    " << MISTAKE_NAMES[mistake] << ", " << RIG_NAMES[kind] << ", trial " << trial << ": " << text << std::endl;
+        }
+    }
+    std::cout << "[numbers] " << MISTAKE_NAMES[mistake] << ", " << RIG_NAMES[kind] << ": of " << trials << " first " << score.first
+              << ", beside " << score.beside << ", silent " << score.silent << ", another " << score.wrong
+              << format("; at most %.1f s of the processor", score.longest) << std::endl;
+    return score;
+}
+
+void checkMatrix(const std::vector<std::pair<Mistake, RigKind>>& cases, int trials)
+{
+    int right = 0, all = 0, wrong = 0;
+    double longest = 0.;
+    for (const auto& c : cases)
+    {
+        const Score score = scoreOf(c.first, c.second, trials);
+        right += score.first + score.beside + (mayHide(c.first, c.second) ? score.silent : 0);
+        all += score.count();
+        wrong += score.wrong;
+        longest = std::max(longest, score.longest);
+    }
+    std::cout << "[numbers] true cause named: " << right << " of " << all << "; another in its place: " << wrong
+              << format("; longest %.1f s", longest) << std::endl;
+    CHECK(right >= 0.95*all);
+    CHECK(wrong <= 0.01*all);
+}
+
+} // namespace
+
+TEST_CASE("Every mistake is called by its name: a sample", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    checkMatrix({{THICKNESS, ONE_IN_AIR}, {INDEX, STEREO_IN_AIR}, {SQUARE, SHARED_WINDOW}, {MOTION, STEREO_IN_AIR}, {WEDGE, ONE_IN_AIR},
+                 {FOCUS, ONE_IN_AIR}, {PLACE, STEREO_IN_AIR}, {TURNED, ONE_IN_AIR}, {TURNED, STEREO_IN_WATER}, {MIRRORED, STEREO_IN_AIR},
+                 {SWAPPED_STATES, SHARED_WINDOW}, {SWAPPED_CAMERAS, STEREO_IN_AIR}}, 1);
+}
+
+TEST_CASE("Every mistake is called by its name: the matrix", "[.monte-carlo][mistakes]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    const char* only = std::getenv("ONLY");         // some of the mistakes
+    std::vector<std::pair<Mistake, RigKind>> cases;
+    for (int m = NONE_AT_ALL + 1; m < MISTAKES; m++)
+        for (int k = 0; k < RIG_KINDS; k++)
+            if (applies((Mistake)m, (RigKind)k) && (!only || std::string(only) == MISTAKE_NAMES[m]))
+                cases.push_back({(Mistake)m, (RigKind)k});
+    checkMatrix(cases, scenes::trials(5));
+}
+
+TEST_CASE("Of right images and values no cause is named", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    const int trials = scenes::trials(3);
+    int named = 0;
+    for (int k = 0; k < RIG_KINDS; k++)
+        for (int trial = 0; trial < trials; trial++)
+        {
+            const std::string text = saidOf(mistaken(NONE_AT_ALL, (RigKind)k, 6000 + trial));
+            CAPTURE(RIG_NAMES[k], trial);
+            CHECK(text == "");
+            named += !text.empty();
+        }
+    std::cout << "[numbers] right images: a cause is named in " << named << " of " << RIG_KINDS*trials << std::endl;
+}
+
+TEST_CASE("Tails of chi squared", "[mistakes]")
+{
+    // R: pchisq(x, k, lower.tail = FALSE)
+    CHECK(upperTailChiSquared(1, 3.841458820694124) == Approx(0.05).epsilon(1e-9));
+    CHECK(upperTailChiSquared(2, 5.991464547107979) == Approx(0.05).epsilon(1e-9));
+    CHECK(upperTailChiSquared(3, 7.814727903251179) == Approx(0.05).epsilon(1e-9));
+    CHECK(upperTailChiSquared(6, 12.591587243743977) == Approx(0.05).epsilon(1e-9));
+    CHECK(upperTailChiSquared(6, 0.) == 1.);
+    CHECK(upperTailChiSquared(1, 36.) == Approx(1.973175290075e-9).epsilon(1e-6));
+}

@@ -1,0 +1,79 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/calibrate_images.hpp"
+#include "diagnose/diagnosis.hpp"
+#include "calibrate/image_fit.hpp"
+#include "calibrate/pinhole_camera.hpp"
+#include "console/failure.hpp"
+
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int FEW_ITERATIONS = 100;         // where a wrong value is known to be, a fit within what is known of it may creep
+
+void fit(RigCalibration& c, bool robust, const std::function<void()>& step, int maxIterations)
+{
+    if (robust)
+        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources);
+    else
+        c.start = startModel(c.data, c.options, c.lensSources);
+    step();
+    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations);
+    c.residuals = residualsOf(c.data, c.fit);
+    step();
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    step();
+}
+
+//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
+bool isSlowToStart(const CalibrationInput& input)
+{
+    bool solid = false, known = true;
+    for (const View& view : input.data.views)
+        solid = solid || isSolid(view.objectPoints);
+    for (int k = 0; k < input.data.cameraCount; k++)
+        known = known && input.options.known[k];
+    return solid && !known;
+}
+
+} // namespace
+
+void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>& step)
+{
+    const CalibrationInput input{c.data, c.options, c.square, c.notices};
+    // A wrong value makes good points look wrong, and the search for these long: so look first.
+    PlainFit plain;
+    if (!isSlowToStart(input))
+    {
+        plain = fitPlainly(input);
+        if (!(plain.px < largestSoundError(c.data)))
+            requireNoCause(input, plain);
+    }
+    const auto explained = [&](const auto& error, const std::string& reason) {
+        return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
+    try
+    {
+        fit(c, robust && !plain.explained, step, plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);
+    }
+    catch (const CalibrationError& e)
+    {
+        throw Failure(explained(e, e.reason));
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(explained(e.err, e.err));
+    }
+    catch (const Failure& e)
+    {
+        if (isSlowToStart(input))
+            throw;
+        throw Failure(explained(std::string(e.what()), e.what()));
+    }
+    requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
+}
+
+} // namespace tools

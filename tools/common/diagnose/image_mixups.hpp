@@ -1,0 +1,24 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_IMAGE_MIXUPS_HPP
+#define REFRACT_TOOLS_IMAGE_MIXUPS_HPP
+
+#include "diagnose/calibration_input.hpp"
+
+/* Images that are turned, mirrored or of another camera, found without a fit, in milliseconds: each of these is undone, and it is the
+cause if then pairs show the board nearly where it was, and two cameras' boards agree on where the cameras are to each other. */
+namespace tools {
+
+struct MixUp
+{
+    std::string sentence;
+    RigData undone;             //!< the images as they should be
+};
+
+//! Those that make the images agree best, if any makes them agree clearly better.
+std::vector<MixUp> findMixUps(const CalibrationInput& input);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_IMAGE_MIXUPS_HPP

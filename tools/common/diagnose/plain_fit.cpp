@@ -1,0 +1,84 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/plain_fit.hpp"
+#include "calibrate/image_fit.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "diagnose/rig_vector.hpp"
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int ITERATIONS = 100;
+const double LEFT_BY_CAUSE = 0.8;       // of the residuals, at most, if a wrong value is what is wrong,
+const double CLEAN = 1.3;               // and no more than this times what each image has by itself
+
+//! As exact: where a value is far off, a fit within what is known of it creeps.
+RigOptions exactly(RigOptions options)
+{
+    options.std = GivenStd();
+    options.window.wedge.clear();
+    return options;
+}
+
+//! The same fit, with what is known of the values that it took as exact.
+Fit withKnown(const RigData& data, const Fit& exact, const RigOptions& options)
+{
+    Fit fit = exact;
+    fit.rig = exact.rig.clone();
+    std::vector<double> deviations;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        const ParameterColumns before = columnsOf(exact.rig, c);
+        GlassWindow window = exact.rig.cameras[c]->window();
+        window.wedge = options.window.wedge;
+        fit.rig.cameras[c]->setWindow(window);
+        const Mat lens = exact.rig.known.empty() ? Mat() : exact.rig.known[c].lens;
+        KnownCamera known = knownOf(*fit.rig.cameras[c], options, c);
+        if (!lens.empty())
+            known.lens = lens;
+        fit.rig.known.resize(data.cameraCount);
+        fit.rig.known[c] = known;
+        const ParameterColumns at = columnsOf(*fit.rig.cameras[c]);
+        for (int i = 0; i < at.end; i++)
+        {
+            const bool isNew = i >= before.end - before.lens;
+            const double found = isNew ? 0. : exact.stdDeviations.at<double>(before.lens + i);
+            const double variance = i < known.covariance.rows ? known.covariance.at<double>(i, i) : 0.;
+            deviations.push_back(found > 0. ? found : variance > 0. ? std::sqrt(variance) : 0.);
+        }
+    }
+    for (int i = extrinsicsColumn(exact.rig, 1); i < columnCount(exact.rig); i++)
+        deviations.push_back(exact.stdDeviations.at<double>(i));
+    fit.stdDeviations = Mat(deviations, true);
+    fit.rig.targetCovariance = targetCovarianceOf(data, fit.rig, options.std);
+    return fit;
+}
+
+} // namespace
+
+PlainFit fitPlainly(const CalibrationInput& input)
+{
+    PlainFit plain;
+    try
+    {
+        std::vector<LensSource> sources;
+        const RigOptions exact = exactly(input.options);
+        RigOptions options = input.options;
+        const RigModel start = startModel(input.data, exact, sources);
+        const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS);
+        plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
+        for (const Contradiction& c : testGivenValues(input.data, options, withKnown(input.data, fit, options)))
+            if (c.isSure && c.sigma < LEFT_BY_CAUSE*fit.sigma && c.sigma < CLEAN*c.singleImages)
+                plain.explained = c;
+    }
+    catch (const std::exception&) {}    // no fit, or none to test
+    return plain;
+}
+
+} // namespace tools

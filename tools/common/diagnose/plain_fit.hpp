@@ -1,0 +1,25 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_PLAIN_FIT_HPP
+#define REFRACT_TOOLS_PLAIN_FIT_HPP
+
+#include "diagnose/calibration_input.hpp"
+#include "diagnose/fit_quality.hpp"
+#include "diagnose/hypothesis_tests.hpp"
+#include <optional>
+
+namespace tools {
+
+//! A fit of all images to what is given, without a search for wrong points: a wrong value makes many good points look wrong.
+struct PlainFit
+{
+    double px = NO_FIT;                         //!< medianCornerError
+    std::optional<Contradiction> explained;     //!< a cause that explains all of its residuals
+};
+
+PlainFit fitPlainly(const CalibrationInput& input);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_PLAIN_FIT_HPP

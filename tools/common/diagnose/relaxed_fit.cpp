@@ -1,0 +1,408 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/relaxed_fit.hpp"
+#include "diagnose/rig_vector.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int ITERATIONS = 25;
+const double CONVERGED = 1e-3;          // of chi^2
+const double LEAST_DAMPING = 1e-12, MOST_DAMPING = 1e3;
+
+//! Inverse of a covariance, 0 for what has no variance (it is fixed) or an unknown one (NaN, about which nothing is known).
+MatrixXd informationOf(const MatrixXd& covariance)
+{
+    const int n = (int)covariance.rows();
+    std::vector<int> known;
+    for (int i = 0; i < n; i++)
+        if (covariance(i, i) > 0.)
+            known.push_back(i);
+    if (known.empty())
+        return MatrixXd::Zero(n, n);
+    MatrixXd part(known.size(), known.size());
+    VectorXd scale(known.size());
+    for (size_t i = 0; i < known.size(); i++)
+        scale[i] = 1./std::sqrt(covariance(known[i], known[i]));
+    for (size_t i = 0; i < known.size(); i++)
+        for (size_t j = 0; j < known.size(); j++)
+            part(i, j) = covariance(known[i], known[j])*scale[i]*scale[j];
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(part);
+    const VectorXd inverse = solver.eigenvalues().unaryExpr([](double x) { return x > 1e-12 ? 1./x : 0.; });
+    const MatrixXd of = solver.eigenvectors()*inverse.asDiagonal()*solver.eigenvectors().transpose();
+    MatrixXd information = MatrixXd::Zero(n, n);
+    for (size_t i = 0; i < known.size(); i++)
+        for (size_t j = 0; j < known.size(); j++)
+            information(known[i], known[j]) = of(i, j)*scale[i]*scale[j];
+    return information;
+}
+
+//! Two directions across a normal.
+Eigen::Matrix<double, 3, 2> across(const Vec3d& normal)
+{
+    const Vec3d a = normalize(normal.cross(std::abs(normal[1]) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0))), b = normal.cross(a);
+    Eigen::Matrix<double, 3, 2> basis;
+    basis << a[0], b[0], a[1], b[1], a[2], b[2];
+    return basis;
+}
+
+//! What the fit estimated, a column each.
+MatrixXd freeOf(const Fit& fit)
+{
+    const RigModel& rig = fit.rig;
+    const int size = rigVectorSize(rig), targets = columnCount(rig);
+    std::vector<VectorXd> columns;
+    const auto add = [&](int number) { columns.push_back(VectorXd::Unit(size, number)); };
+    const auto addFree = [&](int first, int end) {
+        for (int i = first; i < end; i++)
+            if (fit.stdDeviations.at<double>(i) > 0.)
+                add(i);
+    };
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        addFree(at.lens, at.lens + at.lensCount);
+        if (c > 0)
+            addFree(extrinsicsColumn(rig, c), extrinsicsColumn(rig, c) + 6);
+        if (!rig.ownsWindow(c))
+            continue;
+        const Eigen::Matrix<double, 3, 2> basis = across(rig.cameras[c]->window().normal);
+        for (int k = 0; k < 2; k++)
+        {
+            columns.push_back(VectorXd::Zero(size));
+            columns.back().segment<3>(at.normal) = basis.col(k);
+        }
+        addFree(at.distance, at.end);
+    }
+    for (int i = 0; i < TARGET_ERRORS && !rig.targetCovariance.empty(); i++)
+        if (rig.targetCovariance.at<double>(i, i) > 0.)
+            add(targets + i);
+    MatrixXd free(size, columns.size());
+    for (size_t i = 0; i < columns.size(); i++)
+        free.col(i) = columns[i];
+    return free;
+}
+
+//! The seen points of a view at a pose.
+ViewObservations observedAt(const View& view, int cameras, const Vec3d& rvec, const Vec3d& tvec)
+{
+    ViewObservations observed;
+    observed.objectPoints = view.objectPoints;
+    observed.rvec = rvec;
+    observed.tvec = tvec;
+    std::vector<double> pixels;
+    for (bool glass : {false, true})        // in this order, so that each state has one block of rows
+        for (int c = 0; c < cameras; c++)
+        {
+            const std::vector<Point2d>& points = (glass ? view.glass : view.direct)[c];
+            ImageOfView image{c, glass, {}};
+            for (size_t i = 0; i < points.size(); i++)
+                if (seen(points[i]))
+                {
+                    image.points.push_back((int)i);
+                    pixels.insert(pixels.end(), {points[i].x, points[i].y});
+                }
+            if (!image.points.empty())
+                observed.images.push_back(image);
+        }
+    observed.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
+    return observed;
+}
+
+//! Sum of the shifts, of one state.
+VectorXd shifted(const VectorXd& numbers, const std::vector<Shift>& freed, const VectorXd& by, bool glass)
+{
+    VectorXd result = numbers;
+    for (size_t k = 0; k < freed.size(); k++)
+        for (const auto& number : freed[k].numbers)
+            if (glass || !freed[k].glassOnly)
+                result[number.first] += by[k]*number.second;
+    return result;
+}
+
+//! How the numbers of one state change with what is estimated and with the shifts.
+MatrixXd changesOf(const RigModel& rig, const MatrixXd& free, const std::vector<Shift>& freed, bool glass)
+{
+    MatrixXd changes(free.rows(), free.cols() + freed.size());
+    changes << free, MatrixXd::Zero(free.rows(), freed.size());
+    for (size_t k = 0; k < freed.size(); k++)
+        for (const auto& number : freed[k].numbers)
+            if (glass || !freed[k].glassOnly)
+                changes(number.first, free.cols() + k) += number.second;
+    return consistentChanges(rig)*changes;
+}
+
+VectorXd toVector(const Vec3d& rvec, const Vec3d& tvec)
+{
+    VectorXd pose(6);
+    pose << rvec[0], rvec[1], rvec[2], tvec[0], tvec[1], tvec[2];
+    return pose;
+}
+
+} // namespace
+
+//! Normal equations with the poses eliminated, and what it takes to get these back.
+struct RelaxedFit::Normal
+{
+    MatrixXd matrix;
+    VectorXd right;
+    double chiSquare = 0.;
+    std::vector<MatrixXd> byAll, byPose;        //!< of each view, over the noise
+    std::vector<VectorXd> rest;
+    MatrixXd glassChanges;
+
+    bool isFinite() const { return std::isfinite(chiSquare) && matrix.allFinite() && right.allFinite(); }
+};
+
+RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, double noise)
+    : rig_(fit.rig.clone()), free_(freeOf(fit)), noise_(noise), dof_(fit.dof)
+{
+    const int size = rigVectorSize(rig_), targets = columnCount(rig_);
+    information_ = MatrixXd::Zero(size, size);
+    known_ = VectorXd::Zero(size);
+    for (int c = 0; c < (int)rig_.known.size(); c++)
+    {
+        const KnownCamera& known = rig_.known[c];
+        if (known.covariance.empty())
+            continue;
+        const ParameterColumns at = columnsOf(rig_, c);
+        RigModel given = rig_.clone();
+        given.cameras[c]->setLensParameters(known.lens);
+        GlassWindow window = known.window;
+        window.wedge.resize(rig_.cameras[c]->window().wedge.size());
+        window.normal = rig_.cameras[c]->window().normal;
+        given.cameras[c]->setWindow(window);
+        known_.segment(at.lens, at.end - at.lens) = toVector(given).segment(at.lens, at.end - at.lens);
+        MatrixXd covariance = toEigen(known.covariance);
+        const int count = rig_.ownsWindow(c) ? (int)covariance.rows() : std::min((int)covariance.rows(), at.lensCount);
+        information_.block(at.lens, at.lens, count, count) = informationOf(covariance.topLeftCorner(count, count));
+    }
+    known_[targets] = 1.;
+    if (rig_.targetCovariance.empty())
+        rig_.targetCovariance = Mat::zeros(TARGET_ERRORS, TARGET_ERRORS, CV_64F);     // so that poseInImage follows the motion
+    else
+        information_.bottomRightCorner(TARGET_ERRORS, TARGET_ERRORS) = informationOf(toEigen(rig_.targetCovariance));
+    start_.direct = start_.glass = rig_;
+    start_.before = toVector(rig_);
+    for (size_t k = 0; k < fit.views.size(); k++)
+    {
+        const View& view = data.views[fit.views[k]];
+        start_.views.push_back(observedAt(view, data.cameraCount, fit.rvecs[k], fit.tvecs[k]));
+        if (!posesKnown)
+            continue;
+        const bool exact = view.pose->covariance.empty();
+        poseInformation_.push_back(exact ? MatrixXd::Constant(1, 1, INFINITY) : informationOf(toEigen(view.pose->covariance)));
+        knownPoses_.push_back(toVector(view.pose->rvec, view.pose->tvec));
+    }
+}
+
+double RelaxedFit::priorOf(const VectorXd& numbers) const
+{
+    const VectorXd off = numbers - known_;
+    return off.dot(information_*off);
+}
+
+RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Shift>& freed) const
+{
+    const int count = (int)(free_.cols() + freed.size());
+    const MatrixXd directChanges = changesOf(at.direct, free_, freed, false);
+    Normal normal;
+    normal.glassChanges = changesOf(at.glass, free_, freed, true);
+    const MatrixXd own = free_.transpose()*information_;
+    const VectorXd off = known_ - at.before;
+    normal.matrix = MatrixXd::Zero(count, count);
+    normal.right = VectorXd::Zero(count);
+    normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = own*free_;
+    normal.right.head(free_.cols()) = own*off;
+    normal.chiSquare = priorOf(at.before);
+    for (size_t k = 0; k < at.views.size(); k++)
+    {
+        const ViewObservations& observed = at.views[k];
+        std::vector<ImageOfView> images[2];
+        for (const ImageOfView& image : observed.images)
+            images[image.glass].push_back(image);
+        const Eigen::Index rows = observed.pixels.size();
+        const bool hasPose = !poseInformation_.empty() && std::isfinite(poseInformation_[k](0, 0));
+        const bool isExact = !poseInformation_.empty() && !hasPose;
+        MatrixXd byAll = MatrixXd::Zero(rows + 6*hasPose, count), byPose = MatrixXd::Zero(rows + 6*hasPose, 6);
+        VectorXd rest(rows + 6*hasPose);
+        Eigen::Index row = 0;
+        for (bool glass : {false, true})
+        {
+            if (images[glass].empty())
+                continue;
+            const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
+                                                           observed.tvec, images[glass]);
+            const Eigen::Index n = view.predicted.size();
+            byAll.middleRows(row, n) = view.byParameters*(glass ? normal.glassChanges : directChanges)/noise_;
+            byPose.middleRows(row, n) = view.byPose/noise_;
+            rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
+            row += n;
+        }
+        if (hasPose)
+        {
+            const MatrixXd root = poseInformation_[k].llt().matrixU();
+            byPose.bottomRows(6) = root;
+            rest.tail(6) = root*(knownPoses_[k] - toVector(observed.rvec, observed.tvec));
+        }
+        if (isExact)
+            byPose.resize(rows, 0);
+        normal.chiSquare += rest.squaredNorm();
+        if (!std::isfinite(normal.chiSquare))
+            return normal;
+        if (isExact)
+        {
+            normal.matrix += byAll.transpose()*byAll;
+            normal.right += byAll.transpose()*rest;
+        }
+        else
+        {
+            const PoseNullSpace project(byPose);
+            const MatrixXd A = project(byAll);
+            normal.matrix += A.transpose()*A;
+            normal.right += A.transpose()*project(rest);
+        }
+        normal.byAll.push_back(byAll);
+        normal.byPose.push_back(byPose);
+        normal.rest.push_back(rest);
+    }
+    return normal;
+}
+
+bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const
+{
+    at.before += free_*step.head(free_.cols());
+    at.shifts += step.tail(at.shifts.size());
+    try
+    {
+        at.direct = withVector(rig_, shifted(at.before, freed, at.shifts, false));
+        at.glass = withVector(rig_, shifted(at.before, freed, at.shifts, true));
+    }
+    catch (const cv::Exception&)        // a window that cannot be
+    {
+        return false;
+    }
+    for (size_t k = 0; k < at.views.size(); k++)
+    {
+        if (normal.byPose[k].cols() == 0)
+            continue;
+        const VectorXd pose = normal.byPose[k].colPivHouseholderQr().solve(normal.rest[k] - normal.byAll[k]*step);
+        for (int i = 0; i < 3; i++)
+        {
+            at.views[k].rvec[i] += pose[i];
+            at.views[k].tvec[i] += pose[3 + i];
+        }
+    }
+    return true;
+}
+
+//! With each number scaled by how well it is determined.
+static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double damping)
+{
+    const VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    MatrixXd scaled = scale.asDiagonal()*matrix*scale.asDiagonal();
+    scaled.diagonal().array() += damping;
+    return scale.asDiagonal()*scaled.ldlt().solve(scale.asDiagonal()*right);
+}
+
+Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) const
+{
+    Relaxed at = start;
+    at.shifts = VectorXd::Zero(freed.size());
+    Normal normal = linearize(at, freed);
+    double damping = 1e-9;
+    for (int i = 0; i < ITERATIONS && normal.isFinite() && damping < MOST_DAMPING; i++)
+    {
+        Relaxed next = at;
+        const VectorXd step = solved(normal.matrix, normal.right, damping);
+        if (!step.allFinite() || !move(normal, freed, step, next))
+        {
+            damping = std::max(1e-6, 30.*damping);
+            continue;
+        }
+        const Normal there = linearize(next, freed);
+        if (!there.isFinite() || there.chiSquare > normal.chiSquare + CONVERGED)
+        {
+            damping = std::max(1e-6, 30.*damping);
+            continue;
+        }
+        const double gained = normal.chiSquare - there.chiSquare;
+        at = next;
+        normal = there;
+        damping = std::max(LEAST_DAMPING, damping/30.);
+        if (gained < CONVERGED)
+            break;
+    }
+    at.chiSquare = normal.isFinite() ? normal.chiSquare : std::numeric_limits<double>::infinity();
+    if (!normal.isFinite())
+        return at;
+    const VectorXd scale = normal.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    MatrixXd scaled = scale.asDiagonal()*normal.matrix*scale.asDiagonal();
+    scaled.diagonal().array() += 1e-12;
+    const MatrixXd inverse = scale.asDiagonal()*scaled.ldlt().solve(MatrixXd::Identity(scaled.rows(), scaled.cols()))*scale.asDiagonal();
+    MatrixXd all(normal.glassChanges.rows() + freed.size(), inverse.cols());
+    all << normal.glassChanges, MatrixXd::Zero(freed.size(), free_.cols()), MatrixXd::Identity(freed.size(), freed.size());
+    at.covariance = all*inverse*all.transpose();
+    return at;
+}
+
+std::vector<double> RelaxedFit::gains(const Relaxed& at, const std::vector<std::vector<Shift>>& sets) const
+{
+    std::vector<Shift> all;
+    for (const std::vector<Shift>& set : sets)
+        all.insert(all.end(), set.begin(), set.end());
+    const Normal normal = linearize(at, all);
+    const Eigen::Index own = free_.cols();
+    const double without = normal.right.head(own).dot(solved(normal.matrix.topLeftCorner(own, own), normal.right.head(own), 1e-12));
+    std::vector<double> gains;
+    Eigen::Index first = own;
+    for (const std::vector<Shift>& set : sets)
+    {
+        const Eigen::Index count = (Eigen::Index)set.size();
+        MatrixXd matrix(own + count, own + count);
+        VectorXd right(own + count);
+        matrix << normal.matrix.topLeftCorner(own, own), normal.matrix.block(0, first, own, count),
+                  normal.matrix.block(first, 0, count, own), normal.matrix.block(first, first, count, count);
+        right << normal.right.head(own), normal.right.segment(first, count);
+        gains.push_back(right.dot(solved(matrix, right, 1e-12)) - without);
+        first += count;
+    }
+    return gains;
+}
+
+double RelaxedFit::noiseOfSingleImages() const
+{
+    double squares = 0., dof = 0.;
+    for (const ViewObservations& observed : start_.views)
+        for (const ImageOfView& image : observed.images)
+        {
+            Eigen::Index row = 0;
+            for (const ImageOfView& other : observed.images)
+            {
+                if (&other == &image)
+                    break;
+                row += 2*(Eigen::Index)other.points.size();
+            }
+            const ViewDerivatives view = differentiateView(rig_, observed.objectPoints, observed.rvec, observed.tvec, {image});
+            const Eigen::Index n = view.predicted.size();
+            if (n <= 6)
+                continue;
+            const VectorXd rest = PoseNullSpace(view.byPose)(observed.pixels.segment(row, n) - view.predicted);
+            squares += rest.squaredNorm();
+            dof += (double)rest.size();
+        }
+    return dof > 0. ? std::sqrt(squares/dof) : 0.;
+}
+
+} // namespace tools

@@ -1,0 +1,71 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_RELAXED_FIT_HPP
+#define REFRACT_TOOLS_RELAXED_FIT_HPP
+
+#include "calibrate/fit.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/view_observations.hpp"
+
+/* A calibration fitted again to the same images, with more free than it had. Gauss-Newton from where the calibration is, which is near:
+tens of milliseconds, where the library's fit, which searches and tests, takes seconds. It also frees what the library cannot, as what is
+different between the direct images and those through the windows. All that the calibration knew (priors) it still knows, weighted by a
+noise that is given: a noise that a wrong value has made large would make the prior of that value as weak. */
+namespace tools {
+
+//! A number that is freed, with nothing known of it: it moves some numbers of the rig (as toVector has them) together.
+struct Shift
+{
+    std::vector<std::pair<int, double>> numbers;    //!< which, and by how much for a shift of 1
+    bool glassOnly = false;                         //!< only in the images through the windows
+};
+
+struct Relaxed
+{
+    RigModel direct, glass;             //!< equal but for shifts that are glassOnly
+    std::vector<ViewObservations> views;
+    VectorXd before;                    //!< numbers of the rig without the shifts
+    VectorXd shifts;
+    double chiSquare = 0.;              //!< squared residuals over noise^2, and what the priors add
+    MatrixXd covariance;                //!< of the numbers with the shifts, in images through the windows; then of the shifts
+};
+
+class RelaxedFit
+{
+public:
+    //! @param noise px, standard deviation of a coordinate
+    RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, double noise);
+
+    const RigModel& rig() const { return rig_; }
+    double noise() const { return noise_; }
+    //! Coordinates and priors, less what the calibration estimated.
+    double dof() const { return dof_; }
+
+    //! The calibration itself, for this noise.
+    Relaxed asGiven() const { return fit(start_, {}); }
+    Relaxed fit(const Relaxed& start, const std::vector<Shift>& freed) const;
+    //! By how much chi^2 would fall, to first order, for each of some sets of shifts.
+    std::vector<double> gains(const Relaxed& at, const std::vector<std::vector<Shift>>& sets) const;
+    //! RMS, px, of what is left of each image by a pose of its own: what no error of the rig's windows and places makes much larger.
+    double noiseOfSingleImages() const;
+
+private:
+    struct Normal;
+    Normal linearize(const Relaxed& at, const std::vector<Shift>& freed) const;
+    bool move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const;
+    double priorOf(const VectorXd& numbers) const;
+
+    RigModel rig_;
+    Relaxed start_;
+    MatrixXd free_;                     //!< columns: changes of the numbers of the rig that the calibration estimated
+    MatrixXd information_;              //!< of priors
+    VectorXd known_;                    //!< their means
+    std::vector<MatrixXd> poseInformation_;     //!< of each view; empty: nothing is known; infinite: exact
+    std::vector<VectorXd> knownPoses_;
+    double noise_, dof_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RELAXED_FIT_HPP

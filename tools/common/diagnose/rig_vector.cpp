@@ -1,0 +1,196 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/rig_vector.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+void put(const Vec3d& values, int first, VectorXd& numbers)
+{
+    for (int i = 0; i < 3; i++)
+        numbers[first + i] = values[i];
+}
+
+void put(const GlassWindow& window, const ParameterColumns& at, VectorXd& numbers)
+{
+    put(window.normal, at.normal, numbers);
+    numbers[at.distance] = window.distance;
+    for (int i = 0; i < at.layers; i++)
+    {
+        numbers[at.thickness + i] = window.thickness[i];
+        numbers[at.index + i] = window.index[i];
+    }
+    numbers[at.innerIndex] = window.innerIndex;
+    numbers[at.outerIndex] = window.outerIndex;
+    for (int i = at.wedge; i < at.end; i++)
+        numbers[i] = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2];
+}
+
+Vec3d get(const VectorXd& numbers, int first) { return Vec3d(numbers[first], numbers[first + 1], numbers[first + 2]); }
+
+//! The first camera that looks through a camera's window.
+int ownerOf(const RigModel& rig, int camera)
+{
+    int owner = 0;
+    while (!rig.sharesWindow(owner, camera))
+        owner++;
+    return owner;
+}
+
+GlassWindow windowOf(GlassWindow window, const ParameterColumns& at, const VectorXd& numbers)
+{
+    const Vec3d normal = get(numbers, at.normal);
+    window.normal = normalize(normal);
+    window.distance = numbers[at.distance];
+    for (int i = 0; i < at.layers; i++)
+    {
+        window.thickness[i] = numbers[at.thickness + i];
+        window.index[i] = numbers[at.index + i];
+        if (at.wedge < at.end)
+            window.wedge[i] = Vec2d(numbers[at.wedge + 2*i], numbers[at.wedge + 2*i + 1]);
+    }
+    window.innerIndex = numbers[at.innerIndex];
+    window.outerIndex = numbers[at.outerIndex];
+    return window;
+}
+
+//! Rows e1, e2, n: along e1, e2 a wedge is told (GlassWindow::wedge).
+Matx33d axesOf(const Vec3d& normal)
+{
+    const Vec3d e1 = normalize(Vec3d(1, 0, 0) - normal[0]*normal), e2 = normal.cross(e1);
+    return Matx33d(e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], normal[0], normal[1], normal[2]);
+}
+
+//! One pane, seen from another camera, where its normal through the centre of projection meets it elsewhere.
+GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
+{
+    const Matx33d before = axesOf(window.normal), after = axesOf(there.R*window.normal), turn = after*there.R*before.t();
+    window.normal = there.R*window.normal;
+    window.distance += window.normal.dot(there.T);
+    Vec2d sum;
+    double offset = window.normal.dot(there.T);
+    for (size_t i = 0; i < window.wedge.size(); i++)
+    {
+        const Vec3d wedge = turn*Vec3d(window.wedge[i][0], window.wedge[i][1], 0);
+        window.wedge[i] = Vec2d(wedge[0], wedge[1]);
+        sum += window.wedge[i];
+        const double angle = norm(sum), tangent = angle > 0. ? std::tan(angle)/angle : 1.;
+        const double next = (window.normal + tangent*(after.t()*Vec3d(sum[0], sum[1], 0))).dot(there.T);
+        window.thickness[i] += next - offset;
+        offset = next;
+    }
+    return window;
+}
+
+RigidTransform placeOfCamera(const RigModel& rig, int camera, const VectorXd& numbers)
+{
+    const int at = extrinsicsColumn(rig, camera);
+    return camera == 0 ? RigidTransform() : transformOf(get(numbers, at), get(numbers, at + 3));
+}
+
+//! Numbers of a shared window for a camera that does not own it.
+VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const VectorXd& numbers)
+{
+    const RigidTransform there = fromTo(placeOfCamera(rig, owner, numbers), placeOfCamera(rig, camera, numbers));
+    const GlassWindow shared = windowOf(rig.cameras[owner]->window(), columnsOf(rig, owner), numbers);
+    const ParameterColumns at = columnsOf(*rig.cameras[camera]);
+    VectorXd window = VectorXd::Zero(at.end);
+    put(seenFrom(shared, there), at, window);
+    return window.tail(at.end - at.normal);
+}
+
+} // namespace
+
+int rigVectorSize(const RigModel& rig) { return columnCount(rig) + TARGET_ERRORS; }
+
+VectorXd toVector(const RigModel& rig)
+{
+    VectorXd numbers(rigVectorSize(rig));
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        const Mat lens = rig.cameras[c]->lensParameters();
+        for (int i = 0; i < at.lensCount; i++)
+            numbers[at.lens + i] = lens.at<double>(i);
+        put(rig.cameras[c]->window(), at, numbers);
+        if (c == 0)
+            continue;
+        put(rotationVector(rig.extrinsics[c].R), extrinsicsColumn(rig, c), numbers);
+        put(rig.extrinsics[c].T, extrinsicsColumn(rig, c) + 3, numbers);
+    }
+    const int targets = columnCount(rig);
+    numbers[targets] = rig.targetScale;
+    put(rotationVector(rig.targetMotion.R), targets + 1, numbers);
+    put(rig.targetMotion.T, targets + 4, numbers);
+    return numbers;
+}
+
+RigModel withVector(const RigModel& rig, const VectorXd& numbers)
+{
+    RigModel result = rig.clone();
+    for (int c = 1; c < (int)rig.cameras.size(); c++)
+        result.extrinsics[c] = placeOfCamera(rig, c, numbers);
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        Mat lens(at.lensCount, 1, CV_64F);
+        for (int i = 0; i < at.lensCount; i++)
+            lens.at<double>(i) = numbers[at.lens + i];
+        result.cameras[c]->setLensParameters(lens);
+        const int owner = ownerOf(rig, c);
+        GlassWindow window = windowOf(rig.cameras[c]->window(), at, numbers);
+        if (owner < c)
+            window = seenFrom(result.cameras[owner]->window(), fromTo(result.extrinsics[owner], result.extrinsics[c]));
+        window.distance = std::max(0., window.distance);        // between equal media any will do, and 0 is given
+        result.cameras[c]->setWindow(window);
+    }
+    const int targets = columnCount(rig);
+    result.targetScale = numbers[targets];
+    result.targetMotion = transformOf(get(numbers, targets + 1), get(numbers, targets + 4));
+    return result;
+}
+
+MatrixXd consistentChanges(const RigModel& rig)
+{
+    const VectorXd numbers = toVector(rig);
+    MatrixXd changes = MatrixXd::Identity(numbers.size(), numbers.size());
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        if (rig.ownsWindow(c))
+        {
+            const Eigen::Vector3d normal = numbers.segment<3>(at.normal);
+            changes.block<3, 3>(at.normal, at.normal) -= normal*normal.transpose();
+            continue;
+        }
+        // Only the rows of this camera's window, which is a few products of the rest: by differences.
+        const double STEP = 1e-6;
+        const int owner = ownerOf(rig, c);
+        changes.middleRows(at.normal, at.end - at.normal).setZero();
+        std::vector<int> columns;
+        for (int i = columnsOf(rig, owner).normal; i < columnsOf(rig, owner).end; i++)
+            columns.push_back(i);
+        for (int camera : {owner, c})
+            for (int i = 0; i < 6 && camera > 0; i++)
+                columns.push_back(extrinsicsColumn(rig, camera) + i);
+        for (int column : columns)
+        {
+            VectorXd more = numbers, less = numbers;
+            more[column] += STEP;
+            less[column] -= STEP;
+            changes.block(at.normal, column, at.end - at.normal, 1) =
+                (windowNumbersOf(rig, owner, c, more) - windowNumbersOf(rig, owner, c, less))/(2.*STEP);
+        }
+    }
+    return changes;
+}
+
+} // namespace tools
