@@ -273,14 +273,11 @@ std::string wrongLengths(double square, const std::vector<MeasuredView>& measure
                   square);
 }
 
-//! What would explain a contradiction, if a target's shape is known.
-void warnOfCause(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured, const Command& command)
+//! What would explain a contradiction, if a target's shape is known; or empty.
+std::string causeOf(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
 {
-    if (!options.points.empty())
-        return;
-    const std::string causes = causesOf(calibration, std::vector<View>(measured.begin(), measured.end()), pixelSigma(options, calibration));
-    if (!causes.empty())
-        command.warn("what explains them: " + causes);
+    return options.points.empty() ? causesOf(calibration, std::vector<View>(measured.begin(), measured.end()), pixelSigma(options, calibration))
+                                  : "";
 }
 
 void warnNoisier(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured,
@@ -493,16 +490,20 @@ int main(int argc, char** argv)
         for (const Measurement& m : results)
             answers += m.answers();
         if (!answers)
-            throw Failure(contradiction.empty() ? "no point could be measured: are images and calibration of the "
-                                                  "same cameras?" : contradiction);
+        {
+            const std::string cause = contradiction.empty() ? "" : causeOf(options, calibration, measured);
+            throw Failure(contradiction.empty() ? "no point could be measured: are images and calibration of the same cameras?"
+                          : contradiction + (cause.empty() ? "" : ". What explains them: " + cause));
+        }
         if (!contradiction.empty())
             command.warn(contradiction);
         const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
         const bool isDoubtful = mostContradict(results) || !lengths.empty();
-        if (isDoubtful)
-            warnOfCause(options, calibration, measured, command);
+        const std::string cause = isDoubtful ? causeOf(options, calibration, measured) : "";
+        if (!cause.empty())
+            command.warn("what explains them: " + cause);
         warnNoisier(options, calibration, measured, results, command);
         sayUncovered(options, calibration, command);
         if (!options.out.empty())

@@ -1,11 +1,11 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// Calibrated rigs and what they see some time later. A calibration is a draw from the covariance that its images would give.
+// Calibrated rigs and what they see some time later.
 #ifndef REFRACT_TEST_TOOLS_CHECK_SCENES_HPP
 #define REFRACT_TEST_TOOLS_CHECK_SCENES_HPP
 
-#include "assess/check_input.hpp"
+#include "assess/check_problem.hpp"
 #include "assess/rig_check.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
@@ -21,7 +21,6 @@ using namespace cv::refract;
 using namespace tools;
 
 const double SIGMA = 0.05;                  // px
-const double FREEDOM = 1000.;               // degrees of freedom of the noise
 const int CALIBRATION_VIEWS = 20, CALIBRATION_PAIRS = 8, NEW_VIEWS = 4;
 
 inline std::vector<Point3d> checkBoard() { return board(9, 6, 25.); }
@@ -31,7 +30,7 @@ struct Scene
     std::string name;
     RigModel nominal;
     bool hasPairs;                          // the new images; else through the window only
-    MatrixXd prior, posterior;              // covariances of what differs from the nominal rig, and after a calibration
+    MatrixXd prior;                         // covariance of what differs from the nominal rig
 };
 
 inline GlassWindow seenFrom(const GlassWindow& window, const RigidTransform& camera_from_owner)
@@ -119,28 +118,10 @@ inline View look(const RigModel& rig, const BoardPose& pose, bool direct, bool g
     return view;
 }
 
-inline void addView(MatrixXd& C, const RigModel& rig, const View& view)
-{
-    const ViewObservations observed = observationsOf(rig, view);
-    const ViewDerivatives d = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
-    C = covarianceWith(C, PoseNullSpace(d.byPose)(d.byParameters), SIGMA);
-    C = 0.5*(C + C.transpose()).eval();
-}
-
 inline Scene makeScene(const std::string& name, int cameras, bool shared, double outerIndex)
 {
-    Scene scene{name, complete(paperRig(cameras), shared, outerIndex), outerIndex == 1., {}, {}};
-    scenes::Random random(77);
+    Scene scene{name, complete(paperRig(cameras), shared, outerIndex), outerIndex == 1., {}};
     scene.prior = priorOf(scene.nominal);
-    scene.posterior = scene.prior;
-    for (int i = 0; i < CALIBRATION_VIEWS; i++)
-    {
-        const BoardPose pose = poseOfBoard(random);
-        const bool isPair = scene.hasPairs && i < CALIBRATION_PAIRS;
-        addView(scene.posterior, scene.nominal, look(scene.nominal, pose, true, isPair, 0., random));
-        if (!scene.hasPairs)
-            addView(scene.posterior, scene.nominal, look(scene.nominal, poseOfBoard(random), false, true, 0., random));
-    }
     return scene;
 }
 
@@ -160,7 +141,19 @@ inline VectorXd draw(const MatrixXd& C, scenes::Random& random)
     return std.asDiagonal()*(eigen.eigenvectors()*(eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().cwiseProduct(z)));
 }
 
-//! A rig as it is, and as it was calibrated.
+inline std::vector<View> calibrationViews(const Scene& scene, const RigModel& truth, scenes::Random& random)
+{
+    std::vector<View> views;
+    for (int i = 0; i < CALIBRATION_VIEWS; i++)
+    {
+        views.push_back(look(truth, poseOfBoard(random), true, scene.hasPairs && i < CALIBRATION_PAIRS, SIGMA, random));
+        if (!scene.hasPairs)
+            views.push_back(look(truth, poseOfBoard(random), false, true, SIGMA, random));
+    }
+    return views;
+}
+
+//! A rig as it is, and as it was calibrated: the most probable one of the priors and the images, and its covariance there.
 struct Calibrated
 {
     RigModel truth;
@@ -171,7 +164,7 @@ inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
 {
     Calibrated c;
     c.truth = scene.nominal.clone();
-    // Given values differ from piece to piece; what is estimated may be anything, and is as the nominal rig's.
+    // Given values differ from piece to piece; what is estimated from the images alone is as the nominal rig's.
     MatrixXd given = MatrixXd::Zero(scene.prior.rows(), scene.prior.cols());
     for (int k = 0; k < (int)c.truth.cameras.size(); k++)
     {
@@ -180,19 +173,23 @@ inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
             given(i, i) = scene.prior(i, i);
     }
     setParameters(c.truth, parametersOf(scene.nominal) + draw(given, random));
-    double chi = 0.;
-    for (int i = 0; i < FREEDOM; i++)
-        chi += std::pow(random.normal(1.), 2);
-    const double scale = chi/FREEDOM;
+    const CheckProblem problem({scene.nominal, toMat(scene.prior), SIGMA, 1e8}, calibrationViews(scene, c.truth, random), SIGMA);
+    const CheckFit fit = problem.fitUnchanged();
+    REQUIRE(std::isfinite(fit.chiSquare));
+    MatrixXd C = scene.prior;
+    for (const ViewObservations& observed : fit.views)
+    {
+        const ViewDerivatives d = differentiateView(fit.rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
+        C = covarianceWith(C, PoseNullSpace(d.byPose)(d.byParameters), SIGMA);
+        C = 0.5*(C + C.transpose()).eval();
+    }
+    const double scale = fit.chiSquare/problem.observations();
     const int count = columnCount(c.truth);
-    VectorXd error = draw(scene.posterior, random);
-    error.tail(TARGET_ERRORS).setZero();
-    c.input.rig = c.truth.clone();
-    setParameters(c.input.rig, parametersOf(c.truth) + error);
+    c.input.rig = fit.rig.clone();
     c.input.rig.targetCovariance.release();
-    c.input.covariance = toMat(MatrixXd(scene.posterior.topLeftCorner(count, count)*scale));
+    c.input.covariance = toMat(MatrixXd(C.topLeftCorner(count, count)*scale));
     c.input.sigma = SIGMA*std::sqrt(scale);
-    c.input.dof = FREEDOM;
+    c.input.dof = problem.observations();
     return c;
 }
 

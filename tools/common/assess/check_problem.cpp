@@ -88,7 +88,7 @@ RigModel CheckProblem::rigOf(const VectorXd& q, const Change* change, const Vect
 
 MatrixXd CheckProblem::derivative(const Change& change, const VectorXd& q, const VectorXd& delta) const
 {
-    const double SMALL = 1e-5;      // of the range
+    const double SMALL = 1e-3;      // of the range; cv::Rodrigues takes turns below 1e-5 for none
     const VectorXd ranges = change.ranges();
     MatrixXd D(parameters_.size(), ranges.size());
     for (int i = 0; i < ranges.size(); i++)
