@@ -2,24 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The manual: what --help prints first.
-static const char MANUAL[] = R"(Checks whether the window has moved since the calibration, from one new pair or a few images through it.
+static const char MANUAL[] = R"(Checks whether anything has changed since the calibration, and what, from one new pair or a few images through the window.
 
   refract_check calib.yml --size=6x5 --square=39 --direct=new/direct.png --glass=new/glass.png
   refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
   refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct2='d2/*' --glass2='g2/*'      a stereo rig
 
 One image each of --direct and --glass are a pair; among several, those with the same name. The target must not have moved
-between them, not even by a tenth of a pixel, as such a shift looks like a tilt of the window. The test compares the tilt
-since the calibration with its uncertainty, which comes from the noise of the calibration's residuals, from the covariance
-in calib.yml and from where the target is in the new images.
+between them, not even by a tenth of a pixel: in air, such a shift looks like a tilt of the window (--placement-std).
+Tried, each alone: a window tilted, its distance, thickness, index, wedge; the medium before it; a camera's focus, principal
+point, R and T; the square of the board; a motion of all boards between direct and glass; images turned, mirrored, exchanged, or
+of different moments. What explains the images best is named with its value and +-; what does so about as well follows after "or".
+The noise comes from the calibration's residuals, the calibration's own error from the covariance in calib.yml.
 A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
-If nothing moved, it says "moved" with the probability --false-alarm.
+If nothing changed, it says that something did with the probability --false-alarm.
 
-Exit code: 0 unchanged, 2 moved, 1 could not tell: bad images, images that no tilt of the window explains, or images that would
-not show a tilt of --detect degrees with a probability of 95 %.)";
+Exit code: 0 unchanged, 2 something changed, 1 could not tell: bad images, or images that would not show a tilt of --detect
+degrees with a probability of 95 %.)";
 
-#include "measure/measurement.hpp"
 #include "assess/new_pane.hpp"
+#include "assess/rig_check.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
 #include "calibrate/units.hpp"
@@ -38,8 +40,6 @@ using namespace tools;
 namespace {
 
 const double CERTAIN = 0.95;            // probability with which --detect degrees must show
-const double NO_TILT_EXPLAINS = 1e-4;   // probability of the residuals below which the images do not fit
-const double EXACT = 1e8;               // degrees of freedom of a noise level that is given
 
 struct Options
 {
@@ -60,7 +60,7 @@ void addOptions(CLI::App& app, Options& o)
         ->check(CLI::IsMember(unitNames()));
     o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "probability of \"moved\" although nothing did")->check(between(1e-9, 0.5))
+    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none")->check(between(1e-9, 0.5))
         ->capture_default_str();
     app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
     app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
@@ -76,19 +76,9 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--summary", o.summary, "JSON file with the result");
 }
 
-CheckInput checkInputOf(const Options& o, const Calibration& calibration)
+CheckInput inputOf(const Options& o, const Calibration& calibration)
 {
-    CheckInput input;
-    input.rig = modelOf(calibration);
-    input.covariance = calibration.covariance;
-    input.sigma = o.sigma > 0 ? o.sigma : pixelSigmaOf(calibration);
-    input.dof = o.sigma > 0 || !(calibration.dof > 0) ? EXACT : calibration.dof;
-    if (!(input.sigma > 0))
-        throw Failure("'" + o.calibration + "' does not say how large the noise of a pixel is: calibrate with refract_calib, or "
-                      "give --pixel-sigma");
-    if (input.covariance.empty() && !(o.sigma > 0))
-        throw Failure("'" + o.calibration + "' has no covariance: calibrate with refract_calib, or give --pixel-sigma to take "
-                      "the file as exact");
+    const CheckInput input = checkInputOf(calibration, o.calibration, o.sigma);
     if (!o.newPane)
         return input;
     PaneStd pane = o.pane;
@@ -104,15 +94,9 @@ void addPlacement(const Options& o, const std::vector<View>& views, CheckInput& 
     data.views = views;
     GivenStd std;
     std.placement = o.placement;
-    input.rig.targetCovariance = targetCovarianceOf(data, input.rig, std);
-    if (input.rig.targetCovariance.empty())
-        return;
-    const int count = columnCount(input.rig);
-    cv::Mat covariance = cv::Mat::zeros(count + TARGET_ERRORS, count + TARGET_ERRORS, CV_64F);
-    if (!input.covariance.empty())
-        input.covariance.copyTo(covariance(cv::Rect(0, 0, count, count)));
-    input.rig.targetCovariance.copyTo(covariance(cv::Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));
-    input.covariance = covariance;
+    const cv::Mat covariance = targetCovarianceOf(data, input.rig, std);
+    if (!covariance.empty())
+        input = withTargetColumns(input, covariance);
 }
 
 //! If there is one image for each camera, they are one view, whatever their names.
@@ -175,16 +159,11 @@ std::vector<View> readViews(const Options& o, const Calibration& calibration, co
     return views;
 }
 
-bool anyMoved(const CheckResult& result)
-{
-    return std::any_of(result.windows.begin(), result.windows.end(), [](const WindowCheck& w) { return w.moved; });
-}
-
 //! How many times as many images would show the tilt, or 0 if no number would.
-int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, double dof)
+int imagesNeeded(const WindowCheck& window, const CheckResult& result, double degrees)
 {
     for (int n = 2; n <= 10000; n++)
-        if (powerOf(window, count, dof, o.falseAlarm, o.detect, 1./n) >= CERTAIN)
+        if (powerOf(window, result, degrees, 1./n) >= CERTAIN)
             return n;
     return 0;
 }
@@ -192,59 +171,100 @@ int imagesNeeded(const WindowCheck& window, size_t count, const Options& o, doub
 //! Empty, or why the images do not tell.
 std::string whyNot(const CheckResult& result, const Options& o, const CheckInput& input)
 {
-    if (result.residualProbability < NO_TILT_EXPLAINS)
-        return format("the new images do not fit the calibration with any tilt of the window: noise %.3f px per coordinate, the "
-                      "calibration had %.3f px; did the target move between the images of a pair (--placement-std), or did lens, "
-                      "focus, glass or target change?", result.sigmaSeen, input.sigma);
-    if (anyMoved(result))
+    if (result.changed)
         return "";
     for (const WindowCheck& window : result.windows)
     {
-        const double power = powerOf(window, result.windows.size(), input.dof, o.falseAlarm, o.detect);
+        const double power = powerOf(window, result, o.detect);
         if (power >= CERTAIN)
             continue;
-        const int times = imagesNeeded(window, result.windows.size(), o, input.dof);
+        const int times = imagesNeeded(window, result, o.detect);
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
+        const std::string noisy = result.sigma > input.sigma ? format("the new images are noisier than the calibration's (%.3g px, there %.3g "
+            "px: check focus, light, motion); ", result.sigma, input.sigma) : "";
         const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times,
             pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
-        return format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
-                      "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
+        return noisy + format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
+                              "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
     }
+    if (result.windows.empty())
+        return "the images do not tell where any window is: take a pair without and with the window, or more images";
     return "";
 }
 
-const char* verdictOf(bool moved, const std::string& why)
+const char* verdictOf(const CheckResult& result, const std::string& why)
 {
-    return !why.empty() ? "cannot tell" : moved ? "moved" : "unchanged";
+    const bool windows = std::any_of(result.windows.begin(), result.windows.end(), [](const WindowCheck& w) { return w.moved; });
+    return !why.empty() ? "cannot tell" : !result.changed ? "unchanged" : windows ? "moved" : "changed";
+}
+
+nlohmann::ordered_json numberOrNull(double value)
+{
+    return value == value ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+nlohmann::ordered_json jsonOf(const NamedChange& change)
+{
+    nlohmann::ordered_json json = {{"name", change.name}, {"camera", nullptr}, {"value", nlohmann::ordered_json::array()},
+        {"std", nlohmann::ordered_json::array()}, {"unit", nlohmann::ordered_json::array()}, {"p", change.probability},
+        {"text", change.sentence}};
+    if (change.camera >= 0)
+        json["camera"] = change.camera + 1;
+    for (const ChangedValue& value : change.values)
+    {
+        json["value"].push_back(value.value);
+        json["std"].push_back(value.std);
+        json["unit"].push_back(value.unit);
+    }
+    return json;
 }
 
 std::string jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict,
                    const std::string& why)
 {
-    nlohmann::ordered_json windows = nlohmann::ordered_json::array();
+    nlohmann::ordered_json windows = nlohmann::ordered_json::array(), changes = nlohmann::ordered_json::array();
     for (const WindowCheck& w : result.windows)
-        windows.push_back({{"camera", w.camera + 1}, {"moved", w.moved}, {"tilt_deg", w.tiltDeg},
+        windows.push_back({{"camera", w.camera + 1}, {"moved", w.moved}, {"tilt_deg", numberOrNull(w.tiltDeg)},
                            {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}}, {"probability_if_unchanged", w.probability},
                            {"normal", {w.normal[0], w.normal[1], w.normal[2]}},
-                           {"detection_probability",
-                            powerOf(w, result.windows.size(), input.dof, o.falseAlarm, o.detect)}});
+                           {"detection_probability", powerOf(w, result, o.detect)}});
+    for (const NamedChange& change : result.changes)
+        changes.push_back(jsonOf(change));
     const nlohmann::ordered_json json = {
-        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect},
-        {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
+        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"changes", changes}, {"explained", result.explained},
+        {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
     return json.dump(1) + '\n';
+}
+
+void printCause(const CheckResult& result)
+{
+    if (result.changes.empty())
+    {
+        std::cout << "No single change explains the new images: were camera, window, board or the order of the images others?\n\n";
+        return;
+    }
+    std::cout << causesIn(result);
+    if (!result.explained)
+        std::cout << ".\nThis does not explain all: more than one thing changed, or one that is not in the list (--help).\n"
+                     "What is left is " << format("%.3g px, the noise %.3g px", result.sigmaSeen, result.sigma);
+    else if (result.changes.size() == 1)
+        std::cout << "; nothing else";
+    std::cout << "\n\n";
 }
 
 void print(const CheckResult& result, const Options& o, const CheckInput& input)
 {
-    Table table({"", "tilt since then, deg", "+- (two principal)", "chance if unchanged",
-                 format("would show %g deg", o.detect), ""});
+    if (result.changed)
+        printCause(result);
+    Table table({"", "tilt since then, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect), ""});
     for (const WindowCheck& w : result.windows)
-        table.add({format("window of camera %d", w.camera + 1), format("%.4f", w.tiltDeg),
+        table.add({format("window of camera %d", w.camera + 1), w.tiltDeg == w.tiltDeg ? format("%.4f", w.tiltDeg) : "-",
                    format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
-                   format("%.1f %%", 100.*powerOf(w, result.windows.size(), input.dof, o.falseAlarm, o.detect)),
-                   w.moved ? "moved" : "no sign of it"});
-    table.print(std::cout);
+                   format("%.1f %%", 100.*powerOf(w, result, o.detect)),
+                   w.moved ? "moved" : result.changed ? "not the cause" : "no sign of it"});
+    if (!result.windows.empty())
+        table.print(std::cout);
     std::cout << format("\nNoise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.\n",
                         result.sigmaSeen, input.sigma, o.falseAlarm);
 }
@@ -263,22 +283,21 @@ int main(int argc, char** argv)
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
-        CheckInput input = checkInputOf(options, calibration);
+        CheckInput input = inputOf(options, calibration);
         const std::vector<View> views = readViews(options, calibration, target, command);
         addPlacement(options, views, input);
-        const CheckResult result = checkTilts(input, views, options.falseAlarm);
-        const bool moved = anyMoved(result);
-        const std::string why = whyNot(result, options, input), verdict = verdictOf(moved, why);
+        const CheckResult result = checkRig(input, views, options.falseAlarm, calibration.unit);
+        const std::string why = whyNot(result, options, input), verdict = verdictOf(result, why);
         if (!options.summary.empty())
             writeText(options.summary, jsonOf(result, options, input, verdict, why));
         if (!command.quiet())
         {
-            const Tone tone = !why.empty() ? Tone::DOUBTFUL : moved ? Tone::BAD : Tone::GOOD;
+            const Tone tone = !why.empty() ? Tone::DOUBTFUL : result.changed ? Tone::BAD : Tone::GOOD;
             std::cout << toned(std::cout, verdict, tone) << "\n\n";
             print(result, options, input);
         }
         if (!why.empty())
             throw Failure(why);
-        return moved ? LIMIT_NOT_MET : DONE;
+        return result.changed ? LIMIT_NOT_MET : DONE;
     });
 }

@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "assess/rig_check.hpp"
 #include "measure/consistency.hpp"
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
@@ -46,7 +47,8 @@ swapped images, images of two moments, a moved camera. 11: a pixel of the point 
 The table compares the distances between neighbouring points with --square, which must be in the unit of the calibration.
 
 Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9 or
-11, or the distances between neighbouring points are on average more than 20 % off.)";
+11, or the distances between neighbouring points are on average more than 20 % off. Then a target tells the cause: images exchanged,
+turned, mirrored or of two moments, a moved camera or window, another focus, medium or square; what fits as well follows after "or".)";
 
 namespace {
 
@@ -298,6 +300,13 @@ std::string wrongLengths(double square, const std::vector<MeasuredView>& measure
                   square);
 }
 
+//! What would explain a contradiction, if a target's shape is known; or empty.
+std::string causeOf(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
+{
+    return options.points.empty() ? causesOf(calibration, std::vector<View>(measured.begin(), measured.end()), pixelSigma(options, calibration))
+                                  : "";
+}
+
 void warnNoisier(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured,
                 const std::vector<Measurement>& results, const Command& command)
 {
@@ -501,20 +510,28 @@ int main(int argc, char** argv)
         for (const Measurement& m : results)
             answers += m.answers();
         if (!answers)
-            throw Failure(!outside.empty() ? outside : !contradiction.empty() ? contradiction
-                          : "no point could be measured: are images and calibration of the same cameras?");
+        {
+            const std::string cause = !outside.empty() || contradiction.empty() ? "" : causeOf(options, calibration, measured);
+            throw Failure(!outside.empty() ? outside
+                          : contradiction.empty() ? "no point could be measured: are images and calibration of the same cameras?"
+                          : contradiction + (cause.empty() ? "" : ". What explains them: " + cause));
+        }
         for (const std::string& text : {outside, contradiction})
             if (!text.empty())
                 command.warn(text);
         const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
+        const bool isDoubtful = mostContradict(results) || !lengths.empty();
+        const std::string cause = isDoubtful ? causeOf(options, calibration, measured) : "";
+        if (!cause.empty())
+            command.warn("what explains them: " + cause);
         warnNoisier(options, calibration, measured, results, command);
         sayUncovered(options, calibration, command);
         if (!options.out.empty())
             writeText(options.out, csvOf(measured, results, calibration.cameras.size()));
         if (!command.quiet())
             printTable(options, calibration, others, measured, results);
-        return mostContradict(results) || !lengths.empty() ? LIMIT_NOT_MET : DONE;
+        return isDoubtful ? LIMIT_NOT_MET : DONE;
     });
 }

@@ -20,6 +20,18 @@ TEST_CASE("The tail of F agrees with its tables", "[f_distribution]")
             CHECK(upperTailF(1, v, quantileF2(v, p)) == Approx(p).epsilon(1e-6));
 }
 
+TEST_CASE("The tail of F with an odd number of degrees of freedom agrees with its tables", "[f_distribution]")
+{
+    CHECK(upperTailAnyF(4, 20, 2.8661) == Approx(0.05).epsilon(1e-4));
+    CHECK(upperTailAnyF(1, 20, 4.3512) == Approx(0.05).epsilon(1e-3));
+    CHECK(upperTailAnyF(1, 60, 7.0771) == Approx(0.01).epsilon(1e-3));
+    CHECK(upperTailAnyF(3, 30, 4.5097) == Approx(0.01).epsilon(1e-3));
+    CHECK(upperTailAnyF(5, 40, 2.4495) == Approx(0.05).epsilon(1e-3));
+    CHECK(upperTailAnyF(1, 1e8, 6.6349) == Approx(0.01).epsilon(1e-4));       // chi-square
+    CHECK(upperTailAnyF(3, 1e8, 11.3449/3) == Approx(0.01).epsilon(1e-4));
+    CHECK(upperTailAnyF(3, 30, 0.) == 1.);
+}
+
 TEST_CASE("The tail of the noncentral F agrees with a simulation", "[f_distribution]")
 {
     scenes::Random random(3001);

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_NEW_PANE_HPP
 #define REFRACT_TOOLS_NEW_PANE_HPP
 
-#include "assess/window_check.hpp"
+#include "assess/check_input.hpp"
 
 namespace tools {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/f_distribution.hpp"
+#include <opencv2/core/cvdef.h>
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +18,26 @@ double upperTailF(int m, double v, double x)
     {
         sum += std::exp(logTerm);
         logTerm += std::log((0.5*v + j)/(j + 1.)) + logRest;
+    }
+    return std::min(1., sum);
+}
+
+double upperTailAnyF(int k, double v, double x)
+{
+    if (k % 2 == 0)
+        return upperTailF(k/2, v, x);
+    if (!(x > 0))
+        return 1.;
+    const double odds = k*x/v, logW = -std::log1p(odds), logRest = std::log(odds) + logW, a = 0.5*v;
+    const double z = (8.*v + 1.)/(8.*v + 3.)*std::sqrt(-v*logW);
+    double sum = std::erfc(z/std::sqrt(2.));
+    // Gamma(a + 1/2)/Gamma(a), over Gamma(3/2)
+    double logTerm = 0.5*std::log(a) + std::log1p(-1./(8.*a) + 1./(128.*a*a)) - std::log(0.5*std::sqrt(CV_PI)) + a*logW + 0.5*logRest;
+    for (int j = 0; j < (k - 1)/2; j++)
+    {
+        const double b = j + 0.5;
+        sum += std::exp(logTerm);
+        logTerm += std::log((a + b)/(b + 1.)) + logRest;
     }
     return std::min(1., sum);
 }

@@ -14,6 +14,10 @@ namespace tools {
 //! P(F > x) with 2m and v degrees of freedom.
 double upperTailF(int m, double v, double x);
 
+/** The same with any number of numerator degrees of freedom. An odd one begins with that of one, Student's t, by Wallace's normal
+approximation (Annals of Mathematical Statistics 30, 1959), and goes on as the sum does: within 1e-3 of itself from v = 20 on. */
+double upperTailAnyF(int k, double v, double x);
+
 //! The x that F with 2 and v degrees of freedom exceeds with this probability.
 double quantileF2(double v, double probability);
 

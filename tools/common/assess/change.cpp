@@ -1,0 +1,301 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/change.hpp"
+#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/units.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double DEGREE = CV_PI/180.;
+const double FAR = 10.*DEGREE, WIDE = 0.2;      // of angles, and of lengths and factors: share of their size
+
+Vec3d first3(const VectorXd& delta, int at = 0) { return Vec3d(delta[at], delta[at + 1], delta[at + 2]); }
+
+void changeWindow(RigModel& rig, int c, const std::function<void(GlassWindow&)>& change)
+{
+    GlassWindow window = rig.cameras[c]->window();
+    change(window);
+    rig.cameras[c]->setWindow(window);
+}
+
+//! Of all cameras that look through the window of one of them.
+void changePane(RigModel& rig, int c, const std::function<void(GlassWindow&)>& change)
+{
+    for (int k = 0; k < (int)rig.cameras.size(); k++)
+        if (rig.sharesWindow(c, k))
+            changeWindow(rig, k, change);
+}
+
+/* The window's plane n X = d in the frame of its first camera; a camera at C behind it has the distance d - n C. */
+void moveWindow(RigModel& rig, int owner, double tilt1, double tilt2, double nearer)
+{
+    const Vec3d n0 = rig.cameras[owner]->window().normal, across = normalize(n0.cross(Vec3d(0, 1, 0)));
+    const Vec3d n = normalize(n0 + tilt1*across + tilt2*n0.cross(across));
+    for (int k = 0; k < (int)rig.cameras.size(); k++)
+        if (rig.sharesWindow(owner, k))
+        {
+            const RigidTransform k_from_owner = fromTo(rig.extrinsics[owner], rig.extrinsics[k]);
+            const Vec3d centre = k_from_owner.inverse(Vec3d());
+            changeWindow(rig, k, [&](GlassWindow& window) {
+                window.normal = normalize(k_from_owner.R*n);
+                window.distance = std::max(0., window.distance + nearer - (n - n0).dot(centre));
+            });
+        }
+}
+
+bool hasTwoMedia(const RigModel& rig, int c)
+{
+    const GlassWindow window = rig.cameras[c]->window();
+    return window.innerIndex != window.outerIndex;
+}
+
+bool looksThroughWindow(const RigModel& rig, int c)
+{
+    return !rig.cameras[c]->window().thickness.empty() || hasTwoMedia(rig, c);
+}
+
+//! The camera as it was sees with this motion what it now sees: X -> motion X in its own frame.
+void moveCamera(RigModel& rig, int c, const RigidTransform& motion)
+{
+    if (c > 0)
+    {
+        rig.extrinsics[c] = motion*rig.extrinsics[c];
+        return;
+    }
+    const RigidTransform back{motion.R.t(), -(motion.R.t()*motion.T)};
+    for (size_t k = 1; k < rig.extrinsics.size(); k++)
+        rig.extrinsics[k] = rig.extrinsics[k]*back;
+}
+
+class ChangeTable
+{
+public:
+    ChangeTable(const RigModel& rig, const std::string& unit, const Vec3d& middle)
+        : rig_(rig), unit_(unit), middle_(middle), count_((int)rig.cameras.size()), depth_(std::max(1e-9, norm(middle)))
+    {
+        for (int c = 0; c < count_; c++)
+            addWindow(c);
+        addMedium();
+        for (int c = 0; c < count_; c++)
+            addLens(c);
+        for (int c = 0; c < count_; c++)
+            addPlace(c);
+        addTarget();
+    }
+    std::vector<Change> rows;
+
+private:
+    ChangedQuantity angle(int count) const { return {"degrees", 1./DEGREE, count, FAR}; }
+    ChangedQuantity length(int count, double range) const { return {unit_, 1., count, range}; }
+    static ChangedQuantity percent(double range) { return {"%", 100., 1, range}; }
+
+    void add(const std::string& name, int camera, const std::vector<ChangedQuantity>& quantities,
+             const std::function<void(RigModel&, const VectorXd&)>& apply)
+    {
+        rows.push_back({name, camera, quantities, apply});
+    }
+
+    //! "window", or "window of camera 2", or "window of cameras 1, 2".
+    std::string windowName(int c) const
+    {
+        std::string cameras;
+        int sharing = 0;
+        for (int k = 0; k < count_; k++)
+            if (rig_.sharesWindow(c, k))
+                cameras += (sharing++ ? ", " : "") + std::to_string(k + 1);
+        return count_ == 1 ? "window" : "window of camera" + std::string(sharing > 1 ? "s " : " ") + cameras;
+    }
+
+    void addWindow(int c)
+    {
+        if (!rig_.ownsWindow(c) || !looksThroughWindow(rig_, c))
+            return;
+        const GlassWindow window = rig_.cameras[c]->window();
+        const std::string name = windowName(c);
+        add(name + " tilted by", c, {angle(2)}, [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], 0.); });
+        rows.back().isTilt = true;
+        if (hasTwoMedia(rig_, c))
+        {
+            const ChangedQuantity nearer = length(1, WIDE*depth_);
+            add("distance of the " + name + " changed by", c, {nearer},
+                [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, 0., 0., d[0]); });
+            add(name + " tilted and shifted by", c, {angle(2), nearer},
+                [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], d[2]); });
+        }
+        for (size_t i = 0; i < window.thickness.size(); i++)
+            addLayer(c, i, window, name);
+        // The angles of a wedge, and what they do to a thickness, are another camera's other numbers.
+        const bool isAlone = (int)std::count_if(rig_.windows.begin(), rig_.windows.end(),
+                                                [&](int w) { return w == rig_.windows[c]; }) <= 1;
+        if (!window.wedge.empty() && isAlone)
+            addWedge(c, name);
+    }
+
+    void addLayer(int c, size_t i, const GlassWindow& window, const std::string& name)
+    {
+        const std::string of = (window.thickness.size() > 1 ? format(" of layer %zu", i + 1) : std::string()) + " of the " + name + " changed by";
+        add("thickness" + of, c, {length(1, window.thickness[i])}, [c, i](RigModel& rig, const VectorXd& d) {
+            changePane(rig, c, [&](GlassWindow& w) { w.thickness[i] += d[0]; }); });
+        add("index" + of, c, {{"", 1., 1, WIDE}}, [c, i](RigModel& rig, const VectorXd& d) {
+            changePane(rig, c, [&](GlassWindow& w) { w.index[i] += d[0]; }); });
+    }
+
+    void addWedge(int c, const std::string& name)
+    {
+        const ChangedQuantity minutes{"arc minutes", 1./ARC_MINUTE, 2, 60.*ARC_MINUTE};
+        add("wedge of the " + name + " (another pane, or the pane turned) changed by", c, {minutes},
+            [c](RigModel& rig, const VectorXd& d) {
+                changeWindow(rig, c, [&](GlassWindow& w) { w.wedge[0] += Vec2d(d[0], d[1]); }); });
+        const GlassWindow window = rig_.cameras[c]->window();
+        add(name + ": another pane, wedge and thickness changed by", c, {minutes, length(1, window.thickness[0])},
+            [c](RigModel& rig, const VectorXd& d) {
+                changeWindow(rig, c, [&](GlassWindow& w) { w.wedge[0] += Vec2d(d[0], d[1]); w.thickness[0] += d[2]; }); });
+    }
+
+    void addMedium()
+    {
+        const int count = count_;
+        const auto isOutside = [](const RigModel& rig, int c) { return hasTwoMedia(rig, c); };
+        for (int c = 0; c < count; c++)
+            if (isOutside(rig_, c))
+            {
+                add("index of the medium before the window (salt, temperature) changed by", -1, {{"", 1., 1, WIDE}},
+                    [count, isOutside](RigModel& rig, const VectorXd& d) {
+                        for (int k = 0; k < count; k++)
+                            if (isOutside(rig, k))
+                                changeWindow(rig, k, [&](GlassWindow& w) { w.outerIndex += d[0]; }); });
+                return;
+            }
+    }
+
+    void addLens(int c)
+    {
+        const auto lensBy = [c](double factor, double x, double y) {
+            return [c, factor, x, y](RigModel& rig) {
+                Mat lens = rig.cameras[c]->lensParameters().clone();
+                lens.at<double>(0) *= factor;
+                lens.at<double>(1) *= factor;
+                lens.at<double>(2) += x;
+                lens.at<double>(3) += y;
+                rig.cameras[c]->setLensParameters(lens);
+            };
+        };
+        if (isSplined(*rig_.cameras[c]))
+            return;
+        const std::string of = count_ > 1 ? format(" of camera %d", c + 1) : "";
+        const double f = rig_.cameras[c]->lensParameters().at<double>(0);
+        const ChangedQuantity pixels{"px", 1., 2, WIDE*f};
+        add("focal length" + of + " changed by", c, {percent(WIDE)},
+            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], 0., 0.)(rig); });
+        add("principal point" + of + " (lens or sensor shifted) moved by", c, {pixels},
+            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1., d[0], d[1])(rig); });
+        add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
+            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
+    }
+
+    void addPlace(int c)
+    {
+        // Of two cameras, each moves to the other: said of the second.
+        if (count_ == 1 || (count_ == 2 && c == 0))
+            return;
+        const std::string camera = format("camera %d", c + 1);
+        const double range = WIDE*depth_;
+        add(c == 0 ? "camera 1 turned about its own centre by" : format("R of camera %d (turned about its own centre) changed by", c + 1),
+            c, {angle(3)}, [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {rotationMatrix(first3(d)), Vec3d()}); });
+        add(c == 0 ? "camera 1 shifted by" : "T of " + camera + " changed by", c, {length(3, range)},
+            [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {Matx33d::eye(), first3(d)}); });
+        add(c == 0 ? "camera 1 turned and shifted by" : "R and T of " + camera + " changed by", c, {angle(3), length(3, range)},
+            [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, transformOf(first3(d), first3(d, 3))); });
+        if (c == 0)
+            return;
+        add("R of " + camera + " alone (T as it was" + (count_ == 2 ? ": camera 1 turned about its own centre" : "") + ") changed by", c,
+            {angle(3)}, [c](RigModel& rig, const VectorXd& d) {
+                rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
+        const double baseLine = norm(rig_.extrinsics[c].T);
+        if (baseLine > 0.)
+            add(format("base line (length of T of camera %d) changed by", c + 1), c, {length(1, WIDE*baseLine)},
+                [c, baseLine](RigModel& rig, const VectorXd& d) { rig.extrinsics[c].T *= 1. + d[0]/baseLine; });
+    }
+
+    void addTarget()
+    {
+        add("square of the board (--square) other than given by", -1, {percent(WIDE)},
+            [](RigModel& rig, const VectorXd& d) { rig.targetScale *= 1. + d[0]; });
+        const Vec3d middle = middle_;
+        const auto move = [middle](RigModel& rig, const Vec3d& turn, const Vec3d& shift) {
+            const Matx33d R = rotationMatrix(turn);
+            rig.targetMotion = RigidTransform{R, middle - R*middle + shift}*rig.targetMotion;
+        };
+        const std::string boards = "all boards (or the mount of the cameras) between the direct and the glass images (--placement-std) ";
+        add(boards + "shifted by", -1, {length(3, WIDE*depth_)},
+            [move](RigModel& rig, const VectorXd& d) { move(rig, Vec3d(), first3(d)); });
+        add(boards + "shifted and turned by", -1, {length(3, WIDE*depth_), angle(3)},
+            [move](RigModel& rig, const VectorXd& d) { move(rig, first3(d, 3), first3(d)); });
+    }
+
+    const RigModel& rig_;
+    const std::string unit_;
+    const Vec3d middle_;
+    const int count_;
+    const double depth_;
+};
+
+} // namespace
+
+int Change::size() const
+{
+    int count = 0;
+    for (const ChangedQuantity& quantity : quantities)
+        count += quantity.count;
+    return count;
+}
+
+VectorXd Change::ranges() const
+{
+    VectorXd ranges(size());
+    int at = 0;
+    for (const ChangedQuantity& quantity : quantities)
+        for (int i = 0; i < quantity.count; i++)
+            ranges[at++] = quantity.range;
+    return ranges;
+}
+
+std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance)
+{
+    std::vector<ChangedValue> values;
+    int at = 0;
+    for (const ChangedQuantity& quantity : change.quantities)
+    {
+        const VectorXd part = delta.segment(at, quantity.count);
+        const double length = quantity.count == 1 ? part[0] : part.norm();
+        const VectorXd along = quantity.count == 1 || !(length > 0.) ? VectorXd(VectorXd::Unit(quantity.count, 0)) : VectorXd(part/length);
+        const double variance = along.dot(covariance.block(at, at, quantity.count, quantity.count)*along);
+        values.push_back({quantity.factor*length, quantity.factor*std::sqrt(std::max(0., variance)), quantity.unit});
+        at += quantity.count;
+    }
+    return values;
+}
+
+std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& values)
+{
+    std::string text = change.name;
+    for (size_t i = 0; i < values.size(); i++)
+        text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
+    return text;
+}
+
+std::vector<Change> changesOf(const RigModel& rig, const std::string& unit, const Vec3d& middle)
+{
+    return ChangeTable(rig, unit, middle).rows;
+}
+
+} // namespace tools

@@ -1,0 +1,54 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHANGE_HPP
+#define REFRACT_TOOLS_CHANGE_HPP
+
+#include "measure/eigen_matrix.hpp"
+#include "calibrate/rig_model.hpp"
+#include <functional>
+
+/* What may have changed on a rig since its calibration: one hypothesis a row of a table. */
+namespace tools {
+
+//! Some of a change's parameters, told as one number: their length, or their value if there is one.
+struct ChangedQuantity
+{
+    std::string unit;           //!< "degrees"; empty: the number has none
+    double factor;              //!< from the parameter to that unit
+    int count;                  //!< parameters
+    double range;               //!< of each, by how much it may at most have changed
+};
+
+struct Change
+{
+    std::string name;           //!< "window of camera 1 tilted by"
+    int camera;                 //!< from 0; negative: of the rig as a whole
+    std::vector<ChangedQuantity> quantities;
+    //! Changes the rig by these parameters; 0: not at all.
+    std::function<void(RigModel& rig, const VectorXd& delta)> apply;
+    bool isTilt = false;        //!< of the window of that camera
+
+    int size() const;
+    VectorXd ranges() const;
+};
+
+//! The estimate of one quantity of a change.
+struct ChangedValue
+{
+    double value, std;
+    std::string unit;
+};
+std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance);
+
+//! "window of camera 1 tilted by 0.102 +- 0.004 degrees"
+std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& values);
+
+/** The table. Each row frees one thing alone.
+@param unit of lengths, for the sentences; may be empty
+@param middle of the boards, in camera 1: about which they turn */
+std::vector<Change> changesOf(const RigModel& rig, const std::string& unit, const cv::Vec3d& middle);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHANGE_HPP

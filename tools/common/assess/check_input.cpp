@@ -1,0 +1,158 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/check_input.hpp"
+#include "measure/measurement.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "console/failure.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double EXACT = 1e8;       // degrees of freedom of a noise level that is given
+
+//! Where each column of one rig is in another that has wedges: these are the last of a camera.
+std::vector<int> columnsIn(const RigModel& from, const RigModel& to)
+{
+    std::vector<int> columns;
+    for (int k = 0; k < (int)from.cameras.size(); k++)
+    {
+        const ParameterColumns old = columnsOf(from, k), now = columnsOf(to, k);
+        for (int i = old.lens; i < old.end; i++)
+            columns.push_back(now.lens + i - old.lens);
+    }
+    for (int i = 0; i < 6*((int)from.cameras.size() - 1); i++)
+        columns.push_back(extrinsicsColumn(to, 1) + i);
+    for (int i = 0; i < TARGET_ERRORS && !from.targetCovariance.empty(); i++)
+        columns.push_back(columnCount(to) + i);
+    return columns;
+}
+
+VectorXd windowParameters(const GlassWindow& window)
+{
+    std::vector<double> p(window.normal.val, window.normal.val + 3);
+    p.push_back(window.distance);
+    p.insert(p.end(), window.thickness.begin(), window.thickness.end());
+    p.insert(p.end(), window.index.begin(), window.index.end());
+    p.insert(p.end(), {window.innerIndex, window.outerIndex});
+    for (const Vec2d& wedge : window.wedge)
+        p.insert(p.end(), {wedge[0], wedge[1]});
+    return Eigen::Map<VectorXd>(p.data(), p.size());
+}
+
+GlassWindow withWindowParameters(GlassWindow window, const double* p)
+{
+    window.normal = normalize(Vec3d(p));
+    window.distance = p[3];
+    p += 4;
+    for (std::vector<double>* values : {&window.thickness, &window.index})
+        for (double& value : *values)
+            value = *p++;
+    window.innerIndex = *p++;
+    window.outerIndex = *p++;
+    for (Vec2d& wedge : window.wedge)
+        for (double& angle : wedge.val)
+            angle = *p++;
+    return window;
+}
+
+VectorXd motionParameters(const RigidTransform& transform)
+{
+    const Vec3d r = rotationVector(transform.R);
+    VectorXd p(6);
+    p << r[0], r[1], r[2], transform.T[0], transform.T[1], transform.T[2];
+    return p;
+}
+
+RigidTransform motionOf(const double* p) { return transformOf(Vec3d(p), Vec3d(p + 3)); }
+
+} // namespace
+
+CheckInput checkInputOf(const Calibration& calibration, const std::string& filename, double pixelSigma)
+{
+    CheckInput input;
+    input.rig = modelOf(calibration);
+    input.rig.windows = calibration.windows;
+    input.covariance = calibration.covariance;
+    input.sigma = pixelSigma > 0 ? pixelSigma : pixelSigmaOf(calibration);
+    input.dof = pixelSigma > 0 || !(calibration.dof > 0) ? EXACT : calibration.dof;
+    if (!(input.sigma > 0))
+        throw Failure("'" + filename + "' does not say how large the noise of a pixel is: calibrate with refract_calib, or "
+                      "give --pixel-sigma");
+    if (input.covariance.empty() && !(pixelSigma > 0))
+        throw Failure("'" + filename + "' has no covariance: calibrate with refract_calib, or give --pixel-sigma to take "
+                      "the file as exact");
+    return input;
+}
+
+CheckInput withWedges(const CheckInput& input)
+{
+    CheckInput result = input;
+    result.rig = input.rig.clone();
+    for (const Ptr<RefractiveCamera>& camera : result.rig.cameras)
+    {
+        GlassWindow window = camera->window();
+        window.wedge.resize(window.thickness.size());
+        camera->setWindow(window);
+    }
+    const int count = (int)parametersOf(result.rig).size();
+    result.covariance = Mat::zeros(count, count, CV_64F);
+    const std::vector<int> columns = columnsIn(input.rig, result.rig);
+    for (int i = 0; i < input.covariance.rows; i++)
+        for (int j = 0; j < input.covariance.cols; j++)
+            result.covariance.at<double>(columns[i], columns[j]) = input.covariance.at<double>(i, j);
+    return result;
+}
+
+CheckInput withTargetColumns(const CheckInput& input, const Mat& covariance)
+{
+    CheckInput result = input;
+    result.rig.targetCovariance = covariance.empty() ? Mat::zeros(TARGET_ERRORS, TARGET_ERRORS, CV_64F) : covariance;
+    const int count = columnCount(input.rig);
+    result.covariance = Mat::zeros(count + TARGET_ERRORS, count + TARGET_ERRORS, CV_64F);
+    if (!input.covariance.empty())
+        input.covariance.copyTo(result.covariance(Rect(0, 0, count, count)));
+    result.rig.targetCovariance.copyTo(result.covariance(Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));
+    return result;
+}
+
+VectorXd parametersOf(const RigModel& rig)
+{
+    const int count = columnCount(rig);
+    const bool hasTargetErrors = !rig.targetCovariance.empty();
+    VectorXd p(count + (hasTargetErrors ? TARGET_ERRORS : 0));
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        p.segment(at.lens, at.lensCount) = toEigen(rig.cameras[c]->lensParameters());
+        p.segment(at.normal, at.end - at.normal) = windowParameters(rig.cameras[c]->window());
+        if (c > 0)
+            p.segment(extrinsicsColumn(rig, c), 6) = motionParameters(rig.extrinsics[c]);
+    }
+    if (hasTargetErrors)
+        p.tail(TARGET_ERRORS) << rig.targetScale, motionParameters(rig.targetMotion);
+    return p;
+}
+
+void setParameters(RigModel& rig, const VectorXd& p)
+{
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(rig, c);
+        const VectorXd lens = p.segment(at.lens, at.lensCount);
+        rig.cameras[c]->setLensParameters(toMat(lens));
+        rig.cameras[c]->setWindow(withWindowParameters(rig.cameras[c]->window(), p.data() + at.normal));
+        if (c > 0)
+            rig.extrinsics[c] = motionOf(p.data() + extrinsicsColumn(rig, c));
+    }
+    if (rig.targetCovariance.empty())
+        return;
+    rig.targetScale = p[columnCount(rig)];
+    rig.targetMotion = motionOf(p.data() + columnCount(rig) + 1);
+}
+
+} // namespace tools

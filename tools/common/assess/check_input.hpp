@@ -1,0 +1,39 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHECK_INPUT_HPP
+#define REFRACT_TOOLS_CHECK_INPUT_HPP
+
+#include "measure/eigen_matrix.hpp"
+#include "calibrate/rig_model.hpp"
+
+/* A calibration as a check of new images starts from it, and its parameters as one vector in the order of Fit::covariance. */
+namespace tools {
+
+struct CheckInput
+{
+    RigModel rig;
+    cv::Mat covariance;         //!< of its parameters, as Fit::covariance; empty: they are exact
+    double sigma;               //!< of a pixel coordinate
+    double dof;                 //!< degrees of freedom of sigma
+};
+
+/** From what a calibration file says. @param pixelSigma given by the user; 0: that of the residuals.
+Throws Failure if the file does not say enough. @param filename for the text */
+CheckInput checkInputOf(const Calibration& calibration, const std::string& filename, double pixelSigma);
+
+//! The same calibration with a column for each angle of a wedge; one that it does not have is 0, exactly.
+CheckInput withWedges(const CheckInput& input);
+
+//! The same with columns for the scale and the motion of the targets. @param covariance of these; empty: they are exact
+CheckInput withTargetColumns(const CheckInput& input, const cv::Mat& covariance);
+
+//! Lenses, windows, R (as rotation vectors) and T, and the targets' errors if the rig has columns for them.
+VectorXd parametersOf(const RigModel& rig);
+
+//! The other way; normals get length 1.
+void setParameters(RigModel& rig, const VectorXd& parameters);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHECK_INPUT_HPP

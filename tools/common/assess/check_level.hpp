@@ -1,0 +1,34 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHECK_LEVEL_HPP
+#define REFRACT_TOOLS_CHECK_LEVEL_HPP
+
+#include "measure/eigen_matrix.hpp"
+#include <vector>
+
+/* Tests of many hypotheses at once, with one probability of a false alarm. A hypothesis is a part of the score, which under
+"nothing changed" is normal with covariance G; its gain s^T G^-1 s, over its degrees of freedom, follows F. */
+namespace tools {
+
+//! One hypothesis: columns of G, and the directions within them that the images tell.
+struct TestedDirections
+{
+    int first;
+    MatrixXd directions;        //!< a column each
+    int count() const { return (int)directions.cols(); }
+};
+
+//! By how much chi^2 falls if it is freed.
+double gainOf(const TestedDirections& tested, const MatrixXd& G, const VectorXd& score);
+
+//! Probability of a gain as large as this or larger if nothing changed. @param dof of the noise
+double probabilityOf(double gain, int count, double dof);
+
+/** The probability below which the least one of all hypotheses is with the probability falseAlarm, if nothing changed. Hypotheses
+overlap, so that this is more than Bonferroni's falseAlarm / count: the quantile over draws of the score, always the same ones. */
+double criticalProbability(const std::vector<TestedDirections>& tested, const MatrixXd& G, double dof, double falseAlarm);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHECK_LEVEL_HPP

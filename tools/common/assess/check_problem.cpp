@@ -1,0 +1,253 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/check_problem.hpp"
+#include "console/failure.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const int ITERATIONS = 10, HALVINGS = 6;
+const double CONVERGED = 1e-3;          // of chi^2, which then is known to far less than 1
+
+//! L of C = L L^T; parameters are of all sizes, so their correlations are decomposed.
+MatrixXd rootOf(const MatrixXd& C)
+{
+    const VectorXd std = C.diagonal().cwiseMax(0.).cwiseSqrt();
+    const VectorXd inverse = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
+    const double NOTHING = 1e-13;
+    const VectorXd& values = eigen.eigenvalues();
+    const Eigen::Index zeros = (values.array() <= NOTHING*values.cwiseMax(0.).sum()).count();
+    const Eigen::Index rank = values.size() - zeros;
+    return std.asDiagonal()*eigen.eigenvectors().rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
+}
+
+void move(ViewObservations& observed, const VectorXd& pose)
+{
+    for (int i = 0; i < 3; i++)
+    {
+        observed.rvec[i] += pose[i];
+        observed.tvec[i] += pose[3 + i];
+    }
+}
+
+} // namespace
+
+//! One linearisation: residuals and derivatives, as they are and with the poses projected out.
+struct CheckProblem::Rows
+{
+    struct OfView
+    {
+        VectorXd residual;
+        MatrixXd byQ, byDelta, byPose;
+    };
+    std::vector<OfView> views;
+    VectorXd residual;
+    MatrixXd byQ, byDelta;
+    double squares = 0.;            //!< of all residuals, whatever the poses
+
+    bool isFinite() const { return std::isfinite(squares) && byQ.allFinite() && byDelta.allFinite(); }
+};
+
+//! H step = gradient, of q and delta.
+struct CheckProblem::Normal
+{
+    MatrixXd H;
+    VectorXd gradient;
+};
+
+CheckProblem::CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma)
+    : input_(input.rig.targetCovariance.empty() ? withTargetColumns(input, Mat()) : input), sigma_(sigma),
+      parameters_(parametersOf(input_.rig)), root_(rootOf(toEigen(input_.covariance)))
+{
+    for (const View& view : views)
+    {
+        views_.push_back(observationsOf(input_.rig, view));
+        observations_ += (int)views_.back().pixels.size() - 6;
+    }
+}
+
+RigModel CheckProblem::rigOf(const VectorXd& q, const Change* change, const VectorXd& delta) const
+{
+    RigModel rig = input_.rig.clone();
+    setParameters(rig, parameters_ + root_*q);
+    if (change)
+        change->apply(rig, delta);
+    return rig;
+}
+
+MatrixXd CheckProblem::derivative(const Change& change, const VectorXd& q, const VectorXd& delta) const
+{
+    const double SMALL = 1e-3;      // of the range; cv::Rodrigues takes turns below 1e-5 for none
+    const VectorXd ranges = change.ranges();
+    MatrixXd D(parameters_.size(), ranges.size());
+    for (int i = 0; i < ranges.size(); i++)
+    {
+        const VectorXd step = SMALL*ranges[i]*VectorXd::Unit(ranges.size(), i);
+        D.col(i) = (parametersOf(rigOf(q, &change, delta + step)) - parametersOf(rigOf(q, &change, delta - step)))
+                   / (2.*SMALL*ranges[i]);
+    }
+    return D;
+}
+
+CheckProblem::Rows CheckProblem::linearise(const RigModel& rig, const std::vector<ViewObservations>& views, const MatrixXd& byDelta) const
+{
+    Rows rows;
+    rows.residual.resize(observations_);
+    rows.byQ.resize(observations_, root_.cols());
+    rows.byDelta.resize(observations_, byDelta.cols());
+    int row = 0;
+    for (const ViewObservations& observed : views)
+    {
+        const ViewDerivatives view = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
+        Rows::OfView of{observed.pixels - view.predicted, view.byParameters*root_, view.byParameters*byDelta, view.byPose};
+        rows.squares += of.residual.squaredNorm();
+        if (!of.residual.allFinite() || !of.byPose.allFinite())
+        {
+            rows.squares = std::numeric_limits<double>::infinity();
+            return rows;
+        }
+        const PoseNullSpace project(view.byPose);
+        const int count = (int)of.residual.size() - 6;
+        rows.residual.segment(row, count) = project(of.residual);
+        rows.byQ.middleRows(row, count) = project(of.byQ);
+        rows.byDelta.middleRows(row, count) = project(of.byDelta);
+        row += count;
+        rows.views.push_back(of);
+    }
+    return rows;
+}
+
+CheckProblem::Normal CheckProblem::normalEquations(const Rows& rows, const VectorXd& q) const
+{
+    const Eigen::Index n = rows.byQ.cols(), k = rows.byDelta.cols();
+    MatrixXd J(rows.byQ.rows(), n + k);
+    J << rows.byQ, rows.byDelta;
+    Normal normal{MatrixXd::Zero(n + k, n + k), J.transpose()*rows.residual/(sigma_*sigma_)};
+    normal.H.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose(), 1./(sigma_*sigma_));
+    normal.H.triangularView<Eigen::StrictlyUpper>() = normal.H.transpose();
+    normal.H.diagonal().head(n).array() += 1.;
+    normal.gradient.head(n) -= q;
+    return normal;
+}
+
+CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions, const CheckFit& start) const
+{
+    CheckFit fit = start;
+    const Eigen::Index n = root_.cols(), k = directions.cols();
+    VectorXd eta = VectorXd::Zero(k);
+    const auto tangent = [&] { return change ? MatrixXd(derivative(*change, fit.q, directions*eta)*directions)
+                                             : MatrixXd(parameters_.size(), 0); };
+    const auto objective = [&](const Rows& rows, const VectorXd& q) { return rows.squares/(sigma_*sigma_) + q.squaredNorm(); };
+    fit.delta = directions*eta;
+    fit.rig = rigOf(fit.q, change, fit.delta);
+    Rows rows = linearise(fit.rig, fit.views, tangent());
+    for (int i = 0; i < ITERATIONS; i++)
+    {
+        fit.chiSquare = std::numeric_limits<double>::infinity();
+        if (!rows.isFinite())
+            return fit;
+        const Normal normal = normalEquations(rows, fit.q);
+        const Eigen::LDLT<MatrixXd> inverse(normal.H);
+        const VectorXd step = inverse.solve(normal.gradient);
+        if (!step.allFinite())
+            return fit;
+        const double before = objective(rows, fit.q);
+        std::vector<VectorXd> poses;
+        for (const Rows::OfView& of : rows.views)
+            poses.push_back(of.byPose.colPivHouseholderQr().solve(of.residual - of.byQ*step.head(n) - of.byDelta*step.tail(k)));
+        // What is left if the linearisation holds; the rest of the decrease is that of the poses.
+        const double after = rows.residual.squaredNorm()/(sigma_*sigma_) + fit.q.squaredNorm() - normal.gradient.dot(step);
+        fit.covariance = directions*inverse.solve(MatrixXd::Identity(n + k, n + k)).bottomRightCorner(k, k)*directions.transpose();
+        const CheckFit last = fit;
+        const VectorXd lastEta = eta;
+        double share = 1.;
+        for (int halving = 0; halving < HALVINGS; halving++, share *= 0.5)
+        {
+            fit = last;
+            eta = lastEta + share*step.tail(k);
+            fit.q += share*step.head(n);
+            fit.delta = directions*eta;
+            for (size_t v = 0; v < fit.views.size(); v++)
+                move(fit.views[v], share*poses[v]);
+            fit.rig = rigOf(fit.q, change, fit.delta);
+            rows = linearise(fit.rig, fit.views, tangent());
+            if (rows.isFinite() && objective(rows, fit.q) <= before)
+                break;
+        }
+        fit.chiSquare = after;
+        if (before - after < CONVERGED + 1e-9*before)
+            return fit;
+    }
+    fit.chiSquare = rows.isFinite() ? objective(rows, fit.q) : std::numeric_limits<double>::infinity();
+    return fit;
+}
+
+CheckFit CheckProblem::fitUnchanged() const
+{
+    CheckFit start;
+    start.views = views_;
+    start.q = VectorXd::Zero(root_.cols());
+    return iterate(nullptr, MatrixXd(0, 0), start);
+}
+
+CheckFit CheckProblem::fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const
+{
+    try
+    {
+        return iterate(&change, directions, start);
+    }
+    catch (const cv::Exception&)        // no such window or lens
+    {
+        CheckFit none;
+        none.chiSquare = std::numeric_limits<double>::infinity();
+        return none;
+    }
+}
+
+MatrixXd CheckProblem::directionsOf(const Change& change) const
+{
+    return derivative(change, VectorXd::Zero(root_.cols()), VectorXd::Zero(change.size()))*change.ranges().asDiagonal();
+}
+
+CheckProblem::Information CheckProblem::information(const std::vector<Change>& changes, const CheckFit& at) const
+{
+    Eigen::Index columns = 0;
+    for (const Change& change : changes)
+        columns += change.size();
+    MatrixXd byDelta(parameters_.size(), columns);
+    columns = 0;
+    for (const Change& change : changes)
+    {
+        const int size = change.size();
+        byDelta.middleCols(columns, size) = derivative(change, at.q, VectorXd::Zero(size))*change.ranges().asDiagonal();
+        columns += size;
+    }
+    const Rows rows = linearise(at.rig, at.views, byDelta);
+    if (!rows.isFinite())
+        return {};
+    // r + A dp is what the calibrated values leave; S^-1 by the matrix inversion lemma.
+    const double precision = 1./(sigma_*sigma_);
+    const VectorXd r = rows.residual + rows.byQ*at.q;
+    MatrixXd H = precision*rows.byQ.transpose()*rows.byQ;
+    H.diagonal().array() += 1.;
+    const MatrixXd mixed = precision*rows.byQ.transpose()*rows.byDelta;
+    const Eigen::LDLT<MatrixXd> inverse(H);
+    Information result;
+    result.G = precision*rows.byDelta.transpose()*rows.byDelta - mixed.transpose()*inverse.solve(mixed);
+    result.score = precision*(rows.byDelta.transpose()*r - rows.byDelta.transpose()*rows.byQ
+                              * inverse.solve(precision*rows.byQ.transpose()*r));
+    return result;
+}
+
+} // namespace tools

@@ -1,0 +1,78 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHECK_PROBLEM_HPP
+#define REFRACT_TOOLS_CHECK_PROBLEM_HPP
+
+#include "assess/change.hpp"
+#include "assess/check_input.hpp"
+#include "measure/view_observations.hpp"
+
+/* New images of the target against a calibration:
+
+    pixels - predicted = A dp + B delta + K dpose + noise,     B = A dp/ddelta
+
+p are the calibrated parameters, whose error dp = L q has the calibration's covariance L L^T; delta is what changed since then; the
+boards' poses are free. With the poses projected out, the least squares
+
+    chi^2 = |pixels - predicted|^2 / sigma^2 + |q|^2
+
+are the generalised ones with the covariance S = sigma^2 I + A L L^T A^T. */
+namespace tools {
+
+//! One change freed, or none.
+struct CheckFit
+{
+    RigModel rig;                               //!< as it is now
+    std::vector<ViewObservations> views;        //!< with their poses
+    VectorXd q, delta;
+    MatrixXd covariance;                        //!< of delta
+    double chiSquare = 0.;                      //!< infinity: no fit
+};
+
+class CheckProblem
+{
+public:
+    //! Throws Failure if the pose of a target cannot be found. @param sigma of a pixel coordinate
+    CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma);
+
+    //! The calibration as it is. @param iterations enough for it
+    CheckFit fitUnchanged() const;
+
+    //! One change freed, from another fit. @param directions of its parameters that the images tell, a column each
+    CheckFit fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const;
+
+    /** What the images tell about changes, to first order at a fit: G = B^T S^-1 B of all their parameters, which are in units of
+    their ranges, and B^T S^-1 r. With no change that is a vector with the covariance G. */
+    struct Information
+    {
+        MatrixXd G;
+        VectorXd score;
+    };
+    Information information(const std::vector<Change>& changes, const CheckFit& at) const;
+
+    //! The parameters that a change moves, in its ranges, a column each.
+    MatrixXd directionsOf(const Change& change) const;
+
+    int observations() const { return observations_; }  //!< without those that the poses take
+
+private:
+    struct Rows;
+    struct Normal;
+    Rows linearise(const RigModel& rig, const std::vector<ViewObservations>& views, const MatrixXd& byDelta) const;
+    Normal normalEquations(const Rows& rows, const VectorXd& q) const;
+    RigModel rigOf(const VectorXd& q, const Change* change, const VectorXd& delta) const;
+    MatrixXd derivative(const Change& change, const VectorXd& q, const VectorXd& delta) const;
+    CheckFit iterate(const Change* change, const MatrixXd& directions, const CheckFit& start) const;
+
+    CheckInput input_;
+    double sigma_;
+    int observations_ = 0;
+    VectorXd parameters_;           // the calibrated ones
+    MatrixXd root_;                 // L
+    std::vector<ViewObservations> views_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHECK_PROBLEM_HPP

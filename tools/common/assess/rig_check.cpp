@@ -1,0 +1,349 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/rig_check.hpp"
+#include "assess/check_level.hpp"
+#include "assess/check_problem.hpp"
+#include "assess/image_noise.hpp"
+#include "assess/swapped_images.hpp"
+#include "measure/f_distribution.hpp"
+#include "diagnose/ranking.hpp"
+#include "console/failure.hpp"
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double DEGREES = 180./CV_PI;
+const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN(), NO_FIT = std::numeric_limits<double>::infinity();
+// Of probabilities: images noisier than those of the calibration; residuals that no single change explains.
+const double NOISIER = 1e-4, UNEXPLAINED = 1e-4;
+const double SHARE_OF_RESIDUALS = 0.01;         // of the false alarms: the test of all residuals, whatever caused them
+const double TOLD = 0.3;                        // of its range: what is known less well the images do not tell
+const double GROSS = 5.;                        // times the noise: images may have been exchanged, turned or mirrored
+
+//! A hypothesis of the table, tested.
+struct Tested
+{
+    const Change* change;
+    TestedDirections at;
+    double gain, probability;
+    CheckFit fit;               //!< chiSquare infinite: none
+};
+
+//! One that competes for the name.
+struct Candidate
+{
+    NamedChange named;
+    double chiSquare;
+    int parameters, observations;
+    const Tested* tested;       //!< null: images that are not what they are given for
+};
+
+class RigCheck
+{
+public:
+    RigCheck(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit)
+        : input_(withWedges(input)), views_(views), falseAlarm_(falseAlarm)
+    {
+        result_.critical = falseAlarm;
+        requireGlass();
+        takeNoise();
+        problem_ = std::make_unique<CheckProblem>(input_, views, result_.sigma);
+        unchanged_ = problem_->fitUnchanged();
+        changes_ = changesOf(input_.rig, unit, middleOfBoards());
+        testAll();
+        decide();
+        if (result_.changed)
+            name();
+        addWindows();
+    }
+    const CheckResult& result() const { return result_; }
+
+private:
+    void requireGlass() const
+    {
+        for (const View& view : views_)
+            if (view.hasGlass())
+                return;
+        throw Failure("there is no image through the window to check: give --glass");
+    }
+
+    //! Images that are noisier than the calibration's tell less, but nothing of a change.
+    void takeNoise()
+    {
+        const ImageNoise here = imageNoise(input_.rig, views_);
+        result_.noiseHere = here.sigma;
+        const double ratio = here.dof > 0 ? std::pow(here.sigma/input_.sigma, 2) : 0.;
+        const int even = 2*((int)here.dof/2);
+        const bool isNoisier = even > 0 && upperTailAnyF(even, input_.dof, ratio) < NOISIER;
+        result_.sigma = isNoisier ? here.sigma : input_.sigma;
+        result_.dof = isNoisier ? here.dof : input_.dof;
+    }
+
+    Vec3d middleOfBoards() const
+    {
+        Vec3d sum;
+        int count = 0;
+        for (const ViewObservations& view : unchanged_.views)
+            for (const Point3d& X : view.objectPoints)
+            {
+                sum += rotationMatrix(view.rvec)*Vec3d(X) + view.tvec;
+                count++;
+            }
+        return sum/(double)std::max(1, count);
+    }
+
+    void testAll()
+    {
+        if (!std::isfinite(unchanged_.chiSquare))
+            return;
+        information_ = problem_->information(changes_, unchanged_);
+        if (information_.G.size() == 0)
+            return;
+        std::vector<TestedDirections> all;
+        int first = 0;
+        for (const Change& change : changes_)
+        {
+            const TestedDirections at{first, toldDirections(first, change.size())};
+            first += change.size();
+            if (!at.count())
+                continue;
+            const double gain = gainOf(at, information_.G, information_.score);
+            tested_.push_back({&change, at, gain, probabilityOf(gain, at.count(), result_.dof), {}});
+            tested_.back().fit.chiSquare = NO_FIT;
+            all.push_back(at);
+        }
+        result_.critical = criticalProbability(all, information_.G, result_.dof, (1. - SHARE_OF_RESIDUALS)*falseAlarm_);
+    }
+
+    //! In units of the ranges: eigenvectors whose standard deviation is well within them.
+    MatrixXd toldDirections(int first, int size) const
+    {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(information_.G.block(first, first, size, size));
+        const Eigen::Index told = (eigen.eigenvalues().array() > 1./(TOLD*TOLD)).count();
+        return eigen.eigenvectors().rightCols(told);
+    }
+
+    double probabilityOfResiduals(double chiSquare, int parameters) const
+    {
+        const int count = problem_->observations() - parameters;
+        return std::isfinite(chiSquare) ? upperTailAnyF(count, result_.dof, chiSquare/count) : 0.;
+    }
+
+    void decide()
+    {
+        const double residuals = probabilityOfResiduals(unchanged_.chiSquare, 0);
+        result_.sigmaSeen = result_.sigma*std::sqrt(unchanged_.chiSquare/problem_->observations());
+        result_.changed = residuals < SHARE_OF_RESIDUALS*falseAlarm_;
+        for (const Tested& tested : tested_)
+            result_.changed |= tested.probability < result_.critical;
+    }
+
+    void fitOf(Tested& tested)
+    {
+        if (!std::isfinite(tested.fit.chiSquare))
+            tested.fit = problem_->fit(*tested.change, tested.change->ranges().asDiagonal()*tested.at.directions, unchanged_);
+    }
+
+    void addCandidate(const Tested& tested)
+    {
+        if (!std::isfinite(tested.fit.chiSquare))
+            return;
+        const Change& change = *tested.change;
+        const std::vector<ChangedValue> values = valuesOf(change, tested.fit.delta, tested.fit.covariance);
+        NamedChange named{change.name, sentenceOf(change, values), change.camera, values, tested.probability};
+        candidates_.push_back({named, tested.fit.chiSquare, tested.at.count(), problem_->observations(), &tested});
+    }
+
+    void addUndone(const std::vector<Undone>& all)
+    {
+        for (const Undone& undone : all)
+        {
+            try
+            {
+                const CheckProblem problem(input_, undone.views, result_.sigma);
+                const CheckFit fit = problem.fitUnchanged();
+                if (!std::isfinite(fit.chiSquare))
+                    continue;
+                const int parameters = std::max(1, 6*undone.poses);
+                const double probability = probabilityOf(std::max(0., unchanged_.chiSquare - fit.chiSquare), parameters, result_.dof);
+                candidates_.push_back({{undone.name, undone.name, undone.camera, {}, probability}, fit.chiSquare, parameters,
+                                       problem.observations(), nullptr});
+            }
+            catch (const Failure&) {}           // no pose
+            catch (const cv::Exception&) {}
+        }
+    }
+
+    double noiseOf(const Candidate& c) const { return c.chiSquare/std::max(1, problem_->observations() - c.parameters); }
+
+    //! One candidate's parameters contain those of another: it is no other explanation.
+    bool contains(const Tested& large, const Tested& small) const
+    {
+        if (large.at.count() <= small.at.count())
+            return false;
+        const MatrixXd outer = problem_->directionsOf(*large.change), inner = problem_->directionsOf(*small.change);
+        const double NOTHING = 1e-4;
+        const MatrixXd rest = inner - outer*outer.colPivHouseholderQr().solve(inner);
+        return rest.norm() < NOTHING*inner.norm();
+    }
+
+    //! Of two of which one contains the other, the one that has no more parameters than it is worth.
+    void dropNested()
+    {
+        double variance = NO_FIT;
+        for (const Candidate& c : candidates_)
+            variance = std::min(variance, noiseOf(c));
+        variance = std::max(1., variance);
+        const double penalty = std::log((double)problem_->observations());
+        const auto criterion = [&](const Candidate& c) { return c.chiSquare/variance + penalty*c.parameters; };
+        std::vector<Candidate> kept;
+        for (const Candidate& large : candidates_)
+            if (std::none_of(candidates_.begin(), candidates_.end(), [&](const Candidate& small) {
+                    return large.tested && small.tested && contains(*large.tested, *small.tested) && criterion(small) <= criterion(large); }))
+                kept.push_back(large);
+        candidates_ = kept;
+    }
+
+    void name()
+    {
+        for (Tested& tested : tested_)
+            fitOf(tested);
+        for (const Tested& tested : tested_)
+            addCandidate(tested);
+        double best = unchanged_.chiSquare;
+        for (const Candidate& c : candidates_)
+            best = std::min(best, c.chiSquare);
+        addUndone(unrelatedImages(input_.rig, views_));
+        const bool isGross = !(unchanged_.chiSquare < GROSS*GROSS*problem_->observations());
+        if (isGross && !(probabilityOfResiduals(best, 0) > UNEXPLAINED))
+            addUndone(swappedImages(input_.rig, views_));
+        dropNested();
+        rankThem();
+    }
+
+    void rankThem()
+    {
+        const double pixels2 = result_.sigma*result_.sigma;
+        std::vector<Hypothesis> tried;
+        for (size_t i = 0; i < candidates_.size(); i++)
+            tried.push_back({std::to_string(i), pixels2*candidates_[i].chiSquare, candidates_[i].parameters});
+        const double asGiven = std::isfinite(unchanged_.chiSquare) ? pixels2*unchanged_.chiSquare : NO_FIT;
+        std::vector<Hypothesis> ranked = rank({"", asGiven, 0}, tried, problem_->observations(), result_.sigma);
+        if (ranked.empty())                     // too small a change to tell
+            ranked = rank({"", NO_FIT, 0}, tried, problem_->observations(), result_.sigma);
+        for (const Hypothesis& h : ranked)
+            named_.push_back(candidates_[std::stoul(h.sentence)]);
+        for (const Candidate& c : named_)
+            result_.changes.push_back(c.named);
+        if (named_.empty())
+        {
+            result_.explained = false;
+            return;
+        }
+        result_.explained = probabilityOfResiduals(named_[0].chiSquare, named_[0].parameters) > UNEXPLAINED;
+        result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));
+    }
+
+    bool isNamed(const Tested& tested) const
+    {
+        return std::any_of(named_.begin(), named_.end(), [&](const Candidate& c) { return c.tested == &tested; });
+    }
+
+    void addWindows()
+    {
+        for (Tested& tested : tested_)
+        {
+            if (!tested.change->isTilt || tested.at.count() < 2)
+                continue;
+            fitOf(tested);
+            result_.windows.push_back(windowOf(tested));
+        }
+    }
+
+    WindowCheck windowOf(const Tested& tested) const
+    {
+        const int c = tested.change->camera;
+        const bool isSeen = !result_.changed || isNamed(tested);
+        WindowCheck check;
+        check.camera = c;
+        check.probability = tested.probability;
+        check.moved = result_.changed && isNamed(tested);
+        check.tiltDeg = NOT_KNOWN;
+        check.normal = input_.rig.cameras[c]->window().normal;
+        // The covariance of the linear test, which holds whatever was found.
+        const MatrixXd ranges = tested.change->ranges().asDiagonal();
+        const Eigen::Matrix2d V = ranges*information_.G.block(tested.at.first, tested.at.first, 2, 2).inverse()*ranges;
+        const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(V).eigenvalues();
+        check.stdDeg[0] = std::sqrt(variances[1])*DEGREES;
+        check.stdDeg[1] = std::sqrt(variances[0])*DEGREES;
+        if (!isSeen || !std::isfinite(tested.fit.chiSquare))
+            return check;
+        check.normal = tested.fit.rig.cameras[c]->window().normal;
+        check.tiltDeg = std::atan(tested.fit.delta.norm())*DEGREES;
+        return check;
+    }
+
+    CheckInput input_;
+    const std::vector<View>& views_;
+    const double falseAlarm_;
+    CheckResult result_;
+    std::unique_ptr<CheckProblem> problem_;
+    CheckFit unchanged_;
+    std::vector<Change> changes_;
+    CheckProblem::Information information_;
+    std::vector<Tested> tested_;
+    std::vector<Candidate> candidates_, named_;
+};
+
+} // namespace
+
+CheckResult checkRig(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit)
+{
+    return RigCheck(input, views, falseAlarm, unit).result();
+}
+
+std::string causesIn(const CheckResult& result)
+{
+    const size_t MOST = 3;
+    std::string text;
+    for (size_t i = 0; i < std::min(MOST, result.changes.size()); i++)
+        text += (i ? "; or " : "") + result.changes[i].sentence;
+    if (result.changes.size() > MOST)
+        text += cv::format("; or one of %zu others", result.changes.size() - MOST);
+    return text;
+}
+
+std::string causesOf(const Calibration& calibration, const std::vector<View>& views, double pixelSigma)
+{
+    const size_t MOST = 6;
+    const double FALSE_ALARM = 1e-4;
+    std::vector<View> some;
+    for (size_t i = 0; i < std::min(MOST, views.size()); i++)
+        some.push_back(views[i*views.size()/std::min(MOST, views.size())]);
+    try
+    {
+        return causesIn(checkRig(checkInputOf(calibration, "", pixelSigma), some, FALSE_ALARM, calibration.unit));
+    }
+    catch (const Failure&)          // no pose, no noise
+    {
+        return "";
+    }
+}
+
+double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share)
+{
+    const double lambda = tiltDeg*tiltDeg/(share*window.stdDeg[0]*window.stdDeg[0]);
+    return upperTailNoncentralF2(result.dof, lambda, quantileF2(result.dof, result.critical));
+}
+
+} // namespace tools

@@ -1,0 +1,66 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_RIG_CHECK_HPP
+#define REFRACT_TOOLS_RIG_CHECK_HPP
+
+#include "assess/change.hpp"
+#include "assess/check_input.hpp"
+#include "calibrate/rig_data.hpp"
+#include <limits>
+
+/* Has anything changed since the calibration, and what? From a few new images of the target. Each hypothesis of the table
+(change.hpp) is freed alone; under "nothing changed" its gain in chi^2 follows F. If one of them is less probable than all of them
+together ever are at the rate of false alarms, something has changed. What it is, Schwarz's criterion tells (ranking.hpp). */
+namespace tools {
+
+//! A window, freed alone.
+struct WindowCheck
+{
+    int camera;
+    cv::Vec3d normal;           //!< as it is now
+    double tiltDeg;             //!< between the calibrated normal and this; NaN: it is not what changed
+    double stdDeg[2];           //!< of the tilt, two principal ones, larger first
+    double probability;         //!< of so large a tilt or a larger one if nothing moved
+    bool moved;                 //!< this explains the images, and nothing that is not a window does so better
+};
+
+//! A change that explains the new images.
+struct NamedChange
+{
+    std::string name, sentence;     //!< the name alone, and with its values
+    int camera;                     //!< from 0; negative: of the rig as a whole
+    std::vector<ChangedValue> values;
+    double probability;             //!< of so large a gain or a larger one if nothing changed
+};
+
+struct CheckResult
+{
+    bool changed = false;
+    std::vector<NamedChange> changes;   //!< the best first, then those about as good: one or the other
+    bool explained = true;              //!< the best leaves no more than noise
+    std::vector<WindowCheck> windows;   //!< of the cameras that have a glass image; of a shared window the first
+    double sigma;                       //!< of a pixel coordinate that the test took
+    double sigmaSeen;                   //!< of the new images, the best change made
+    double dof;                         //!< of sigma
+    double critical;                    //!< probability below which one hypothesis is a change
+    double noiseHere;                   //!< of the images by themselves; 0: too few points tell
+};
+
+//! Throws Failure if no view has an image through a window, or a target's pose cannot be found. @param unit of lengths, for the texts
+CheckResult checkRig(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit = "");
+
+//! "a; or b", the best three.
+std::string causesIn(const CheckResult& result);
+
+/** Why measured views contradict the calibration, as causesIn says it; empty if they do not, or if nothing tells. A few of the views are
+taken. @param pixelSigma of a pixel coordinate */
+std::string causesOf(const Calibration& calibration, const std::vector<View>& views, double pixelSigma);
+
+/** Probability that a tilt of this size, in the direction in which it shows least, is found.
+@param share of the covariance: 1/2 for twice as many images */
+double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share = 1.);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_RIG_CHECK_HPP

@@ -1,0 +1,240 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "assess/swapped_images.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <functional>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+using Pixels = std::vector<Point2d>;
+
+//! Which images of a camera.
+enum State { DIRECT, GLASS, BOTH };
+const char* const STATES[] = {"direct images", "images through the window", "images"};
+
+//! What happened to an image, and how the numbers of a symmetrical board may have followed it.
+struct Transform
+{
+    const char* what;
+    bool flipU, flipV, swap;
+    struct Renumbering { bool flipX, flipY, swap; };
+    std::vector<Renumbering> renumberings;
+};
+
+const Transform TRANSFORMS[] = {
+    {"turned by 180 degrees", true, true, false, {{false, false, false}, {true, true, false}}},
+    {"mirrored (left and right exchanged)", true, false, false, {{false, false, false}, {true, false, false}, {false, true, false}}},
+    {"mirrored (top and bottom exchanged)", false, true, false, {{false, false, false}, {true, false, false}, {false, true, false}}},
+    {"turned by 90 degrees to the left", false, true, true, {{false, false, false}, {false, true, true}, {true, false, true}}},
+    {"turned by 90 degrees to the right", true, false, true, {{false, false, false}, {false, true, true}, {true, false, true}}}};
+
+//! Where each point is in a board that is turned or mirrored about its middle; empty: it is not symmetrical.
+std::vector<int> renumbered(const std::vector<Point3d>& object, const Transform::Renumbering& by)
+{
+    std::vector<int> numbers(object.size());
+    if (object.empty())
+        return numbers;
+    Vec3d low = object[0], high = object[0];
+    for (const Point3d& X : object)
+        for (int axis = 0; axis < 3; axis++)
+        {
+            low[axis] = std::min(low[axis], Vec3d(X)[axis]);
+            high[axis] = std::max(high[axis], Vec3d(X)[axis]);
+        }
+    const double near = 1e-6*norm(high - low);
+    for (size_t i = 0; i < object.size(); i++)
+    {
+        Vec3d X = Vec3d(object[i]) - 0.5*(low + high);
+        if (by.swap)
+            std::swap(X[0], X[1]);
+        X[0] *= by.flipX ? -1. : 1.;
+        X[1] *= by.flipY ? -1. : 1.;
+        const Vec3d there = X + 0.5*(low + high);
+        const auto found = std::find_if(object.begin(), object.end(), [&](const Point3d& Y) { return norm(Vec3d(Y) - there) <= near; });
+        if (found == object.end())
+            return {};
+        numbers[i] = int(found - object.begin());
+    }
+    return numbers;
+}
+
+Pixels undone(const Pixels& pixels, const Transform& transform, const std::vector<int>& numbers, Size size)
+{
+    Pixels result(pixels.size());
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        Point2d p = pixels[i];
+        if (transform.swap)
+            std::swap(p.x, p.y);
+        if (transform.flipU)
+            p.x = size.width - 1. - p.x;
+        if (transform.flipV)
+            p.y = size.height - 1. - p.y;
+        result[numbers[i]] = p;
+    }
+    return result;
+}
+
+bool has(const std::vector<View>& views, int camera, State state)
+{
+    return std::any_of(views.begin(), views.end(), [&](const View& view) {
+        return (state != GLASS && view.hasDirect(camera)) || (state != DIRECT && view.hasGlass(camera)); });
+}
+
+class SwappedImages
+{
+public:
+    SwappedImages(const RigModel& rig, const std::vector<View>& views) : rig_(rig), views_(views), count_((int)rig.cameras.size())
+    {
+        addTransforms();
+        addExchangedStates();
+        addExchangedCameras();
+    }
+    std::vector<Undone> all;
+
+private:
+    std::string ofCamera(int c) const { return count_ > 1 && c >= 0 ? format(" of camera %d", c + 1) : ""; }
+
+    void addTransforms()
+    {
+        for (int c = count_ > 1 ? -1 : 0; c < count_; c++)
+            for (State state : {BOTH, DIRECT, GLASS})
+            {
+                const bool hasBoth = hasAny(c, DIRECT) && hasAny(c, GLASS);
+                if (!hasAny(c, state) || (state != BOTH && !hasBoth))
+                    continue;
+                for (const Transform& transform : TRANSFORMS)
+                    for (const Transform::Renumbering& renumbering : transform.renumberings)
+                        addTransform(c, state, transform, renumbering);
+            }
+    }
+
+    bool hasAny(int c, State state) const
+    {
+        for (int k = 0; k < count_; k++)
+            if ((c < 0 || c == k) && has(views_, k, state))
+                return true;
+        return false;
+    }
+
+    void addTransform(int c, State state, const Transform& transform, const Transform::Renumbering& renumbering)
+    {
+        std::vector<View> views = views_;
+        for (View& view : views)
+        {
+            const std::vector<int> numbers = renumbered(view.objectPoints, renumbering);
+            if (numbers.size() != view.objectPoints.size())
+                return;
+            for (int k = 0; k < count_; k++)
+            {
+                const Size size = rig_.cameras[k]->imageSize();
+                if (c >= 0 && c != k)
+                    continue;
+                if (size.empty() || (transform.swap && size.width != size.height))
+                    return;
+                if (state != GLASS && view.hasDirect(k))
+                    view.direct[k] = undone(view.direct[k], transform, numbers, size);
+                if (state != DIRECT && view.hasGlass(k))
+                    view.glass[k] = undone(view.glass[k], transform, numbers, size);
+            }
+        }
+        all.push_back({STATES[state] + ofCamera(c) + " " + transform.what, c, views});
+    }
+
+    void addExchangedStates()
+    {
+        for (int c = count_ > 1 ? -1 : 0; c < count_; c++)
+        {
+            if (!hasAny(c, DIRECT) || !hasAny(c, GLASS))
+                continue;
+            std::vector<View> views = views_;
+            for (View& view : views)
+                for (int k = 0; k < count_; k++)
+                    if (c < 0 || c == k)
+                        std::swap(view.direct[k], view.glass[k]);
+            all.push_back({"direct images and images through the window" + ofCamera(c) + " exchanged", c, views});
+        }
+    }
+
+    void addExchangedCameras()
+    {
+        for (int b = 1; b < count_; b++)
+            for (int a = 0; a < b; a++)
+                for (State state : {BOTH, DIRECT, GLASS})
+                {
+                    const bool hasBoth = (has(views_, a, DIRECT) || has(views_, b, DIRECT)) && (has(views_, a, GLASS) || has(views_, b, GLASS));
+                    if ((!has(views_, a, state) && !has(views_, b, state)) || (state != BOTH && !hasBoth))
+                        continue;
+                    std::vector<View> views = views_;
+                    for (View& view : views)
+                    {
+                        if (state != GLASS)
+                            std::swap(view.direct[a], view.direct[b]);
+                        if (state != DIRECT)
+                            std::swap(view.glass[a], view.glass[b]);
+                    }
+                    all.push_back({std::string(STATES[state]) + format(" of cameras %d and %d exchanged", a + 1, b + 1), -1, views});
+                }
+    }
+
+    const RigModel& rig_;
+    const std::vector<View>& views_;
+    const int count_;
+};
+
+//! Each view in parts that have a pose of their own. @param partOf of an image
+Undone split(const std::vector<View>& views, int cameras, const std::string& name, const std::function<int(int, bool)>& partOf, int parts)
+{
+    Undone result{name, -1, {}};
+    for (const View& view : views)
+    {
+        int used = 0;
+        for (int part = 0; part < parts; part++)
+        {
+            View alone = view;
+            alone.direct = alone.glass = {};
+            for (int c = 0; c < cameras; c++)
+            {
+                if (partOf(c, false) == part)
+                    alone.direct[c] = view.direct[c];
+                if (partOf(c, true) == part)
+                    alone.glass[c] = view.glass[c];
+            }
+            if (!alone.countDirect() && !alone.countGlass())
+                continue;
+            used++;
+            result.views.push_back(alone);
+        }
+        result.poses += used - 1;
+    }
+    return result;
+}
+
+} // namespace
+
+std::vector<Undone> swappedImages(const RigModel& rig, const std::vector<View>& views)
+{
+    return SwappedImages(rig, views).all;
+}
+
+std::vector<Undone> unrelatedImages(const RigModel& rig, const std::vector<View>& views)
+{
+    const int cameras = (int)rig.cameras.size();
+    std::vector<Undone> all;
+    const auto add = [&](const Undone& undone) {
+        if (undone.poses > 0)
+            all.push_back(undone);
+    };
+    add(split(views, cameras, "images of different cameras that are not of one moment", [](int c, bool) { return c; }, cameras));
+    add(split(views, cameras, "the board not in one place in the direct and the glass image of a pair (it was moved each time)",
+              [](int, bool glass) { return glass ? 1 : 0; }, 2));
+    return all;
+}
+
+} // namespace tools
