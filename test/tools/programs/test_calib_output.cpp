@@ -253,8 +253,9 @@ TEST_CASE("Given values stand with their deviations, and who said them", "[calib
     const ToolResult r = runTool(command);
     INFO(r.out << r.err);
     REQUIRE(r.code != 1);
+    const nlohmann::json given = summaryOf(f)["given"];
     const auto of = [&](const std::string& what) {
-        for (const auto& row : summaryOf(f)["given"])
+        for (const auto& row : given)
             if (row["what"] == what)
                 return std::vector<std::string>{row["value"], row["known_to"], row["source"]};
         return std::vector<std::string>();
@@ -267,6 +268,6 @@ TEST_CASE("Given values stand with their deviations, and who said them", "[calib
     CHECK(of("index of the scene's medium") == Row{"1", "exact", ""});
     CHECK(of("motion of all boards, direct to glass") == Row{"0 mm", "0.02 mm", "default"});
     CHECK(of("lens") == Row{"its file's", "exact", "--camera"});
-    CHECK(summaryOf(f)["given"].size() == 7);
+    CHECK(given.size() == 7);
     CHECK(mentions(r.out, "Given values, and how well they are known:"));
 }
