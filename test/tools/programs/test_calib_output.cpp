@@ -76,7 +76,7 @@ TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_line
         {"limits not met", 10, false, PANE + std::string(" --max-rms=0.01 --max-normal-std=1e-5 --max-error-at=600:1e-4 "
             "--max-error-at=700:1e-4 --max-error-at=800:1e-4 --max-error-at=900:1e-4"), "FAIL\n",
             "look at the images that fit worst, first 'view", 2},
-        {"limit of the error not met", 10, false, PANE + std::string(" --max-error-at=600:1e-4"), "FAIL\n", "take another pair", 2},
+        {"limit of the error not met", 10, false, PANE + std::string(" --max-error-at=600:1e-4"), "FAIL\n", "take sharper images: 99 %", 2},
         {"contradicted", 10, false, " --thickness=26 --index=1.5437 --no-robust", "Not usable: the images contradict",
             "put right what the images contradict", 2},
         {"contradicted, stereo", 10, true, " --thickness=26 --index=1.5437 --no-robust", "- the images contradict --thickness=26",
