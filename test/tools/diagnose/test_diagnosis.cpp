@@ -73,8 +73,8 @@ TEST_CASE("A wrong square, thickness, index or medium is found and named", "[dia
 
     CalibrationInput thickness = right;
     thickness.options.window.thickness[0] = 0.787;
-    CHECK_THAT(explained(thickness), (Catch::Contains("the thickness would be 19.9") || Catch::Contains("the thickness would be 20"))
-                                     && Catch::Contains("--thickness=0.787") && Catch::Contains("unit"));
+    CHECK_THAT(explained(thickness), (Catch::Contains("--thickness=19.9") || Catch::Contains("--thickness=20"))
+                                     && Catch::Contains("in place of 0.787") && Catch::Contains("unit"));
 
     CalibrationInput index = right;
     index.options.window.index[0] = 1.05;

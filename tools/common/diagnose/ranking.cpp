@@ -12,6 +12,7 @@ namespace {
 const double VERY_STRONG = 10.;         // difference of two criteria
 // Corners err a little together: two that remove nearly the same of a contradiction are as good.
 const double AS_GOOD_SHARE = 0.05;
+const double MORE_NOISE = 0.1;          // but leaves no more than this share beyond noise: of a gross contradiction 5 % is a lot
 
 } // namespace
 
@@ -29,7 +30,8 @@ std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypoth
     const double gained = ranked.empty() ? 0. : criterion(asGiven) - criterion(ranked[0]);
     if (!(gained > VERY_STRONG))
         return {};
-    const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, AS_GOOD_SHARE*gained) : VERY_STRONG;
+    const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, std::min(AS_GOOD_SHARE*gained, MORE_NOISE*observations))
+                                                 : VERY_STRONG;
     // What is as good needs no more than to explain as much: the penalty of its parameters says which is simpler, not which is true. A
     // motion of all boards has six, a thickness one, and along the axis images do not tell one from the other.
     const double most = ranked[0].squares/variance + margin, leastGain = criterion(asGiven) - VERY_STRONG,
