@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The manual: what --help prints first.
-static const char MANUAL[] = R"(Checks whether anything has changed since the calibration, and what, from one new pair or a few images through the window.
+static const char MANUAL[] = R"(Checks whether anything has changed since the calibration, and what, from one new pair or a few images.
 
   refract_check calib.yml --size=6x5 --square=39 --direct=new/direct.png --glass=new/glass.png
   refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
@@ -180,8 +180,8 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
             continue;
         const int times = imagesNeeded(window, result, o.detect);
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
-        const std::string noisy = result.sigma > input.sigma ? format("the new images are noisier than the calibration's (%.3g px, there %.3g "
-            "px: check focus, light, motion); ", result.sigma, input.sigma) : "";
+        const std::string noisy = result.sigma > input.sigma ? format("the new images are noisier than the calibration's (%.3g px, "
+            "there %.3g px: check focus, light, motion); ", result.sigma, input.sigma) : "";
         const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times,
             pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");

@@ -303,8 +303,8 @@ std::string wrongLengths(double square, const std::vector<MeasuredView>& measure
 //! What would explain a contradiction, if a target's shape is known; or empty.
 std::string causeOf(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
 {
-    return options.points.empty() ? causesOf(calibration, std::vector<View>(measured.begin(), measured.end()), pixelSigma(options, calibration))
-                                  : "";
+    const std::vector<View> views(measured.begin(), measured.end());
+    return options.points.empty() ? causesOf(calibration, views, pixelSigma(options, calibration)) : "";
 }
 
 void warnNoisier(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured,

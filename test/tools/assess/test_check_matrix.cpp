@@ -58,21 +58,24 @@ void forEachImage(View& view, int camera, const std::function<void(Point2d&)>& c
             change(p);
 }
 
-const std::vector<std::string> PANE = {"tilted", "wedge", "thickness", "index of the window", "index of the medium", "distance", "all boards",
-                                       "square", "one moment", "one place"};
+const std::vector<std::string> PANE = {"tilted", "wedge", "thickness", "index of the window", "index of the medium", "distance",
+                                       "all boards", "square", "one moment", "one place"};
 
 std::vector<MistakeMade> mistakesMade()
 {
     std::vector<MistakeMade> all;
-    all.push_back({"window 1 tilted by 0.1 degrees", {"window tilted", "window of camera 1 tilted", "window of cameras 1, 2, 3 tilted"}, PANE, always,
+    all.push_back({"window 1 tilted by 0.1 degrees",
+                   {"window tilted", "window of camera 1 tilted", "window of cameras 1, 2, 3 tilted"}, PANE, always,
                    [](RigModel& rig, scenes::Random& random) { tilt(rig, 0, 0.1, random.uniform(0, 2*CV_PI)); }});
     all.push_back({"window 2 tilted by 0.1 degrees", {"window of camera 2 tilted"}, PANE, ownWindows,
                    [](RigModel& rig, scenes::Random& random) { tilt(rig, 1, 0.1, random.uniform(0, 2*CV_PI)); }});
-    all.push_back({"R2 turned by 0.05 degrees", {"R of camera 2", "R and T of camera 2"}, {"T of camera 2", "principal point", "camera 1"}, several,
+    all.push_back({"R2 turned by 0.05 degrees", {"R of camera 2", "R and T of camera 2"},
+                   {"T of camera 2", "principal point", "camera 1"}, several,
                    [](RigModel& rig, scenes::Random& random) {
                        const Matx33d R = rotationMatrix(0.05*CV_PI/180*direction(random));
                        rig.extrinsics[1] = RigidTransform{R, Vec3d()}*rig.extrinsics[1]; }});
-    all.push_back({"base line 0.3 % longer", {"base line (length of T of camera 2", "T of camera 2"}, {"square", "R and T", "focal"}, several,
+    all.push_back({"base line 0.3 % longer", {"base line (length of T of camera 2", "T of camera 2"},
+                   {"square", "R and T", "focal"}, several,
                    [](RigModel& rig, scenes::Random&) { rig.extrinsics[1].T *= 1.003; }});
     all.push_back({"focus of camera 1 by 0.2 %", {"focal length of camera 1", "focal length changed", "focal length and principal"},
                    {"camera 1", "T of camera", "base line", "square", "thickness", "distance"}, always,

@@ -239,8 +239,8 @@ TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-c
     for (const auto& c : cases)
     {
         const Rates r = rates(c.object, 0.1, c.z, 1000, 3013);
-        std::cout << format("[numbers] refract_check, one pair, %s: found %.1f %% (predicted %.1f %%), the window named in %.1f %% of them, "
-                            "false alarms %.1f %%\n", c.name, 100*r.found, 100*r.predicted, 100*r.named, 100*r.falseAlarms);
+        std::cout << format("[numbers] refract_check, one pair, %s: found %.1f %% (predicted %.1f %%), the window named in %.1f %% of "
+                            "them, false alarms %.1f %%\n", c.name, 100*r.found, 100*r.predicted, 100*r.named, 100*r.falseAlarms);
         CHECK(r.falseAlarms < 0.02);
         CHECK(r.found > r.predicted - 0.04);
     }

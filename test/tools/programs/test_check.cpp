@@ -146,7 +146,7 @@ TEST_CASE("refract_check finds the window that moved, and no other", "[tools][ch
 
     // Images through the windows alone show a large tilt, but no 0.1 degrees.
     const std::string glassOnly = TARGET + " --glass='" + STEREO + "/glass1/*' --glass2='" + STEREO + "/glass2/*'";
-    const ToolResult unsure = runTool("refract_check " + folder / "same.yml" + glassOnly);
+    const ToolResult unsure = runTool("refract_check " + folder / "same.yml" + TARGET + " --glass='" + STEREO + "/glass1/*'");
     CHECK(unsure.code == 1);
     CHECK(unsure.err.find("a pair without and with the window") != std::string::npos);
     writeCalibration(folder / "far.yml", 1.);
@@ -169,7 +169,8 @@ TEST_CASE("refract_check names what changed, whatever it is", "[tools][check]")
         {folder / "focus.yml" + images, "focal length of camera 1 changed by -0.2"},
         {folder / "same.yml" + " --size=6x5 --square=39.39 --pixel-sigma=0.015" + MOTION + pairs, "square of the board"},
         {folder / "same.yml" + TARGET + MOTION + exchanged("direct") + exchanged("glass"), "images of cameras 1 and 2 exchanged"},
-        {folder / "same.yml" + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg", "not in one place"},
+        {folder / "same.yml" + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg",
+         "not in one place"},
     };
     for (const auto& c : cases)
     {

@@ -142,7 +142,8 @@ private:
 
     void addLayer(int c, size_t i, const GlassWindow& window, const std::string& name)
     {
-        const std::string of = (window.thickness.size() > 1 ? format(" of layer %zu", i + 1) : std::string()) + " of the " + name + " changed by";
+        const std::string layer = window.thickness.size() > 1 ? format(" of layer %zu", i + 1) : "";
+        const std::string of = layer + " of the " + name + " changed by";
         add("thickness" + of, c, {length(1, window.thickness[i])}, [c, i](RigModel& rig, const VectorXd& d) {
             changePane(rig, c, [&](GlassWindow& w) { w.thickness[i] += d[0]; }); });
         add("index" + of, c, {{"", 1., 1, WIDE}}, [c, i](RigModel& rig, const VectorXd& d) {

@@ -100,7 +100,7 @@ CheckInput withWedges(const CheckInput& input)
         camera->setWindow(window);
     }
     const int count = (int)parametersOf(result.rig).size();
-    result.covariance = Mat::zeros(count, count, CV_64F);
+    result.covariance = Mat(count, count, CV_64F, Scalar(0));       // not Mat::zeros: assigned, it would clear the numbers of the input
     const std::vector<int> columns = columnsIn(input.rig, result.rig);
     for (int i = 0; i < input.covariance.rows; i++)
         for (int j = 0; j < input.covariance.cols; j++)
@@ -111,9 +111,9 @@ CheckInput withWedges(const CheckInput& input)
 CheckInput withTargetColumns(const CheckInput& input, const Mat& covariance)
 {
     CheckInput result = input;
-    result.rig.targetCovariance = covariance.empty() ? Mat::zeros(TARGET_ERRORS, TARGET_ERRORS, CV_64F) : covariance;
+    result.rig.targetCovariance = covariance.empty() ? Mat(TARGET_ERRORS, TARGET_ERRORS, CV_64F, Scalar(0)) : covariance;
     const int count = columnCount(input.rig);
-    result.covariance = Mat::zeros(count + TARGET_ERRORS, count + TARGET_ERRORS, CV_64F);
+    result.covariance = Mat(count + TARGET_ERRORS, count + TARGET_ERRORS, CV_64F, Scalar(0));
     if (!input.covariance.empty())
         input.covariance.copyTo(result.covariance(Rect(0, 0, count, count)));
     result.rig.targetCovariance.copyTo(result.covariance(Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));

@@ -209,7 +209,8 @@ private:
         std::vector<Candidate> kept;
         for (const Candidate& large : candidates_)
             if (std::none_of(candidates_.begin(), candidates_.end(), [&](const Candidate& small) {
-                    return large.tested && small.tested && contains(*large.tested, *small.tested) && criterion(small) <= criterion(large); }))
+                    return large.tested && small.tested && criterion(small) <= criterion(large)
+                           && contains(*large.tested, *small.tested); }))
                 kept.push_back(large);
         candidates_ = kept;
     }

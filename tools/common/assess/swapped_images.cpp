@@ -168,7 +168,8 @@ private:
             for (int a = 0; a < b; a++)
                 for (State state : {BOTH, DIRECT, GLASS})
                 {
-                    const bool hasBoth = (has(views_, a, DIRECT) || has(views_, b, DIRECT)) && (has(views_, a, GLASS) || has(views_, b, GLASS));
+                    const bool hasBoth = (has(views_, a, DIRECT) || has(views_, b, DIRECT))
+                                         && (has(views_, a, GLASS) || has(views_, b, GLASS));
                     if ((!has(views_, a, state) && !has(views_, b, state)) || (state != BOTH && !hasBoth))
                         continue;
                     std::vector<View> views = views_;
