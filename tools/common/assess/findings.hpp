@@ -9,10 +9,6 @@
 
 namespace tools {
 
-/** Pairs that a calibration needs: of the bundled rig four state the normal within 10 % and the worst point within 0.2 % of what five
-do, and leave two for each half of the range, which tests the other. README.md, --help and doc/ ask for as many (a test reads them). */
-const int ENOUGH_PAIRS = 4;
-
 //! A limit that the caller set, and the value to compare with it.
 struct LimitCheck
 {

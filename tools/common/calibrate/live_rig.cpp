@@ -26,7 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 const auto STEP = std::chrono::milliseconds(100);
-const int ENOUGH_PAIRS = 5;
 
 std::string bytesOf(const std::string& path)
 {

@@ -13,6 +13,10 @@ namespace CLI { class App; }
 /* Which images belong together: the observations of a target at each of its poses by all cameras. */
 namespace tools {
 
+/** Pairs that a calibration needs: of the bundled rig, four state the normal within 13 % and the worst point within 5 % of what five do,
+and leave two for each half of the range, which tests the other. README.md, --help and doc/ ask for as many (a test reads them). */
+const int ENOUGH_PAIRS = 4;
+
 const int MAX_CAMERAS = 16;
 const int MIN_POSE_POINTS = 4;          // an image with fewer has no pose
 
