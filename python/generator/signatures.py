@@ -11,7 +11,7 @@ DRAWN_INTO = "image"
 # Initial values that C++ declares as outputs.
 ALSO_READ = [(r"refractiveSolvePnP(Extended|Ransac|RansacExtended)?", r"rvec|tvec")]
 # InputArrays that one number may stand for.
-NUMBER_TOO = "depth|disparitySigma"
+NUMBER_TOO = "depth[12]?|disparitySigma"
 # Names that C++ has as int and that are members of an enumeration.
 FLAGS = [(r"(c|stereoC)alibrateGlass\w*|selectLensCoefficients|refractiveBundleAdjust\w*", "GlassCalibrationFlags"),
          (r"triangulateRefractive\w*", "TriangulateFlags"), (r"refractiveStereoRectify", "RectifyFlags")]

@@ -90,6 +90,21 @@ def test_any_scalar_is_a_depth(rig, depth, count):
     assert K.shape == (3, 3)
 
 
+def test_a_number_for_the_depth_of_maps_and_points(rig):
+    size = (64, 48)
+    R1, R2, P1, P2 = refract.refractiveStereoRectify(rig.camera1, rig.camera2, rig.R, rig.T, (1280, 1024), (400, 900),
+                                                     newImageSize=size)[1:5]
+    disparity = np.full(size[::-1], 3, np.float32)
+    args = disparity, rig.camera1, rig.camera2, rig.R, rig.T, R1, R2, P1, P2
+    expected, _ = refract.refractiveReprojectImageTo3D(*args, np.full(size[::-1], 600.), np.full(size[::-1], 600.))
+    both = np.isfinite(expected).all(axis=2)        # beyond the border of a map of depths there is none
+    assert both.any()
+    for depth in (600, 600., np.float32(600), np.array([600.])):
+        found, _ = refract.refractiveReprojectImageTo3D(*args, depth, depth)
+        np.testing.assert_allclose(found[both], expected[both], rtol=1e-4)
+        refract.refractiveReprojectImageTo3DExtended(*args, depth, depth, False, -1, np.float32(0.3), None)
+
+
 @pytest.mark.parametrize("depth", [True, "700", np.array(["700"]), object()])
 def test_what_is_no_depth(rig, depth):
     with pytest.raises(refract.error, match="depth"):
