@@ -41,8 +41,11 @@ if ! "$work/build/bin/pip" download -q --no-deps -d "$work/reach" pytest >"$work
   echo "skipped: $why"; exit 77
 fi
 
-# A build directory of its own makes the next build an incremental one.
+# A build directory of its own makes the next build an incremental one. The compiler by the name that other builds have: what the
+# cache keeps of them serves here, too.
 . tools/compiler_cache.sh
+CC=$(command -v cc) CXX=$(command -v c++)
+export CC CXX
 rm -rf "$work/wheel"
 "$work/build/bin/pip" wheel --no-deps -w "$work/wheel" --config-settings=build-dir="$work/cmake" . >"$work/wheel.log" 2>&1 ||
   { tail -40 "$work/wheel.log"; exit 1; }
@@ -74,7 +77,7 @@ else
   check opencv5 $samples
   # The types, in the eyes of the checkers that this was written with: a later one may want something else.
   environment types
-  "$work/types/bin/pip" install -q mypy==2.4.1 pyright==1.1.414 opencv-python-headless==5.0.0.93 numpy==2.4.6 matplotlib==3.11.2
+  "$work/types/bin/pip" install -q mypy==2.4.1 'pyright[nodejs]==1.1.414' opencv-python-headless==5.0.0.93 numpy==2.4.6 matplotlib==3.11.2
   "$work/types/bin/pip" install -q --no-deps --force-reinstall "$work"/wheel/*.whl
   "$work/types/bin/python" python/tests/check_types.py
 fi
