@@ -180,8 +180,15 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
             fit.delta = directions*eta;
             for (size_t v = 0; v < fit.views.size(); v++)
                 move(fit.views[v], share*poses[v]);
-            fit.rig = rigOf(fit.q, change, fit.delta);
-            rows = linearise(fit.rig, fit.views, tangent());
+            try
+            {
+                fit.rig = rigOf(fit.q, change, fit.delta);
+                rows = linearise(fit.rig, fit.views, tangent());
+            }
+            catch (const cv::Exception&)        // so far away there is no such window or lens
+            {
+                rows.squares = std::numeric_limits<double>::infinity();
+            }
             if (rows.isFinite() && objective(rows, fit.q) <= before)
                 break;
         }

@@ -244,14 +244,15 @@ private:
             ranked = rank({"", NO_FIT, 0}, tried, problem_->observations(), result_.sigma);
         for (const Hypothesis& h : ranked)
             named_.push_back(candidates_[std::stoul(h.sentence)]);
+        const auto isExplained = [this](const Candidate& c) { return probabilityOfResiduals(c.chiSquare, c.parameters) > UNEXPLAINED; };
+        result_.explained = !named_.empty() && isExplained(named_[0]);
+        // Of a large contradiction a small share is much: where one explains it all, what the noise refutes is no other explanation.
+        if (result_.explained)
+            named_.erase(std::remove_if(named_.begin(), named_.end(), [&](const Candidate& c) { return !isExplained(c); }), named_.end());
         for (const Candidate& c : named_)
             result_.changes.push_back(c.named);
         if (named_.empty())
-        {
-            result_.explained = false;
             return;
-        }
-        result_.explained = probabilityOfResiduals(named_[0].chiSquare, named_[0].parameters) > UNEXPLAINED;
         result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));
     }
 
