@@ -166,7 +166,7 @@ TEST_CASE("refract_check names what changed, whatever it is", "[tools][check]")
         return " --" + option + "=" + STEREO + "/" + option + "2/pair3.jpg --" + option + "2=" + STEREO + "/" + option + "1/pair3.jpg"; };
     const struct { std::string command, says; } cases[] = {
         {folder / "turned.yml" + images, "R of camera 2"},
-        {folder / "focus.yml" + images, "focal length of camera 1 changed by -0.2"},
+        {folder / "focus.yml" + images, "focal length of camera 1 changed by -0.19"},
         {folder / "same.yml" + " --size=6x5 --square=39.39 --pixel-sigma=0.015" + MOTION + pairs, "square of the board"},
         {folder / "same.yml" + TARGET + MOTION + exchanged("direct") + exchanged("glass"), "images of cameras 1 and 2 exchanged"},
         {folder / "same.yml" + TARGET + " --direct=" + STEREO + "/direct1/pair1.jpg --glass=" + STEREO + "/glass1/pair2.jpg",
