@@ -82,9 +82,12 @@ const Mistake FAR_OFF[] = {
     {[](const CalibrationInput&) { return true; }, wrongMedium},
     {sharesWindows, separateWindows}};
 
+const Mistake SCALE = {[](const CalibrationInput& input) { return hasPairs(input.data) && !input.options.window.thickness.empty(); },
+                       wrongScale};
+
 //! The mistakes that are tried, the quick ones first: what leaves no more than noise ends the search.
 const Mistake MISTAKES[] = {
-    {[](const CalibrationInput& input) { return hasPairs(input.data) && !input.options.window.thickness.empty(); }, wrongScale},
+    SCALE,
     {[](const CalibrationInput& input) { return !hasPairs(input.data) && !(input.square > 0); }, wrongUnitOfPoints},
     {[](const CalibrationInput& input) { return !hasBoardsOnly(input); }, mirroredPoints},
     {[](const CalibrationInput& input) { return hasPairs(input.data) && isRig(input); }, swappedStatesOfOneCamera},
@@ -174,7 +177,12 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
             return {sentence};
     const double sound = largestSoundError(input.data), clean = cleanError(input);
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
-        return toldBeside(*plain.explained, explanationsOf(input, FAR_OFF, sound, clean));
+    {
+        std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
+        if (plain.px > sound && SCALE.appliesTo(input))         // another unit is too far for a fit that starts from what was given
+            others.push_back(SCALE.undo(input));
+        return toldBeside(*plain.explained, others);
+    }
     const double most = std::min(EXPLAINS*plain.px, sound);
     std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
     if (explaining.empty() || !(explaining[0].px < clean))
@@ -211,11 +219,13 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
 void requireNoCause(const CalibrationInput& input, const PlainFit& plain)
 {
     const double px = plain.px;
-    const std::vector<std::string> reasons = diagnose(input, plain);
-    if (!reasons.empty())
-        throw Failure((px < NO_FIT ? format("the calibration does not fit its images: half of the corners lie more than %.2g px from "
-                                            "where it puts them", px) : std::string("no calibration fits these images"))
-                      + ": " + joined(reasons));
+    std::vector<std::string> reasons = diagnose(input, plain);
+    if (reasons.empty())
+        return;
+    reasons.insert(reasons.begin(), input.notices.begin(), input.notices.end());        // seen without a fit
+    throw Failure((px < NO_FIT ? format("the calibration does not fit its images: half of the corners lie more than %.2g px from "
+                                        "where it puts them", px) : std::string("no calibration fits these images"))
+                  + ": " + joined(reasons));
 }
 
 namespace {

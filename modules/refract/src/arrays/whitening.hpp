@@ -21,11 +21,11 @@ inline bool isHalf(const Point2d& pixel)
     return (std::isfinite(pixel.x) && std::isnan(pixel.y)) || (std::isnan(pixel.x) && std::isfinite(pixel.y));
 }
 
-//! Of the coordinates that are known in both.
-inline double squaredDistance(const Point2d& a, const Point2d& b)
+//! Of the coordinates that were observed; NaN where there is no prediction.
+inline double squaredDistance(const Point2d& predicted, const Point2d& observed)
 {
-    const double du = a.x - b.x, dv = a.y - b.y;
-    return (std::isnan(du) ? 0 : du*du) + (std::isnan(dv) ? 0 : dv*dv);
+    const double du = predicted.x - observed.x, dv = predicted.y - observed.y;
+    return (std::isnan(observed.x) ? 0 : du*du) + (std::isnan(observed.y) ? 0 : dv*dv);
 }
 
 inline bool isSeen(const Point2d& pixel) { return isWhole(pixel) || isHalf(pixel); }

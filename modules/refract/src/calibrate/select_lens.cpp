@@ -69,6 +69,8 @@ std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
 //! Some points of large targets, evenly.
 RigViews sampled(const RigViews& views)
 {
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    const Point2d notSeen(NaN, NaN);
     RigViews some = views;
     for (int view = 0; view < views.count(); view++)
     {
@@ -77,7 +79,7 @@ RigViews sampled(const RigViews& views)
             for (std::vector<Point2d>* pixels : { &camera.direct[view], &camera.refracted[view] })
                 for (int i = 0; i < (int)pixels->size(); i++)
                     if (i % step)
-                        (*pixels)[i] = Point2d(std::numeric_limits<double>::quiet_NaN(), 0);
+                        (*pixels)[i] = notSeen;
     }
     return some;
 }

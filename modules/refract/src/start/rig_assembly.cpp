@@ -48,7 +48,7 @@ double costAt(const CameraHypothesis& hypothesis, const Pose& extrinsics, const 
         for (size_t i = 0; i < object[view].size(); i++)
         {
             const Point2d& pixel = seen.refracted[view][i];
-            if (std::isnan(pixel.x))
+            if (!isWhole(pixel))
                 continue;
             const Vec3d X = toCamera.apply(Vec3d(object[view][i]));
             double u = 0, v = 0;
