@@ -79,6 +79,7 @@ bool hasBothStates(const CalibrationInput& input)
 //! Not a value near what is given.
 const Mistake FAR_OFF[] = {
     {hasBothStates, swappedStates},
+    {[](const CalibrationInput& input) { return !hasBoardsOnly(input); }, mirroredPoints},
     {[](const CalibrationInput&) { return true; }, wrongMedium},
     {sharesWindows, separateWindows}};
 
@@ -89,7 +90,6 @@ const Mistake SCALE = {[](const CalibrationInput& input) { return hasPairs(input
 const Mistake MISTAKES[] = {
     SCALE,
     {[](const CalibrationInput& input) { return !hasPairs(input.data) && !(input.square > 0); }, wrongUnitOfPoints},
-    {[](const CalibrationInput& input) { return !hasBoardsOnly(input); }, mirroredPoints},
     {[](const CalibrationInput& input) { return hasPairs(input.data) && isRig(input); }, swappedStatesOfOneCamera},
     {[](const CalibrationInput& input) { return hasPairs(input.data) && input.options.window.index.size() == 1; }, wrongIndex}};
 

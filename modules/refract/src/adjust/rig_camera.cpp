@@ -44,13 +44,14 @@ std::vector<double> RigCamera::ofOwner(const Parameters& parameters) const
 
 bool RigCamera::setWindow(const Parameters& parameters)
 {
-    std::vector<double> p = window ? window->parameters : ofOwner(parameters);
+    // With equal media the distance has no effect, or with a wedge hardly any: another camera's need not be known well enough to be
+    // positive here.
+    if (window && window->parameters[at().innerIndex] == window->parameters[at().outerIndex] && window->parameters[at().distance] < 0)
+        window->hold(at().distance, 0);
+    const std::vector<double> p = window ? window->parameters : ofOwner(parameters);
     double wedge = 0;
     for (int i = at().wedge; i < at().count; i++)
         wedge += std::abs(p[i]);
-    // With equal media the distance has no effect; another camera's need not be known well enough to be positive here.
-    if (window && p[at().innerIndex] == p[at().outerIndex])
-        p[at().distance] = std::max(p[at().distance], 0.);
     if (!(wedge < MAX_TRIAL_WEDGE && p[at().normal + 2] > 0 && p[at().distance] >= 0))
         return false;
     for (int i = at().media; i < at().count; i++)

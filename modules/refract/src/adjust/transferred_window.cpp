@@ -129,4 +129,12 @@ void TransferredWindow::addWedge(const WindowLayout& at, const double* ofOwner, 
     }
 }
 
+void TransferredWindow::hold(int parameter, double value)
+{
+    parameters[parameter] = value;
+    byWindow.row(parameter).setZero();
+    byOwner.row(parameter).setZero();
+    byCamera.row(parameter).setZero();
+}
+
 }} // namespace

@@ -23,6 +23,9 @@ struct TransferredWindow
     Eigen::MatrixXd byWindow;               //!< by the owner's parameters
     Eigen::Matrix<double, Eigen::Dynamic, 6> byOwner, byCamera;     //!< by rvec and T of the two
 
+    //! Gives a parameter a value on which nothing depends.
+    void hold(int parameter, double value);
+
 private:
     void addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
                   const TransformWithDerivatives& camera);
