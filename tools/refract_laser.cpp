@@ -255,8 +255,8 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
         command.warn(format("limit not met: held-out boards are %.3g %s from the sheet, more than --max-rms=%g", fit.heldOutRms(),
                             sheet.unit.c_str(), o.maxRms));
     if (contradicted)
-        command.warn(format("held-out boards are %.1f times as far from the sheet as the +- says: some boards moved, are not flat, or lens, "
-                            "window or sheet are not those of the calibration", fit.heldOutRatio()));
+        command.warn(format("held-out boards are %.1f times as far from the sheet as the +- says: some boards moved, are not flat, or "
+                            "lens, window or sheet are not those of the calibration", fit.heldOutRatio()));
     return overLimit || contradicted ? LIMIT_NOT_MET : DONE;
 }
 
@@ -308,7 +308,8 @@ void addToCloud(const Scan& scan, const cv::Mat& image, Cloud& cloud)
         const cv::Point at(cvRound(scan.line.points[i].pixel.x), cvRound(scan.line.points[i].pixel.y));
         const cv::Vec3b bgr = shown.channels() == 3 ? shown.at<cv::Vec3b>(at) : cv::Vec3b::all(shown.at<uchar>(at));
         const cv::Point3d& X = scan.measured.points[i];
-        cloud.push_back({cv::Vec3f((float)X.x, (float)X.y, (float)X.z), cv::Vec3f(scan.measured.sigma[i]), cv::Vec3b(bgr[2], bgr[1], bgr[0])});
+        cloud.push_back({cv::Vec3f((float)X.x, (float)X.y, (float)X.z), cv::Vec3f(scan.measured.sigma[i]),
+                         cv::Vec3b(bgr[2], bgr[1], bgr[0])});
     }
 }
 

@@ -62,7 +62,8 @@ inline Pose randomPose(scenes::Random& random)
     pose.rvec = cv::Vec3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.6));
     cv::Matx33d R;
     cv::Rodrigues(pose.rvec, R);
-    pose.tvec = cv::Vec3d(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(380, 520)) - R*cv::Vec3d(3.5*SQUARE, 3*SQUARE, 0);
+    const cv::Vec3d middle(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(380, 520));
+    pose.tvec = middle - R*cv::Vec3d(3.5*SQUARE, 3*SQUARE, 0);
     return pose;
 }
 
@@ -76,8 +77,7 @@ struct Light
     double most = 255.;
 };
 
-/** The image, in colours: a chessboard (surface of albedo 1 and 0.15), or a plain one.
-@param planes in camera 1, of which each pixel sees the nearest that `where` takes */
+//! The image, in colours: of a chessboard (albedo 1 and 0.15), or of a plain surface.
 inline cv::Mat render(const tools::Calibration& calibration, const Pose& pose, bool chessboard, const cv::Vec4d& sheet, const Light& light,
                       scenes::Random& random)
 {
@@ -104,14 +104,18 @@ inline cv::Mat render(const tools::Calibration& calibration, const Pose& pose, b
     for (int y = 0; y < IMAGE.height; y++)
         for (int x = 0; x < IMAGE.width; x++)
         {
-            const int left = std::max(x - 1, 0), right = std::min(x + 1, IMAGE.width - 1), up = std::max(y - 1, 0), down = std::min(y + 1, IMAGE.height - 1);
+            const int left = std::max(x - 1, 0), right = std::min(x + 1, IMAGE.width - 1);
+            const int up = std::max(y - 1, 0), down = std::min(y + 1, IMAGE.height - 1);
             const Vec2d slope((distance.at<double>(y, right) - distance.at<double>(y, left))/(right - left),
                               (distance.at<double>(down, x) - distance.at<double>(up, x))/(down - up));
             const double off = distance.at<double>(y, x)/norm(slope), a = albedo.at<float>(y, x);
             const auto profile = [&](double px) { return std::exp(-0.5*px*px/(light.width*light.width)); };
             const double green = light.amplitude*a*(profile(off) + light.reflection*profile(off - 25.));
             for (int c = 0; c < 3; c++)
-                image.at<Vec3b>(y, x)[c] = saturate_cast<uchar>(std::min(light.most, 10 + 120*a + (c == 1 ? green : 0.)) + random.normal(light.noise));
+            {
+                const double value = std::min(light.most, 10 + 120*a + (c == 1 ? green : 0.));
+                image.at<Vec3b>(y, x)[c] = saturate_cast<uchar>(value + random.normal(light.noise));
+            }
         }
     return image;
 }

@@ -159,8 +159,8 @@ TEST_CASE("Points on a sheet are true within their standard deviations", "[laser
             off[k] += e*e/m.points.size();
             sigma[k] += norm(m.sigma[i], NORM_L2SQR)/m.points.size();
         }
-        std::cout << "[numbers] points on a sheet of light, a reflection of " << reflection << ": " << std::sqrt(off[k]) << " mm off a plane, "
-                  << std::sqrt(sigma[k]) << " stated (3-D)\n";
+        std::cout << "[numbers] points on a sheet of light, a reflection of " << reflection << ": " << std::sqrt(off[k])
+                  << " mm off a plane, " << std::sqrt(sigma[k]) << " stated (3-D)\n";
         CHECK(outliers == 0);
         CHECK(off[k] < 4.*sigma[k]);
         k++;

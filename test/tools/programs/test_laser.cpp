@@ -69,7 +69,8 @@ TEST_CASE("refract_laser calibrates a sheet in water, real images", "[laser_tool
 TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
 {
     const TemporaryFolder folder;
-    writeFile(folder / "calib.yml", "%YAML:1.0\n---\nimage_width: 64\nimage_height: 48\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
+    writeFile(folder / "calib.yml", "%YAML:1.0\n---\nimage_width: 64\nimage_height: 48\n"
+        "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
         "   dt: d\n   data: [ 80, 0, 32, 0, 80, 24, 0, 0, 1 ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n"
         "   data: [ 0, 0, 0, 0 ]\nglass_window:\n   normal: [ 0., 0., 1. ]\n   distance: 10.\n   thickness: [ 5. ]\n   index: [ 1.5 ]\n"
         "   inner_index: 1.\n   outer_index: 1.333\n");

@@ -12,7 +12,8 @@ Gaussian, the line runs where the first derivative across it is zero,
 
     t = -(r_x n_x + r_y n_y) / r_nn,      |t n_x|, |t n_y| <= 1/2,
 
-n the direction of the most negative second derivative r_nn. White noise of a pixel, s, makes an error of t of s / (sqrt(8 pi) sigma^2 |r_nn|). */
+n the direction of the most negative second derivative r_nn. White noise of a pixel, s, makes an error of t of
+s / (sqrt(8 pi) sigma^2 |r_nn|). */
 namespace tools {
 
 struct RidgePoint

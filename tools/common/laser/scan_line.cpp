@@ -53,7 +53,8 @@ bool movesAlongColumns(const Calibration& calibration, const Sheet& sheet)
     return alongY >= alongX;
 }
 
-std::vector<RidgePoint> atDepth(const std::vector<RidgePoint>& ridges, const Calibration& calibration, const Sheet& sheet, const Vec2d& depth)
+std::vector<RidgePoint> atDepth(const std::vector<RidgePoint>& ridges, const Calibration& calibration, const Sheet& sheet,
+                                const Vec2d& depth)
 {
     std::vector<Point2d> pixels;
     for (const RidgePoint& r : ridges)
@@ -114,7 +115,8 @@ std::vector<Piece> piecesOf(const std::vector<RidgePoint>& ridges, bool byColumn
         }
     }
     close(INT_MAX);
-    pieces.erase(std::remove_if(pieces.begin(), pieces.end(), [](const Piece& p) { return (int)p.points.size() < SHORTEST; }), pieces.end());
+    const auto isShort = [](const Piece& piece) { return (int)piece.points.size() < SHORTEST; };
+    pieces.erase(std::remove_if(pieces.begin(), pieces.end(), isShort), pieces.end());
     for (Piece& piece : pieces)
     {
         std::vector<double> strengths;
