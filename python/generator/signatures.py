@@ -27,7 +27,8 @@ KINDS = {"Mat": "ARRAY", "vector_Mat": "ARRAYS", "vector_vector_Mat": "ARRAYS_OF
          "vector_int": "INTEGERS", "String": "TEXT", "TermCriteria": "CRITERIA", "vector_String": "TEXTS", "c_string": "TEXT",
          "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
 DEFAULTS = {"noArray()": "None", "GlassWindow()": "None", "String()": "''", "Size()": "(0, 0)", "true": "True", "false": "False",
-            "std::vector<int>()": "()", "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None",
+            "std::vector<int>()": "()", "std::vector<Mat>()": "()", "std::vector<std::vector<Mat> >()": "()",
+            "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None",
             "vector_Mat()": "None", "vector_int()": "()",
             "RECTIFY_ZERO_DISPARITY": "1024"}
 
