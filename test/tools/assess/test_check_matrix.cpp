@@ -251,7 +251,7 @@ Score matrix(int trials, unsigned salt)
 
 } // namespace
 
-TEST_CASE("The true cause of a contradiction is named: a few of each", "[check_matrix]")
+TEST_CASE("The true cause of a contradiction is named: a few of each", "[check_matrix][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
     const Score sum = matrix(2, 4000);

@@ -120,7 +120,7 @@ TEST_CASE("A window that moved is found as often as predicted, and one that did 
     CHECK(r.inTwoSigma > 0.8);                          // 0.865 where both principal deviations are equal
 }
 
-TEST_CASE("Another pane in the same mount is not taken for one that moved", "[rig_check]")
+TEST_CASE("Another pane in the same mount is not taken for one that moved", "[rig_check][slow]")
 {
     scenes::Random random(3013);
     std::cout << "seed " << scenes::seed() << '\n';

@@ -18,7 +18,7 @@ double numberAfter(const std::string& text, const std::string& words)
 
 } // namespace
 
-TEST_CASE("refract_laser calibrates a sheet in water, real images", "[laser_tool][real]")
+TEST_CASE("refract_laser calibrates a sheet in water, real images", "[laser_tool][real][slow]")
 {
     const std::string data = paths::data() + "/ouc_laser3d";
     if (!std::filesystem::exists(data))

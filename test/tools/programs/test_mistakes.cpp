@@ -77,7 +77,7 @@ std::string direct(const std::string& glob) { return " --direct='" + glob + "'";
 
 } // namespace
 
-TEST_CASE("Mistakes with images and options are told by their names within seconds", "[tools][calib][mistakes]")
+TEST_CASE("Mistakes with images and options are told by their names within seconds", "[tools][calib][mistakes][slow]")
 {
     cv::setRNGSeed(27);
     const TemporaryFolder f;

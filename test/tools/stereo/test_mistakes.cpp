@@ -176,7 +176,7 @@ Outcome run(const Pair& pair, const Mat& truth)
 
 } // namespace
 
-TEST_CASE("Of what refract_stereo writes after a mistake at most 2 % is wrong, and the mistake is said", "[tools][stereo][mistakes]")
+TEST_CASE("Of what refract_stereo writes after a mistake at most 2 % is wrong, and the mistake is said", "[tools][stereo][mistakes][slow]")
 {
     const RenderedScene scene;
     const Outcome right = run(scene.pair, scene.truth);
