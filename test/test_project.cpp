@@ -356,3 +356,15 @@ TEST_CASE("A transformed object is the object in camera coordinates", "[project]
         REQUIRE(norm(a[0] - b[0]) < 1e-9);
     }
 }
+
+TEST_CASE("A pixel that overflows is none, and has a status", "[project]")
+{
+    const Matx33d K(1115, 0, 453, 0, 1071, 509, 0, 0, 1);
+    const std::vector<double> huge = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2.5e307, 1e-4, 0, 0};
+    std::vector<Point2d> pixels;
+    std::vector<uchar> status;
+    refractiveProjectPoints(std::vector<Point3d>{{-290, -290, 125}}, Vec3d(), Vec3d(), K, huge, GlassWindow(), pixels, status);
+    CHECK(status[0] == REFRACT_OUTSIDE_LENS_MODEL);
+    CHECK(std::isnan(pixels[0].x));
+    CHECK(std::isnan(pixels[0].y));
+}

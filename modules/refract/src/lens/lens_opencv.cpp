@@ -177,7 +177,8 @@ uchar OpenCVLens::projectOne(double X, double Y, double Z, double& u, double& v)
     const double w = m_.tilted ? homography(m_.tilt, d.x, d.y) : 1;
     u = m_.fx*d.x + m_.cx;
     v = m_.fy*d.y + m_.cy;
-    return !(Z > 0) ? REFRACT_BEHIND_CAMERA : isInside && w > 0 ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
+    const bool hasPixel = isInside && w > 0 && std::isfinite(u) && std::isfinite(v);       // huge coefficients overflow
+    return !(Z > 0) ? REFRACT_BEHIND_CAMERA : hasPixel ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
 }
 
 /* The radial part alone has exactly one solution, by a safeguarded one-dimensional Newton; from there Newton in the
