@@ -29,6 +29,8 @@ MatrixXd rootOf(const MatrixXd& C)
     const VectorXd& values = eigen.eigenvalues();
     const Eigen::Index zeros = (values.array() <= NOTHING*values.cwiseMax(0.).sum()).count();
     const Eigen::Index rank = values.size() - zeros;
+    if (rank == 0)          // an exact calibration: one direction along which nothing moves, as Eigen wants a column
+        return MatrixXd::Zero(C.rows(), 1);
     return std.asDiagonal()*eigen.eigenvectors().rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
 }
 
@@ -121,7 +123,8 @@ CheckProblem::Rows CheckProblem::linearise(const RigModel& rig, const std::vecto
         const int count = (int)of.residual.size() - 6;
         rows.residual.segment(row, count) = project(of.residual);
         rows.byQ.middleRows(row, count) = project(of.byQ);
-        rows.byDelta.middleRows(row, count) = project(of.byDelta);
+        if (rows.byDelta.cols() > 0)        // Eigen's blocks want a column
+            rows.byDelta.middleRows(row, count) = project(of.byDelta);
         row += count;
         rows.views.push_back(of);
     }

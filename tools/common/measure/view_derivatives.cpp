@@ -137,8 +137,6 @@ PoseNullSpace::PoseNullSpace(const MatrixXd& byPose) : qr_(scaled(byPose)) {}
 
 MatrixXd PoseNullSpace::operator()(const MatrixXd& rows) const
 {
-    if (rows.cols() == 0)       // of parameters that there are none of; Eigen's blocks want a column
-        return MatrixXd(rows.rows() - qr_.cols(), 0);
     // Not as a product: Q has as many columns as the view has rows.
     MatrixXd rotated = rows;
     rotated.applyOnTheLeft(qr_.householderQ().adjoint());
