@@ -101,22 +101,9 @@ ViewObservations observedAt(const View& view, int cameras, const Vec3d& rvec, co
     observed.objectPoints = view.objectPoints;
     observed.rvec = rvec;
     observed.tvec = tvec;
-    std::vector<double> pixels;
     for (bool glass : {false, true})        // in this order, so that each state has one block of rows
         for (int c = 0; c < cameras; c++)
-        {
-            const std::vector<Point2d>& points = (glass ? view.glass : view.direct)[c];
-            ImageOfView image{c, glass, {}};
-            for (size_t i = 0; i < points.size(); i++)
-                if (seen(points[i]))
-                {
-                    image.points.push_back((int)i);
-                    pixels.insert(pixels.end(), {points[i].x, points[i].y});
-                }
-            if (!image.points.empty())
-                observed.images.push_back(image);
-        }
-    observed.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
+            addImage(view, c, glass, observed);
     return observed;
 }
 

@@ -28,28 +28,32 @@ static bool startPose(const RigModel& rig, const View& view, ViewObservations& o
     return false;
 }
 
+void addImage(const View& view, int camera, bool glass, ViewObservations& observed)
+{
+    const std::vector<Point2d>& points = (glass ? view.glass : view.direct)[camera];
+    ImageOfView image{camera, glass, {}};
+    std::vector<double> pixels(observed.pixels.data(), observed.pixels.data() + observed.pixels.size());
+    for (size_t i = 0; i < points.size(); i++)
+        if (seen(points[i]))
+        {
+            image.points.push_back((int)i);
+            pixels.insert(pixels.end(), {points[i].x, points[i].y});
+        }
+    if (image.points.empty())
+        return;
+    observed.images.push_back(image);
+    observed.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
+}
+
 ViewObservations observationsOf(const RigModel& rig, const View& view)
 {
     ViewObservations observed;
     observed.objectPoints = view.objectPoints;
     if (!startPose(rig, view, observed))
         throw Failure("no pose of the target explains its points in view '" + view.stem + "': check --size and --square");
-    std::vector<double> pixels;
     for (int c = 0; c < (int)rig.cameras.size(); c++)
         for (bool glass : {false, true})
-        {
-            const std::vector<Point2d>& points = glass ? view.glass[c] : view.direct[c];
-            ImageOfView image{c, glass, {}};
-            for (size_t i = 0; i < points.size(); i++)
-                if (seen(points[i]))
-                {
-                    image.points.push_back((int)i);
-                    pixels.insert(pixels.end(), {points[i].x, points[i].y});
-                }
-            if (!image.points.empty())
-                observed.images.push_back(image);
-        }
-    observed.pixels = Eigen::Map<VectorXd>(pixels.data(), pixels.size());
+            addImage(view, c, glass, observed);
     return observed;
 }
 

@@ -18,6 +18,9 @@ struct ViewObservations
     cv::Vec3d rvec, tvec;               //!< board -> camera 1
 };
 
+//! The seen points of one image, after those that are there; an image without any is none.
+void addImage(const View& view, int camera, bool glass, ViewObservations& observed);
+
 //! The pose is that of one of the images. Throws Failure if none has one.
 ViewObservations observationsOf(const RigModel& rig, const View& view);
 
