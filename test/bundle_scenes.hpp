@@ -154,8 +154,9 @@ struct BundleCall
     double run(const cv::Mat& rigCovariance, double lengthScaleStd, int flags)
     {
         return cv::refract::refractiveBundleAdjust(images, cameras, windows, Rs, Ts, rvecs, tvecs, points, lengths, deviations,
-                                                   covariance, pointDeviations, perViewErrors, inliers, rigCovariance, lengthScaleStd,
-                                                   flags, poseCovariances);
+                                                   covariance, pointDeviations, perViewErrors, inliers, flags, poseCovariances,
+                                                   cv::TermCriteria(3, 1000, 1e-12), cv::noArray(), {}, rigCovariance,
+                                                   lengthScaleStd);
     }
 
     std::vector<std::vector<cv::Mat> > images;

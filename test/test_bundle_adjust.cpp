@@ -487,5 +487,12 @@ TEST_CASE("What is no covariance of the rig is refused by name", "[bundle][prior
     bad.at<double>(3, 4) = bad.at<double>(4, 3) = 2;
     CHECK_THAT(fault(bad, 0), Contains("rigCovariance is no covariance"));
     CHECK_THAT(fault(Mat(), -1), Contains("lengthScaleStd is -1"));
+    Random start(26);
+    BundleCall both(truth, scene, start, 0.5);
+    CHECK_THAT(thrown([&] { refractiveBundleAdjust(both.images, both.cameras, both.windows, both.Rs, both.Ts, both.rvecs, both.tvecs,
+                                                   both.points, both.lengths, both.deviations, both.covariance, both.pointDeviations,
+                                                   both.perViewErrors, both.inliers, 0, noArray(), TermCriteria(3, 10, 1e-6),
+                                                   std::vector<Mat>(2), {}, Mat::eye(P, P, CV_64F)); }),
+               Contains("cameraCovariances and rigCovariance are both given"));
     CHECK_THAT(fault(Mat(), NaN), Contains("lengthScaleStd"));
 }

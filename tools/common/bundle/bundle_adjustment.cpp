@@ -195,12 +195,14 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
         Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
     }
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
     Mat points3D, deviations;
     try
     {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
-                                         fit.stdDeviations, fit.covariance, deviations, noArray(), inliers, start.covariance,
-                                         lengths.commonStd(), start.flags | (robust ? GLASS_ROBUST : 0));
+                                         fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
+                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), {}, start.covariance,
+                                         lengths.commonStd());
     }
     catch (const CalibrationError& e)
     {

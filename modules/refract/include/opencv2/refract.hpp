@@ -1466,6 +1466,13 @@ noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
 @param cameraCovariances prior knowledge of each camera, as for calibrateGlassRig, also of its rvec and T; noArray(): none.
 @param pixelCovariances per camera, per view, as imagePoints: the covariance of each pixel, as for calibrateGlassRig.
+@param rigCovariance prior knowledge of all cameras together, in place of cameraCovariances: PxP, in the order of stdDeviations,
+the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration, as readRig returns it. What
+has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a window that cameras share, the
+rows of its first camera count. noArray(): nothing is known.
+@param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
+times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
+independent.
 @return RMS reprojection error in pixels over all points that were used.
 
 Throws if the data do not determine a free parameter, with its name; throws Error::StsNotImplemented in a build without Ceres.
@@ -1480,28 +1487,8 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         OutputArrayOfArrays inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
         InputArrayOfArrays cameraCovariances = noArray(),
-        const std::vector<std::vector<Mat> >& pixelCovariances = std::vector<std::vector<Mat> >());
-
-/** @overload
-With what is known of the rig from an earlier calibration, and of the lengths in common.
-@param rigCovariance PxP, in the order of stdDeviations: covariance of the initial values of cameras, Rs and Ts, for example of
-an earlier calibration, as readRig returns it. What has a variance is estimated within it, whatever the flags say; for the rest
-the flags decide. Of a window that cameras share, the rows of its first camera count. noArray(): nothing is known.
-@param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
-times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
-independent.
-The other arguments are as above.
-*/
-CV_EXPORTS_AS(refractiveBundleAdjustPriors) double refractiveBundleAdjust(
-        const std::vector<std::vector<Mat> >& imagePoints,
-        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
-        InputOutputArray points3D, InputArray lengths,
-        OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
-        OutputArrayOfArrays inliers, InputArray rigCovariance, double lengthScaleStd, int flags = 0,
-        InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+        const std::vector<std::vector<Mat> >& pixelCovariances = std::vector<std::vector<Mat> >(),
+        InputArray rigCovariance = noArray(), double lengthScaleStd = 0);
 
 /** @overload
 The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial

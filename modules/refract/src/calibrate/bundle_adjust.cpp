@@ -119,10 +119,10 @@ Eigen::MatrixXd readRigCovariance(InputArray covariance, const std::vector<Camer
 //! What is known beside the pixels: from earlier calibrations, of the ruler of the lengths, of the detector.
 struct Knowledge
 {
-    InputArray rigCovariance;
-    double lengthScaleStd;
     InputArrayOfArrays cameraCovariances;
     std::vector<std::vector<Mat> > pixelCovariances;
+    InputArray rigCovariance;
+    double lengthScaleStd;
 };
 
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
@@ -193,6 +193,8 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     addWedges(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
+    if (!known.rigCovariance.empty() && !known.cameraCovariances.empty())
+        CV_Error(Error::StsBadArg, "cameraCovariances and rigCovariance are both given; give one: rigCovariance is of all cameras");
     task.rigCovariance = readRigCovariance(known.rigCovariance, rig.cameras);
     if (!(known.lengthScaleStd >= 0 && std::isfinite(known.lengthScaleStd)))
         CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative", known.lengthScaleStd));
@@ -215,26 +217,6 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
 
 const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
 
-//! With all that it tells.
-double adjustInFull(const std::vector<std::vector<Mat> >& imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
-                    const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-                    InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
-                    OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
-                    OutputArrayOfArrays inliers, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                    const Knowledge& known)
-{
-    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
-    std::vector<PixelViews> pixels;
-    for (size_t c = 0; c < imagePoints.size(); c++)
-        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
-    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
-                                 poseCovariances, criteria, known, pointDeviations.needed());
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMat(fit.pointDeviations, pointDeviations);
-    writeMasks(fit.inliers, inliers);
-    return fit.rms;
-}
-
 } // namespace
 
 double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
@@ -244,28 +226,23 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
                               OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
                               OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
                               InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
-                              const std::vector<std::vector<Mat> >& pixelCovariances)
+                              const std::vector<std::vector<Mat> >& pixelCovariances, InputArray rigCovariance,
+                              double lengthScaleStd)
 {
     CV_INSTRUMENT_REGION();
 
-    return adjustInFull(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations, covariance,
-                        pointDeviations, perViewErrors, inliers, flags, poseCovariances, criteria,
-                        { noArray(), 0., cameraCovariances, pixelCovariances });
-}
-
-double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
-                              const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                              InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                              InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
-                              OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
-                              OutputArray perViewErrors, OutputArrayOfArrays inliers, InputArray rigCovariance,
-                              double lengthScaleStd, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria)
-{
-    CV_INSTRUMENT_REGION();
-
-    return adjustInFull(imagePoints, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, stdDeviations, covariance,
-                        pointDeviations, perViewErrors, inliers, flags, poseCovariances, criteria,
-                        { rigCovariance, lengthScaleStd, noArray(), {} });
+    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    std::vector<PixelViews> pixels;
+    for (size_t c = 0; c < imagePoints.size(); c++)
+        pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
+    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
+                                 poseCovariances, criteria,
+                                 { cameraCovariances, pixelCovariances, rigCovariance, lengthScaleStd },
+                                 pointDeviations.needed());
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeMat(fit.pointDeviations, pointDeviations);
+    writeMasks(fit.inliers, inliers);
+    return fit.rms;
 }
 
 double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
@@ -279,7 +256,7 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
     for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints", HalfPixels::TAKEN))
         pixels.push_back(PixelViews(1, ofCamera));
     return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
-                  { noArray(), 0., noArray(), {} }, false).rms;
+                  { noArray(), {}, noArray(), 0. }, false).rms;
 }
 
 }} // namespace

@@ -87,16 +87,7 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::
                               const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
                               InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray,
                               OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, int, InputArrayOfArrays, TermCriteria,
-                              InputArrayOfArrays, const std::vector<std::vector<Mat> >&)
-{
-    throwWithoutCeres("refractiveBundleAdjust");
-}
-
-double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::vector<Ptr<RefractiveCamera> >&,
-                              const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
-                              InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray,
-                              OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, InputArray, double, int,
-                              InputArrayOfArrays, TermCriteria)
+                              InputArrayOfArrays, const std::vector<std::vector<Mat> >&, InputArray, double)
 {
     throwWithoutCeres("refractiveBundleAdjust");
 }

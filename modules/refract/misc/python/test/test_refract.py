@@ -412,9 +412,9 @@ class refract_test(NewOpenCVTests):
         self.assertLess(result[0], 1e-5)
         self.assertClose(points, result[5], 1e-3)
         count = result[7].shape[0]
-        known = cv.refract.refractiveBundleAdjustPriors(
+        known = cv.refract.refractiveBundleAdjustExtended(
             [[pixels[0]], [pixels[1]]], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [self.zero.copy()],
-            [self.zero.copy()], points + 0.5, lengths, np.zeros((count, count)), 1e-3)
+            [self.zero.copy()], points + 0.5, lengths, rigCovariance=np.zeros((count, count)), lengthScaleStd=1e-3)
         self.assertClose(points, known[5], 1e-3)
         self.assertGreater(np.nanmin(known[8][:, 2]/points[:, 2]), 1e-4)
 
