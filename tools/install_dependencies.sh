@@ -13,10 +13,10 @@
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
-  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev libcairo2-dev"
+  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libassimp-dev libcairo2-dev libmbedtls-dev"
 test_libraries="catch2 libgtest-dev libmrcal-dev"
-test_programs="file locales poppler-utils lintian"    # cpack makes the packages with file, lintian checks them; tests make a
-                                                      # locale, and see PDFs
+test_programs="file libxml2-utils locales poppler-utils lintian"      # cpack makes the packages with file, lintian checks them;
+                                                      # tests make a locale, see PDFs, validate XML
 build="build-essential ccache cmake gnuplot-nox mold ninja-build pkg-config $libraries"
 in_tree="python3-pip python3-dev python3-numpy"
 

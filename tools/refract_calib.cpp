@@ -411,6 +411,7 @@ void takeImages(const Options& o, const Target* target, RigImages sets, RigCalib
     if (!o.unpaired)
         requirePairs(sets);
     c.photos = photosOf(sets);
+    c.used = usedImages(sets);
     c.fewPoints = leaveOutFewPoints(target, sets);
     c.data = groupIntoViews(target, sets, o.unpaired);
     if (!o.poses.empty())

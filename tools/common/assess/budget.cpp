@@ -20,6 +20,7 @@ struct Source
     std::string name, given;
     std::vector<int> columns;       //!< of the covariance with the targets' errors
     Mat prior;                      //!< covariance of these
+    double unit = 1.;               //!< of the values in which it is given, over that of the prior
 };
 
 std::vector<int> rangeOf(int first, int count)
@@ -33,7 +34,7 @@ std::vector<int> rangeOf(int first, int count)
 //! Those of a prior's rows that have a variance, shifted to where they are in the whole.
 Source sourceOf(const std::string& name, const std::string& given, const Mat& prior, const std::vector<int>& rows, int first)
 {
-    Source source{name, given, {}, Mat()};
+    Source source{name, given, {}, Mat(), 1.};
     std::vector<int> own;
     for (int row : rows)
         if (prior.at<double>(row, row) > 0)
@@ -86,11 +87,35 @@ std::vector<Source> sourcesOf(const RigCalibration& c)
         sources.push_back(sourceOf(c.square > 0. ? "square of the board" : "scale of the targets",
                                    c.square > 0. ? c.options.std.scale.text(" " + c.unit, c.square)
                                                  : c.options.std.scale.text(" %", 100.), targets, {0}, first));
+        if (c.square > 0.)
+            sources.back().unit = c.square;
         sources.push_back(sourceOf("boards moved between direct and glass", c.options.std.placement.text(" " + c.unit), targets,
                                    rangeOf(1, 6), first));
     }
     sources.erase(std::remove_if(sources.begin(), sources.end(), [](const Source& s) { return s.columns.empty(); }), sources.end());
     return sources;
+}
+
+//! The standard deviation that all its values have; 0: they differ.
+double commonStd(const Source& source)
+{
+    const Mat variances = source.prior.diag();
+    double least, most;
+    minMaxLoc(variances, &least, &most);
+    return most - least < 1e-9*most ? source.unit*std::sqrt(most) : 0.;
+}
+
+//! W^(1/2), a column each direction that has a variance.
+Mat rootOfInformation(const Mat& prior)
+{
+    const SVD svd(prior);
+    int rank = 0;
+    while (rank < svd.w.rows && svd.w.at<double>(rank) > 1e-12*svd.w.at<double>(0))
+        rank++;
+    Mat root = svd.u.colRange(0, rank).clone();
+    for (int i = 0; i < rank; i++)
+        root.col(i) /= std::sqrt(svd.w.at<double>(i));
+    return root;
 }
 
 //! Mean squares of the errors of points in the working volume, and of their part that is pixel noise.
@@ -120,10 +145,21 @@ private:
 
 } // namespace
 
+std::vector<UncertaintySource> uncertaintySources(const RigCalibration& c)
+{
+    const std::vector<int> cameras = rangeOf(0, columnCount(c.fit.rig));
+    std::vector<UncertaintySource> sources;
+    if (c.fit.withTargets.empty())
+        return sources;
+    for (const Source& source : sourcesOf(c))
+        sources.push_back({source.name, source.given, commonStd(source),
+                           partOf(c.fit.withTargets, cameras, source.columns)*rootOfInformation(source.prior)});
+    return sources;
+}
+
 std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& c)
 {
     const Volume volume(c);
-    const std::vector<int> cameras = rangeOf(0, columnCount(c.fit.rig));
     double pixelNoise = 0.;
     const double calibration = volume.meanSquare(c.fit.covariance, &pixelNoise), total = calibration + pixelNoise;
     double left = calibration;
@@ -131,10 +167,9 @@ std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& c)
     const auto add = [&](const std::string& source, const std::string& given, double square) {
         rows.push_back({source, given, std::sqrt(std::max(square, 0.)), std::max(square, 0.)/total});
     };
-    for (const Source& source : sourcesOf(c))
+    for (const UncertaintySource& source : uncertaintySources(c))
     {
-        const Mat columns = partOf(c.fit.withTargets, cameras, source.columns);
-        const double square = volume.meanSquare(columns*source.prior.inv(DECOMP_SVD)*columns.t());
+        const double square = volume.meanSquare(source.factor*source.factor.t());
         left -= square;
         add(source.name, source.given, square);
     }

@@ -19,8 +19,11 @@ struct BudgetRow
     double share = NONE;            //!< of the sum of the squares
 };
 
-/** The rows add up to the last one, the total, in squares: with the covariance C of all that is estimated and the information W of
-one source's prior, C W C is what the source contributes to C. */
+/** What each given value contributes to the covariance of the calibration: with the covariance C of all that is estimated and the
+information W of the value, C W C, of which the factor is C W^(1/2). */
+std::vector<UncertaintySource> uncertaintySources(const RigCalibration& calibration);
+
+/** The rows add up to the last one, the total, in squares. */
 std::vector<BudgetRow> uncertaintyBudget(const RigCalibration& calibration);
 
 } // namespace tools

@@ -91,6 +91,31 @@ double coverage(const RigCalibration& calibration, int camera)
     return (double)cells.size()/(COLUMNS*ROWS);
 }
 
+std::optional<CalibratedVolume> calibratedVolume(const RigCalibration& calibration)
+{
+    const Fit& fit = calibration.fit;
+    std::optional<CalibratedVolume> volume;
+    for (size_t k = 0; k < fit.views.size(); k++)
+    {
+        const View& view = calibration.data.views[fit.views[k]];
+        Vec3d rvec = fit.rvecs[k], tvec = fit.tvecs[k];
+        poseInImage(fit.rig, 0, true, rvec, tvec);
+        const RigidTransform cam1_from_board = transformOf(rvec, tvec);
+        const std::vector<Point3d> object = pointsOfTarget(fit.rig, view.objectPoints);
+        for (size_t i = 0; i < object.size(); i++)
+        {
+            if (std::none_of(view.glass.begin(), view.glass.end(), [i](const auto& pixels) { return i < pixels.size() && seen(pixels[i]); }))
+                continue;
+            const Point3d X = cam1_from_board*Vec3d(object[i]);
+            if (!volume)
+                volume = CalibratedVolume{X, X};
+            volume->least = {std::min(volume->least.x, X.x), std::min(volume->least.y, X.y), std::min(volume->least.z, X.z)};
+            volume->most = {std::max(volume->most.x, X.x), std::max(volume->most.y, X.y), std::max(volume->most.z, X.z)};
+        }
+    }
+    return volume;
+}
+
 Vec3d workingDepth(const RigCalibration& calibration, int camera)
 {
     std::vector<double> depths;

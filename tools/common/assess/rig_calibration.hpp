@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_RIG_CALIBRATION_HPP
 
 #include "assess/cross_validation.hpp"
+#include "calibrate/calibration_images.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/outliers.hpp"
 #include <optional>
@@ -51,6 +52,7 @@ struct RigCalibration
     std::vector<Influence> influences;          //!< only if asked for
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
     std::vector<Photo> photos;
+    std::vector<UsedImage> used;                //!< images that show the target
     std::vector<std::string> notices;           //!< of the checks of the images, see data_checks.hpp
     std::vector<Rejected> fewPoints;            //!< images that have no pose, already removed from data
     Outliers outliers;                          //!< points and images, already removed from data
@@ -93,6 +95,9 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
 
 //! Share of the cells of an 8 x 6 grid over the image with a corner seen through the window.
 double coverage(const RigCalibration& calibration, int camera);
+
+//! Of all points seen through the windows; none without images through them.
+std::optional<CalibratedVolume> calibratedVolume(const RigCalibration& calibration);
 
 //! Distance of the board's points from camera 1, at the views with a glass image: nearest, median, farthest z.
 cv::Vec3d workingDepth(const RigCalibration& calibration, int camera);

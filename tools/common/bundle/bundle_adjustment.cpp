@@ -235,6 +235,7 @@ Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start)
     file.square = start.square;
     file.channel = start.channel;
     file.label = start.label;
+    file.provenance.images = start.provenance.images;       // these had their say
     return file;
 }
 

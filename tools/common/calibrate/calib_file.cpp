@@ -255,6 +255,7 @@ Calibration readCalibration(const std::string& filename)
     if (fs["channel"].isString())
         calibration.channel = channelOf(fs["channel"]);
     calibration.label = readLabel(fs);
+    calibration.provenance = readProvenance(fs, filename);
     if (fs["verdict"].isString())
         fs["verdict"] >> calibration.verdict;
     if (fs["contradictions"].isSeq())
@@ -337,6 +338,7 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
             fs << "residual_sigma" << calibration.sigma << "degrees_of_freedom" << calibration.dof;
         if (!calibration.covariance.empty())
             fs << "covariance" << calibration.covariance;
+        writeProvenance(fs, calibration.provenance);
     });
 }
 

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CALIB_FILE_HPP
 #define REFRACT_TOOLS_CALIB_FILE_HPP
 
+#include "calibrate/provenance.hpp"
 #include "calibrate/rigid_transform.hpp"
 #include "console/images.hpp"
 #include <opencv2/refract.hpp>
@@ -18,7 +19,8 @@ Per camera: image_width, image_height, camera_matrix, distortion_coefficients, l
 index, inner_index, outer_index, wedge, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index, outer_index,
 wedge}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
 board), channel (of colour images, that it is for), verdict, contradictions (what the data say against what was given, a sentence each),
-weak_points (a sentence each), window_serial, notes {key: text}, and command, refract_version, opencv_version, calibration_time. */
+weak_points (a sentence each), window_serial, notes {key: text}, what provenance.hpp names, and command, refract_version,
+opencv_version, calibration_time. */
 namespace tools {
 
 class Command;
@@ -66,6 +68,7 @@ struct Calibration
     std::vector<std::string> contradictions;
     std::vector<std::string> weakPoints;    //!< which the verdict counts on the reader to look at
     Label label;
+    Provenance provenance;
     std::string command;    //!< the command line that made it
     std::string time;       //!< of its data, see timeOfFiles()
 

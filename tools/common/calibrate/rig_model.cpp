@@ -109,6 +109,7 @@ Calibration firstPair(const Calibration& rig)
     pair.cameras.resize(2);
     pair.extrinsics.resize(2);
     pair.windows.resize(std::min(rig.windows.size(), (size_t)2));
+    pair.provenance.sources.clear();            // they speak of all cameras
     if (rig.covariance.empty())
         return pair;
     const RigModel all = modelOf(rig);

@@ -113,6 +113,8 @@ const std::string& CsvTable::text(const Row& row, const std::string& name) const
     return cell;
 }
 
+const std::string& CsvTable::textOrNone(const Row& row, const std::string& name) const { return cellOf(row, name); }
+
 double CsvTable::number(const Row& row, const std::string& name) const
 {
     double value;

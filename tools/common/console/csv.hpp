@@ -31,6 +31,7 @@ public:
     std::string where(const Row& row) const;            //!< "'file' line 12"
 
     const std::string& text(const Row& row, const std::string& name) const;
+    const std::string& textOrNone(const Row& row, const std::string& name) const;       //!< may be empty
     double number(const Row& row, const std::string& name) const;               //!< finite
     double numberOrNone(const Row& row, const std::string& name) const;         //!< NaN where the cell is empty or nan
     //! Where a point was seen: two numbers, or both NaN.

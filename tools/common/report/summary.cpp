@@ -358,6 +358,7 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     file.square = c.square;
     file.channel = c.options.channel;
     file.label = c.label;
+    file.provenance = {withHashes(c.used), calibratedVolume(c), uncertaintySources(c)};
     file.command = command;
     file.time = timeOfFiles(c.inputs);
     return file;

@@ -1,0 +1,139 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "accept/acceptance_output.hpp"
+#include "console/colour.hpp"
+#include "console/lines.hpp"
+#include "console/table.hpp"
+#include "report/digest.hpp"
+#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+using Json = nlohmann::ordered_json;
+
+namespace tools {
+
+namespace {
+
+std::string verdictOf(const Acceptance& a)
+{
+    const int passed = a.count(Decision::PASS), failed = a.count(Decision::FAIL), undecided = a.count(Decision::UNDECIDED);
+    switch (a.decision())
+    {
+    case Decision::PASS: return format("PASS: all %d lengths are within their limits, U included", passed);
+    case Decision::FAIL: return format("FAIL: of %zu lengths %d are beyond their limits by more than U, %d undecided", a.lengths.size(),
+                                       failed, undecided);
+    default: return format("UNDECIDED: of %zu lengths %d are within their limits, U included; %d are within U of them", a.lengths.size(),
+                           passed, undecided);
+    }
+}
+
+std::string resultOf(const LengthResult& r, const std::string& unit)
+{
+    return format("%+.4f %s, U %.4f, limit %.4f: '", r.error, unit.c_str(), r.U(), r.limit) + r.length.name + "'";
+}
+
+//! The three largest.
+std::string madeOf(const GumTable& table)
+{
+    std::vector<GumRow> rows = table.rows;
+    std::stable_sort(rows.begin(), rows.end(), [](const GumRow& a, const GumRow& b) { return a.share > b.share; });
+    std::string text;
+    for (size_t i = 0; i < std::min<size_t>(3, rows.size()); i++)
+        text += (i ? ", " : "") + rows[i].source + format(" %.0f %%", 100.*rows[i].share);
+    return text;
+}
+
+std::string textOfDof(double dof) { return std::isfinite(dof) && dof < 1e5 ? format("%.0f", std::floor(dof)) : "inf"; }
+
+std::string orBlank(double number) { return std::isnan(number) ? "" : format("%.3g", number); }
+
+} // namespace
+
+void printAcceptance(std::ostream& out, const Acceptance& a, const std::string& certificate)
+{
+    std::string missing;
+    for (const std::string& part : a.missing)
+        missing += (missing.empty() ? "" : "; ") + part;
+    std::vector<std::string> facts = {"Nearest to its limit, U included: " + resultOf(a.decisive(), a.unit),
+                                      "Largest error: " + resultOf(a.largest(), a.unit)};
+    if (a.decisive().length.name == a.largest().length.name)
+        facts.erase(facts.begin());
+    facts.push_back(format("Errors %.2g %s RMS; U of the first is made of: ", a.rms(), a.unit.c_str()) + madeOf(a.decisive().budget));
+    if (a.outside())
+        facts.push_back(format("Outside of the calibrated volume (marked *): %d of %zu lengths", a.outside(), a.lengths.size()));
+    facts.insert(facts.end(), a.notices.begin(), a.notices.end());
+    if (!missing.empty())
+        facts.push_back("VDI/VDE 2634 part 1 asks for more: " + missing);
+    const std::string more = "More: --verbose, " + (certificate.empty() ? "--certificate=certificate.html" : certificate);
+
+    const Tone tone = a.decision() == Decision::PASS ? Tone::GOOD : a.decision() == Decision::FAIL ? Tone::BAD : Tone::DOUBTFUL;
+    size_t room = DIGEST_LINES - 1;
+    for (const std::string& line : brokenInto(verdictOf(a), DIGEST_COLUMNS, "  ", LongWords::BROKEN))
+    {
+        out << toned(out, line, tone) << '\n';
+        room--;
+    }
+    for (const std::string& fact : facts)
+    {
+        const std::vector<std::string> lines = firstOf(brokenInto(fact, DIGEST_COLUMNS, "  ", LongWords::BROKEN), room, DIGEST_COLUMNS);
+        room -= lines.size();
+        for (const std::string& line : lines)
+            out << line << '\n';
+    }
+    out << firstOf(brokenInto(more, DIGEST_COLUMNS, "  ", LongWords::BROKEN), 1, DIGEST_COLUMNS)[0] << '\n';
+}
+
+void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTable>& budgets)
+{
+    Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "limit", "decision"});
+    for (const LengthResult& r : a.lengths)
+        table.add({r.length.name, format("%.4f", r.length.length), format("%.4f", r.measured), format("%+.4f", r.error), format("%.4f", r.U()),
+                   format("%.2f", r.budget.k), format("%.4f", r.limit), textOf(r.decision) + (r.outside ? " *" : "")});
+    out << '\n';
+    table.print(out);
+    for (const GumTable& budget : budgets)
+    {
+        out << '\n' << budget.quantity << format(": %.5g", budget.value) << "\n\n";
+        Table rows({"source", "standard uncertainty", "sensitivity", "contribution", "share, %", "degrees of freedom"});
+        for (const GumRow& row : budget.rows)
+            rows.add({row.source, std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given, orBlank(row.sensitivity),
+                      format("%.5f", row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
+        rows.add({"u; effective degrees of freedom", "", "", format("%.5f", budget.u), "100.0", textOfDof(budget.dof)});
+        rows.add({format("U (k = %.2f, 95.45 %%)", budget.k), "", "", format("%.5f", budget.U), "", ""});
+        rows.print(out);
+    }
+}
+
+static Json numberOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(); }
+
+std::string certificateJson(const Certificate& c)
+{
+    const Acceptance& a = *c.acceptance;
+    Json lengths = Json::array(), budgets = Json::array(), inputs = Json::array();
+    for (const LengthResult& r : a.lengths)
+        lengths.push_back({{"name", r.length.name}, {"length", r.length.length}, {"length_U", r.length.U}, {"measured", r.measured},
+                           {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", numberOrNull(r.budget.dof)}, {"limit", r.limit},
+                           {"decision", textOf(r.decision)}, {"outside_volume", r.outside}});
+    for (const GumTable& budget : c.budgets)
+    {
+        Json rows = Json::array();
+        for (const GumRow& row : budget.rows)
+            rows.push_back({{"source", row.source}, {"given", row.given}, {"std", numberOrNull(row.std)},
+                            {"sensitivity", numberOrNull(row.sensitivity)}, {"contribution", row.contribution}, {"share", row.share},
+                            {"dof", numberOrNull(row.dof)}});
+        budgets.push_back({{"quantity", budget.quantity}, {"value", budget.value}, {"rows", rows}, {"u", budget.u},
+                           {"dof", numberOrNull(budget.dof)}, {"k", budget.k}, {"U", budget.U}});
+    }
+    for (const CertificateInput& input : c.inputs)
+        inputs.push_back({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
+    const Json json = {{"decision", textOf(a.decision())}, {"number", c.number()}, {"date", c.label.date}, {"unit", a.unit},
+                       {"max_error", a.limit.text()}, {"images_checked", a.imagesChecked}, {"lengths", lengths}, {"budgets", budgets},
+                       {"missing", a.missing}, {"notices", a.notices}, {"inputs", inputs}, {"command", c.command},
+                       {"version", REFRACT_VERSION}};
+    return json.dump(2) + '\n';
+}
+
+} // namespace tools

@@ -1,0 +1,188 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "accept/certificate.hpp"
+#include "accept/certificate_template.hpp"
+#include "accept/error_plot.hpp"
+#include "console/failure.hpp"
+#include "console/sha256.hpp"
+#include "console/table.hpp"
+#include <kainjow/mustache.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numeric>
+
+using namespace kainjow::mustache;
+
+namespace tools {
+
+namespace {
+
+const size_t LENGTHS_ON_PAGE = 12, LONG_NAME = 34;
+
+std::string orNotStated(const std::string& text) { return text.empty() ? "not stated" : text; }
+
+std::string dofText(double dof) { return std::isfinite(dof) && dof < 1e5 ? format("%.0f", std::floor(dof)) : "∞"; }
+
+//! In the order of the file; on paper those that use most of their limits.
+std::vector<size_t> lengthsOnPage(const Acceptance& a)
+{
+    std::vector<size_t> order(a.lengths.size());
+    std::iota(order.begin(), order.end(), size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return a.lengths[i].used() > a.lengths[j].used(); });
+    order.resize(std::min(order.size(), LENGTHS_ON_PAGE));
+    std::sort(order.begin(), order.end());
+    return order;
+}
+
+data lengthsOf(const Acceptance& a)
+{
+    data list{data::type::list};
+    for (size_t i : lengthsOnPage(a))
+    {
+        const LengthResult& r = a.lengths[i];
+        data row;
+        row.set("name", r.length.name.size() > LONG_NAME ? r.length.name.substr(0, LONG_NAME) + "…" : r.length.name);
+        row.set("nominal", format("%.4f", r.length.length));
+        row.set("measured", format("%.4f", r.measured));
+        row.set("error", format("%+.4f", r.error));
+        row.set("U", format("%.4f", r.U()));
+        row.set("k", format("%.2f", r.budget.k));
+        row.set("limit", format("%.4f", r.limit));
+        row.set("decision", textOf(r.decision) + (r.outside ? " *" : ""));
+        row.set("class", textOf(r.decision));
+        list << row;
+    }
+    return list;
+}
+
+data budgetOf(const GumTable& table)
+{
+    data rows{data::type::list};
+    for (const GumRow& row : table.rows)
+    {
+        data entry;
+        entry.set("source", row.source);
+        entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given);
+        entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
+        entry.set("contribution", format("%.5f", row.contribution));
+        entry.set("share", format("%.1f", 100.*row.share));
+        entry.set("dof", dofText(row.dof));
+        rows << entry;
+    }
+    return rows;
+}
+
+data sentences(const std::vector<std::string>& all)
+{
+    data list{data::type::list};
+    for (const std::string& sentence : all)
+        list << data{"text", sentence};
+    return list;
+}
+
+void setLabel(data& page, const CertificateLabel& label)
+{
+    page.set("date", label.date);
+    for (const auto& entry : {std::make_pair("serial", label.serial), {"customer", label.customer}, {"laboratory", label.laboratory},
+                              {"person", label.person}, {"standard", label.standard}, {"environment", label.environment}})
+        page.set(entry.first, orNotStated(entry.second));
+}
+
+std::string verdictOf(const Acceptance& a)
+{
+    const std::string all = format("%d of %zu lengths", a.count(Decision::PASS), a.lengths.size());
+    switch (a.decision())
+    {
+    case Decision::PASS: return "Conforms: all " + std::to_string(a.lengths.size()) + " lengths are within the limit, their uncertainty included";
+    case Decision::FAIL: return format("Does not conform: %d of %zu lengths are beyond the limit by more than their uncertainty",
+                                       a.count(Decision::FAIL), a.lengths.size());
+    default: return "Undecided: " + all + " are within the limit, their uncertainty included; of the others the uncertainty is too large "
+                    "to decide";
+    }
+}
+
+data inputsOf(const Certificate& c)
+{
+    data list{data::type::list};
+    for (const CertificateInput& input : c.inputs)
+    {
+        data entry;
+        entry.set("what", input.what);
+        entry.set("name", input.name);
+        entry.set("sha256", input.sha256);
+        list << entry;
+    }
+    return list;
+}
+
+} // namespace
+
+void requireDate(const std::string& date, const std::string& option)
+{
+    std::tm parts = {};
+    const char* const end = date.size() == 10 ? strptime(date.c_str(), "%Y-%m-%d", &parts) : nullptr;
+    std::tm same = parts;
+    if (!end || *end != 0 || timegm(&same) == -1 || same.tm_mday != parts.tm_mday || date[4] != '-' || date[7] != '-')
+        throw Failure(option + "=" + date + ": give a day as year-month-day, as in " + option + "=2026-11-26");
+}
+
+std::string Certificate::number() const
+{
+    if (!label.number.empty())
+        return label.number;
+    std::string all = label.date + label.serial;
+    for (const CertificateInput& input : inputs)
+        all += input.sha256;
+    return "refract-" + sha256Of(all).substr(0, 16);
+}
+
+std::string certificateHtml(const Certificate& c)
+{
+    const Acceptance& a = *c.acceptance;
+    data page;
+    setLabel(page, c.label);
+    page.set("number", c.number());
+    page.set("verdict", verdictOf(a));
+    page.set("class", textOf(a.decision()));
+    page.set("unit", a.unit.empty() ? "unit of the calibration" : a.unit);
+    page.set("limit", a.limit.text());
+    page.set("lengths", lengthsOf(a));
+    const bool partly = a.lengths.size() > LENGTHS_ON_PAGE;
+    page.set("has_more_lengths", partly);
+    page.set("more_lengths", format("The %zu of %zu lengths that use most of their limit; the others are in the DCC.", LENGTHS_ON_PAGE,
+                                    a.lengths.size()));
+    page.set("has_outside", a.outside() > 0);
+    page.set("summary", format("Largest error of indication %+.4f, root mean square %.4f.", a.largest().error, a.rms()));
+    const GumTable& budget = c.budgets[0];
+    page.set("budget", budgetOf(budget));
+    page.set("budget_of", budget.quantity);
+    page.set("budget_result", format("u = %.5f, effective degrees of freedom %s, k = %.2f, U = %.5f", budget.u,
+                                     dofText(budget.dof).c_str(), budget.k, budget.U));
+    std::vector<std::string> remarks = a.notices;
+    if (!a.missing.empty())
+    {
+        std::string text = "Not a whole test after VDI/VDE 2634 part 1: ";
+        for (size_t i = 0; i < a.missing.size(); i++)
+            text += (i ? "; " : "") + a.missing[i];
+        remarks.push_back(text);
+    }
+    page.set("remarks", sentences(remarks));
+    page.set("has_remarks", !remarks.empty());
+    page.set("inputs", inputsOf(c));
+    page.set("calibration_time", orNotStated(c.calibrationTime));
+    page.set("calibration_verdict", orNotStated(c.calibrationVerdict));
+    page.set("version", REFRACT_VERSION);
+    page.set("opencv_version", CV_VERSION);
+    page.set("command", c.command);
+    page.set("errors_over_length", drawErrorsOverLength(a));
+    page.set("errors_in_volume", drawErrorsInVolume(a));
+    mustache page_template(CERTIFICATE_TEMPLATE);
+    const std::string html = page_template.render(page);
+    if (!page_template.is_valid())
+        throw Failure("the certificate's template is broken: " + page_template.error_message());
+    return html;
+}
+
+} // namespace tools

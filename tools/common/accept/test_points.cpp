@@ -1,0 +1,102 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "accept/test_points.hpp"
+#include "calibrate/calibration_images.hpp"
+#include "console/csv.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace tools {
+
+static const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
+
+int TestPoints::find(const std::string& image, const std::string& id) const
+{
+    const auto found = std::find_if(points.begin(), points.end(), [&](const TestPoint& p) { return p.image == image && p.id == id; });
+    return found == points.end() ? -1 : (int)(found - points.begin());
+}
+
+std::vector<std::string> TestPoints::images() const
+{
+    std::vector<std::string> names;
+    for (const TestPoint& point : points)
+        if (std::find(names.begin(), names.end(), point.image) == names.end())
+            names.push_back(point.image);
+    return names;
+}
+
+RigPixels TestPoints::pixelsOf(const std::string& image, size_t cameras) const
+{
+    RigPixels pixels(cameras);
+    for (const TestPoint& point : points)
+        for (size_t c = 0; c < cameras && point.image == image; c++)
+            pixels[c].push_back(point.pixels[c]);
+    return pixels;
+}
+
+TestPoints readTestPoints(const std::string& path, size_t cameras)
+{
+    const CsvTable table(path, {"id", "x", "y", "z"}, "a file of measured points");
+    TestPoints result;
+    result.source = path;
+    result.havePixels = table.find("u1") >= 0 && table.find("v1") >= 0;
+    result.haveSigma = table.find("sx") >= 0 && table.find("sy") >= 0 && table.find("sz") >= 0;
+    const bool hasImage = table.find("image") >= 0, hasStatus = table.find("status") >= 0;
+    if (table.find(format("u%zu", cameras + 1)) >= 0 && cameras >= 2)
+        throw Failure(format("'%s' has pixels of camera %zu, the calibration has %zu cameras: are they of one rig?", path.c_str(), cameras + 1,
+                             cameras));
+    std::set<std::pair<std::string, std::string>> names;
+    for (const CsvTable::Row& row : table.rows())
+    {
+        const auto number = [&](const std::string& name) { return table.numberOrNone(row, name); };
+        TestPoint point;
+        point.image = hasImage ? table.textOrNone(row, "image") : "";
+        point.id = table.text(row, "id");
+        point.X = {number("x"), number("y"), number("z")};
+        for (size_t c = 0; c < cameras; c++)
+        {
+            const std::string u = format("u%zu", c + 1), v = format("v%zu", c + 1);
+            const bool there = table.find(u) >= 0 && table.find(v) >= 0;
+            point.pixels.push_back(there ? table.pixelOrNone(row, u, v) : cv::Point2d(NOT_KNOWN, NOT_KNOWN));
+        }
+        point.sigma = result.haveSigma ? cv::Vec3d(number("sx"), number("sy"), number("sz")) : cv::Vec3d::all(NOT_KNOWN);
+        for (int i = 0; i < 3; i++)
+            if (point.sigma[i] < 0)
+                throw Failure(table.where(row) + ": sx, sy and sz are standard deviations, not below 0");
+        point.status = hasStatus ? (int)table.number(row, "status") : 0;
+        if (!names.emplace(point.image, point.id).second)
+            throw Failure(table.where(row) + ": the id '" + point.id + "'" + (hasImage ? " of the image '" + point.image + "'" : "")
+                          + " stands twice: give each point a name of its own");
+        result.points.push_back(point);
+    }
+    return result;
+}
+
+bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration)
+{
+    if (calibration.provenance.images.empty() || !points.havePixels)
+        return false;
+    std::vector<std::string> used;
+    for (const std::string& image : images)
+    {
+        const RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
+        for (size_t c = 0; c < pixels.size(); c++)
+            if (findImage(calibration.provenance.images, (int)c, pixels[c]))
+            {
+                used.push_back(image);
+                break;
+            }
+    }
+    if (!used.empty())
+        throw Failure("these images calibrated, so that they prove nothing: " + listed(used) + ". Take others, with the length standard "
+                      "where nothing was calibrated");
+    return true;
+}
+
+} // namespace tools

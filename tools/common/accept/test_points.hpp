@@ -1,0 +1,44 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_TEST_POINTS_HPP
+#define REFRACT_TOOLS_TEST_POINTS_HPP
+
+#include "calibrate/calib_file.hpp"
+#include "measure/joint_error.hpp"
+
+/* The measured points that an acceptance test is made of. */
+namespace tools {
+
+//! A point, by the names that lengths.csv calls it.
+struct TestPoint
+{
+    std::string image, id;
+    cv::Point3d X;                          //!< frame of camera 1; NaN: no answer
+    std::vector<cv::Point2d> pixels;        //!< of each camera; NaN: not seen, or not known
+    cv::Vec3d sigma;                        //!< one standard deviation; NaN: not known
+    int status = 0;
+};
+
+struct TestPoints
+{
+    std::string source;                     //!< file, for texts
+    std::vector<TestPoint> points;
+    bool havePixels = false, haveSigma = false;
+
+    int find(const std::string& image, const std::string& id) const;        //!< index; -1: there is none
+    std::vector<std::string> images() const;                                //!< in order
+    RigPixels pixelsOf(const std::string& image, size_t cameras) const;     //!< of each camera
+};
+
+/** What refract_measure wrote, or any points: [image,]id,x,y,z, with u1,v1,... (raw pixels), sx,sy,sz and status where they are known.
+Throws Failure that names file and line. */
+TestPoints readTestPoints(const std::string& path, size_t cameras);
+
+/** Throws Failure that names the images of points whose pixels are those of images that calibrated.
+@return whether it can be told */
+bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TEST_POINTS_HPP
