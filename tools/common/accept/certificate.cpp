@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <numeric>
 
 using namespace kainjow::mustache;
@@ -19,7 +20,18 @@ namespace tools {
 
 namespace {
 
-const size_t LENGTHS_ON_PAGE = 12, LONG_NAME = 34;
+const double NONE = std::numeric_limits<double>::quiet_NaN();
+const size_t LENGTHS_ON_PAGE = 12, BUDGET_ON_PAGE = 8, LONG_NAME = 34, LONG_COMMAND = 300;
+
+//! As much as there is room for.
+std::string shortened(const std::string& text, size_t length)
+{
+    if (text.size() <= length)
+        return text;
+    while (length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80)         // not within a letter
+        length--;
+    return text.substr(0, length) + "…";
+}
 
 std::string orNotStated(const std::string& text) { return text.empty() ? "not stated" : text; }
 
@@ -43,7 +55,7 @@ data lengthsOf(const Acceptance& a)
     {
         const LengthResult& r = a.lengths[i];
         data row;
-        row.set("name", r.length.name.size() > LONG_NAME ? r.length.name.substr(0, LONG_NAME) + "…" : r.length.name);
+        row.set("name", shortened(r.length.name, LONG_NAME));
         row.set("nominal", format("%.4f", r.length.length));
         row.set("measured", format("%.4f", r.measured));
         row.set("error", format("%+.4f", r.error));
@@ -57,10 +69,28 @@ data lengthsOf(const Acceptance& a)
     return list;
 }
 
+//! The largest, and the others in one row: they add up all the same.
+std::vector<GumRow> rowsOnPage(const GumTable& table)
+{
+    std::vector<GumRow> rows = table.rows;
+    if (rows.size() <= BUDGET_ON_PAGE)
+        return rows;
+    std::stable_sort(rows.begin(), rows.end(), [](const GumRow& a, const GumRow& b) { return a.share > b.share; });
+    GumRow rest{format("%zu others together", rows.size() - BUDGET_ON_PAGE + 1), "", NONE, NONE, 0., 0., NONE};
+    for (size_t i = BUDGET_ON_PAGE - 1; i < rows.size(); i++)
+    {
+        rest.contribution = std::hypot(rest.contribution, rows[i].contribution);
+        rest.share += rows[i].share;
+    }
+    rows.resize(BUDGET_ON_PAGE - 1);
+    rows.push_back(rest);
+    return rows;
+}
+
 data budgetOf(const GumTable& table)
 {
     data rows{data::type::list};
-    for (const GumRow& row : table.rows)
+    for (const GumRow& row : rowsOnPage(table))
     {
         data entry;
         entry.set("source", row.source);
@@ -68,7 +98,7 @@ data budgetOf(const GumTable& table)
         entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
         entry.set("contribution", format("%.5f", row.contribution));
         entry.set("share", format("%.1f", 100.*row.share));
-        entry.set("dof", dofText(row.dof));
+        entry.set("dof", std::isnan(row.dof) ? "" : dofText(row.dof));
         rows << entry;
     }
     return rows;
@@ -132,7 +162,7 @@ std::string Certificate::number() const
 {
     if (!label.number.empty())
         return label.number;
-    std::string all = label.date + label.serial;
+    std::string all = label.date + label.serial + acceptance->limit.text();
     for (const CertificateInput& input : inputs)
         all += input.sha256;
     return "refract-" + sha256Of(all).substr(0, 16);
@@ -175,7 +205,7 @@ std::string certificateHtml(const Certificate& c)
     page.set("calibration_verdict", orNotStated(c.calibrationVerdict));
     page.set("version", REFRACT_VERSION);
     page.set("opencv_version", CV_VERSION);
-    page.set("command", c.command);
+    page.set("command", shortened(c.command, LONG_COMMAND));
     page.set("errors_over_length", drawErrorsOverLength(a));
     page.set("errors_in_volume", drawErrorsInVolume(a));
     mustache page_template(CERTIFICATE_TEMPLATE);

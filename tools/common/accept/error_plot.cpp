@@ -4,6 +4,7 @@
 #include "accept/error_plot.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tools {
@@ -14,11 +15,12 @@ std::string drawErrorsOverLength(const Acceptance& a)
 {
     Plot plot(WIDTH, HEIGHT);
     std::vector<std::vector<double>> errors, limits;
-    double longest = 0.;
+    double longest = 0., highest = 0.;
     for (const LengthResult& r : a.lengths)
     {
         errors.push_back({r.length.length, r.error, r.U()});
         longest = std::max(longest, r.length.length);
+        highest = std::max({highest, std::abs(r.error) + r.U(), r.limit});
     }
     for (int i = 0; i <= 20; i++)
     {
@@ -29,7 +31,7 @@ std::string drawErrorsOverLength(const Acceptance& a)
     plot.data("errors", errors);
     plot.data("limits", limits);
     plot << "set xlabel " << Plot::quoted("length" + unit) << "\nset ylabel " << Plot::quoted("error of indication" + unit)
-         << "\nset xrange [0:" << 1.1*longest << "]\nset key off\n"
+         << "\nset xrange [0:" << 1.1*longest << "]\nset yrange [" << -1.1*highest << ':' << 1.1*highest << "]\nset key off\n"
          << "plot $limits using 1:2 with lines linewidth 2 linecolor rgb '#dc2626', $limits using 1:(-$2) with lines linewidth 2 "
             "linecolor rgb '#dc2626', 0 with lines linecolor rgb '#94a3b8', $errors using 1:2:3 with yerrorbars pointtype 7 pointsize 0.4 "
             "linecolor rgb '#0284c7'\n";
@@ -46,21 +48,21 @@ std::string drawErrorsInVolume(const Acceptance& a)
         for (size_t end : r.length.ends)
         {
             const cv::Point3d& X = a.points.points[end].X;
-            lengths.push_back({X.x, X.z, r.error/r.limit});
+            lengths.push_back({X.z, X.x, r.error/r.limit});
         }
         lengths.push_back({gap, gap, gap});
     }
     if (a.volume)
     {
         const cv::Point3d& p = a.volume->least, & q = a.volume->most;
-        box = {{p.x, p.z}, {q.x, p.z}, {q.x, q.z}, {p.x, q.z}, {p.x, p.z}};
+        box = {{p.z, p.x}, {q.z, p.x}, {q.z, q.x}, {p.z, q.x}, {p.z, p.x}};
     }
     const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
     plot.data("lengths", lengths);
     plot.data("box", box);
-    plot << "set xlabel " << Plot::quoted("x" + unit) << "\nset ylabel " << Plot::quoted("z" + unit)
+    plot << "set xlabel " << Plot::quoted("z" + unit) << "\nset ylabel " << Plot::quoted("x" + unit)
          << "\nset size ratio -1\nset cbrange [-1:1]\nset cblabel 'error over limit'\nset key off\nplot "
-         << (box.empty() ? "" : "$box using 1:2 with lines dashtype 2 linecolor rgb '#94a3b8', ")
+         << (box.empty() ? "" : "$box using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#475569', ")
          << "$lengths using 1:2:3 with linespoints pointtype 7 pointsize 0.3 linewidth 2 linecolor palette\n";
     return plot.svg();
 }

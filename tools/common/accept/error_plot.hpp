@@ -11,7 +11,7 @@ namespace tools {
 //! Errors with their U over the tested length, between the limits. SVG.
 std::string drawErrorsOverLength(const Acceptance& acceptance);
 
-//! Where the lengths were, seen from above (x-z), each coloured by its error over its limit, in the box that was calibrated. SVG.
+//! Where the lengths were, seen from above (z-x), each coloured by its error over its limit, in the box that was calibrated. SVG.
 std::string drawErrorsInVolume(const Acceptance& acceptance);
 
 } // namespace tools

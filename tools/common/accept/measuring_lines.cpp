@@ -14,14 +14,17 @@ namespace tools {
 namespace {
 
 const size_t LINES = 7, LENGTHS_A_LINE = 5;
-const double OF_DIAGONAL = 2./3., NEXT_TO_LINE = 0.05, SAME_LENGTH = 0.01;
+const double OF_DIAGONAL = 2./3., NEXT_TO_LINE = 0.05, ACROSS = 0.1, SAME_LENGTH = 0.01;
 
 Vec3d endOf(const Acceptance& a, size_t length, int end) { return a.points.points[a.lengths[length].length.ends[end]].X; }
 
 bool isOnLine(const Acceptance& a, size_t line, size_t length)
 {
     const Vec3d start = endOf(a, line, 0), along = endOf(a, line, 1) - start;
+    const Vec3d own = endOf(a, length, 1) - endOf(a, length, 0);
     const double scale = norm(along);
+    if (norm(own.cross(along)) > ACROSS*norm(own)*scale)            // a short one that crosses it
+        return false;
     for (int end : {0, 1})
         if (norm((endOf(a, length, end) - start).cross(along))/scale > NEXT_TO_LINE*scale)
             return false;

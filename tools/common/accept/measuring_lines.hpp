@@ -13,8 +13,8 @@ namespace tools {
 //! Lengths on one straight line, as indices.
 using MeasuringLine = std::vector<size_t>;
 
-/** Lines are inferred from where lengths were measured: from the longest on, a length is on a line if both of its ends are within
-a twentieth of the line's longest length from it. */
+/** Lines are inferred from where lengths were measured: from the longest on, a length is on a line if it is along it, within a tenth
+of its own length, and both of its ends are within a twentieth of the line's longest length from it. */
 std::vector<MeasuringLine> measuringLines(const Acceptance& acceptance);
 
 //! What the test lacks, half a sentence each; empty: nothing.

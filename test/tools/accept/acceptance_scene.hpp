@@ -1,0 +1,113 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// A calibrated rig, rigs that are as its covariance says they may be, and lengths that they measure.
+#ifndef REFRACT_TEST_TOOLS_ACCEPTANCE_SCENE_HPP
+#define REFRACT_TEST_TOOLS_ACCEPTANCE_SCENE_HPP
+
+#include "../assess/fitted_rig.hpp"
+#include "accept/acceptance.hpp"
+#include "calibrate/given_std.hpp"
+#include "diagnose/rig_vector.hpp"
+#include "report/summary.hpp"
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+
+namespace acceptance_scene {
+
+using namespace cv;
+using namespace tools;
+
+const double SIGMA = 0.1, SQUARE = 39.;
+
+//! Two cameras, eight pairs, thickness and square known to within what is given. @param square 0: exactly
+inline Calibration calibrated(double square = 2e-4)
+{
+    scenes::Random random(1230);
+    GivenStd std;
+    std.thickness = 0.1;
+    std.scale = square;
+    RigModel rig = paperRig(2);
+    RigData data = dataOf(rig);
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
+        data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, SIGMA, random));
+    }
+    RigOptions options;
+    options.window = rig.cameras[0]->window();
+    options.std = std;
+    for (int k = 0; k < 2; k++)
+    {
+        options.known[k] = rig.cameras[k];
+        rig.known.push_back(knownOf(*rig.cameras[k], options, k));
+        rig.known[k].window = rig.cameras[k]->window();
+    }
+    rig.targetCovariance = targetCovarianceOf(data, rig, std);
+    RigCalibration c = fittedRig(rig, data, SQUARE);
+    c.options = options;
+    return toFile(c, "");
+}
+
+//! Draws what the rig may be in truth.
+class TrueRigs
+{
+public:
+    explicit TrueRigs(const Calibration& calibration) : rig_(modelOf(calibration)), start_(toVector(rig_))
+    {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(toEigen(calibration.covariance));
+        root_ = solver.eigenvectors()*solver.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+        for (int i = 0; i < root_.rows(); i++)          // what is exact stays so, to the last digit
+            if (calibration.covariance.at<double>(i, i) == 0.)
+                root_.row(i).setZero();
+    }
+    RigModel draw(scenes::Random& random) const
+    {
+        VectorXd numbers(root_.cols());
+        for (double& number : numbers)
+            number = random.normal(1.);
+        VectorXd changed = start_;
+        changed.head(root_.rows()) += root_*numbers;
+        return withVector(rig_, changed);
+    }
+
+private:
+    RigModel rig_;
+    VectorXd start_;
+    MatrixXd root_;
+};
+
+inline RigPixels pixelsOf(const RigModel& rig, const std::vector<Point3d>& points, double sigma, scenes::Random& random)
+{
+    RigPixels pixels;
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+    {
+        std::vector<Point2d> image;
+        refract::refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].T, rig.cameras[c], image);
+        for (Point2d& p : image)
+            p += Point2d(random.normal(sigma), random.normal(sigma));
+        pixels.push_back(image);
+    }
+    return pixels;
+}
+
+//! As refract_measure has them, of one image.
+inline TestPoints testPoints(const Calibration& calibration, const RigPixels& pixels, double sigma, const std::string& image = "a")
+{
+    const Measurement m = measureRig(calibration, pixels, sigma);
+    TestPoints points;
+    points.source = "points.csv";
+    points.havePixels = points.haveSigma = true;
+    for (size_t i = 0; i < m.points.size(); i++)
+    {
+        TestPoint point{image, std::to_string(i), m.points[i], {}, m.sigma[i], m.status[i]};
+        for (const auto& camera : m.pixels)
+            point.pixels.push_back(camera[i]);
+        points.points.push_back(point);
+    }
+    return points;
+}
+
+} // namespace acceptance_scene
+
+#endif // REFRACT_TEST_TOOLS_ACCEPTANCE_SCENE_HPP
