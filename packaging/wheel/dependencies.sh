@@ -170,6 +170,13 @@ ceres() {       # with Eigen alone: what it could do faster with SuiteSparse is 
   cp source/LICENSE "$licences/ceres-solver"
 }
 
+mbedtls() {     # SHA-256
+  debian_source mbedtls
+  build_cmake source -DENABLE_PROGRAMS=OFF -DENABLE_TESTING=OFF -DUSE_STATIC_MBEDTLS_LIBRARY=ON -DUSE_SHARED_MBEDTLS_LIBRARY=OFF \
+    -DMBEDTLS_FATAL_WARNINGS=OFF
+  cp source/LICENSE "$licences/mbedtls"
+}
+
 opencv() {      # the modules that the module and the tools use, and nothing that it would fetch or find on this machine
   mkdir -p source
   tar -xzf "$opencv_archive" -C source --strip-components=2 --wildcards '*/opencv/*'

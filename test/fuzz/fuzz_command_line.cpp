@@ -11,6 +11,7 @@
 /* The tools as they are started: the input is a command line, one argument a line, the tool's name first. They run in a folder
 of their own, with a small file of each kind; arguments that could lead out of it are not tried. */
 
+int refract_accept_main(int argc, char** argv);
 int refract_board_main(int argc, char** argv);
 int refract_bundle_main(int argc, char** argv);
 int refract_calib_main(int argc, char** argv);
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, int (*)(int, char**)> TOOLS = {
+    {"refract_accept", refract_accept_main},
     {"refract_board", refract_board_main}, {"refract_bundle", refract_bundle_main}, {"refract_calib", refract_calib_main},
     {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main},
     {"refract_laser", refract_laser_main},
@@ -74,6 +76,8 @@ public:
             matches += cv::format("%d,%d,%d,%d,%d\n", i, 8 + 5*(i % 4), 6 + 4*(i/4), 3 + 5*(i % 4), 6 + 4*(i/4));
         files_ = {{"pair.yml", pair}, {"one.yml", head + one}, {"rig.yml", pair + RENDERING}, {"corners.vnl", vnl},
                   {"points.txt", points}, {"matches.csv", matches}, {"lengths.csv", "id1,id2,length,std\n0,3,40,0.1\n4,9,30,0.1\n"},
+                  {"measured.csv", "id,x,y,z,sx,sy,sz,status\n0,-5,0,200,0.1,0.1,1,0\n1,5,0,210,0.1,0.1,1,0\n2,0,5,220,0.1,0.1,1,0\n"},
+                  {"certified.csv", "name,image1,id1,image2,id2,length,U\na,,0,,1,14,0.1\nb,,1,,2,12,0.1\n"},
                   {"run.toml", "size = \"3x3\"\nsquare = [20]\n"}};
         std::vector<uchar> image;
         cv::imencode(".png", cv::Mat(24, 32, CV_8U, cv::Scalar(90)), image);

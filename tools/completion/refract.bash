@@ -24,5 +24,5 @@ _refract()
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
     fi
 }
-complete -F _refract refract_board refract_bundle refract_calib refract_check refract_epilines refract_export refract_laser refract_measure \
-    refract_simulate refract_stereo refract_undistort
+complete -F _refract refract_accept refract_board refract_bundle refract_calib refract_check refract_epilines refract_export refract_laser \
+    refract_measure refract_simulate refract_stereo refract_undistort

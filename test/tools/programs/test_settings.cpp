@@ -66,8 +66,8 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const std::string calib = STEREO + "/truth.yml", left = STEREO + "/measure1/z600_1.jpg", right = STEREO + "/measure2/z600_1.jpg";
     const std::string rig = STEREO + "/rig.yml", file = folder / "run.yml";
     const std::string target = " --size=6x5 --square=39";
-    const std::string tools[] = {"refract_board", "refract_bundle", "refract_calib", "refract_check", "refract_epilines", "refract_export",
-                                 "refract_laser", "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
+    const std::string tools[] = {"refract_accept", "refract_board", "refract_bundle", "refract_calib", "refract_check", "refract_epilines",
+                                 "refract_export", "refract_laser", "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
         {"quiet = true\nquiet = false\n", "'quiet' is set twice"},
@@ -105,6 +105,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     writeFile(file, quiet);
     const std::string d = folder / "d";
     const std::string commands[] = {
+        "refract_accept " + calib + " --points=" + left + " --lengths=" + left + " --max-error=1 --summary=" + file + " --config=" + file,
         "refract_board" + target + " --out=" + (folder / "run.pdf") + " --config=" + (folder / "run.pdf"),
         "refract_calib" + target + " --thickness=20 --index=1.5 --glass=" + left + " --camera=" + calib + " --out=" + file
             + " --config=" + file,
