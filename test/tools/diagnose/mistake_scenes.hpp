@@ -23,10 +23,11 @@ using namespace tools;
 enum RigKind { ONE_IN_AIR, STEREO_IN_AIR, STEREO_IN_WATER, SHARED_WINDOW, RIG_KINDS };
 const char* const RIG_NAMES[] = {"one, air", "stereo, air", "stereo, water", "shared window"};
 
-enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, WEDGE, FOCUS, PLACE, TURNED, MIRRORED, SWAPPED_STATES,
-               SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, MISTAKES };
-const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "wedge", "focus", "camera moved",
-                                     "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated", "board size"};
+enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, NUDGE, WEDGE, FOCUS, PLACE, TURNED, MIRRORED,
+               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, MISTAKES };
+const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "boards nudged", "wedge", "focus",
+                                     "camera moved", "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated",
+                                     "board size"};
 
 const int COLUMNS = 9, ROWS = 6;
 const double BOARD_SQUARE = 25., NOISE = 0.1;
@@ -48,9 +49,10 @@ struct Scene
     RigModel truth;             //!< of direct images
     RigModel throughWindow;     //!< of the others
     RigCalibration calibration; //!< the images and what is given
+    bool isHandHeld = false;    //!< the boards: there are no pairs
 
     bool inWater() const { return kind == STEREO_IN_WATER; }
-    bool hasPairs() const { return kind != STEREO_IN_WATER; }
+    bool hasPairs() const { return kind != STEREO_IN_WATER && !isHandHeld; }
     int cameras() const { return (int)truth.cameras.size(); }
 };
 
@@ -90,6 +92,12 @@ inline GlassWindow drawnPane(GlassWindow window, const GivenStd& std, scenes::Ra
     return window;
 }
 
+inline void drawTarget(RigModel& truth, const GivenStd& std, scenes::Random& random)
+{
+    truth.targetScale = 1. + random.normal(std.scale);
+    truth.targetMotion = motionOfBoards(normalVector(random, std.placement/130.), normalVector(random, std.placement));
+}
+
 //! Nominal values and how they are given.
 inline Scene makeScene(RigKind kind, scenes::Random& random)
 {
@@ -127,8 +135,7 @@ inline Scene makeScene(RigKind kind, scenes::Random& random)
     }
     scene.truth = withVector(scene.truth, toVector(scene.truth));
     scene.truth.targetCovariance = Mat::eye(TARGET_ERRORS, TARGET_ERRORS, CV_64F);
-    scene.truth.targetScale = 1. + random.normal(std.scale);
-    scene.truth.targetMotion = motionOfBoards(normalVector(random, std.placement/130.), normalVector(random, std.placement));
+    drawTarget(scene.truth, std, random);
     scene.throughWindow = scene.truth.clone();
     RigCalibration& c = scene.calibration;
     c.square = BOARD_SQUARE;
@@ -180,8 +187,8 @@ inline View look(const Scene& scene, const RigidTransform& place, const RigidTra
     return view;
 }
 
-//! @param handHeld no pair is one
-inline void takeImages(Scene& scene, bool handHeld, scenes::Random& random)
+//! @param handHeld no pair is one. @param places gets where the boards are
+inline void takeImages(Scene& scene, bool handHeld, scenes::Random& random, std::vector<RigidTransform>* places = nullptr)
 {
     std::vector<View>& views = scene.calibration.data.views;
     const int directs = 12, glasses = scene.hasPairs() ? 6 : 12;
@@ -194,6 +201,8 @@ inline void takeImages(Scene& scene, bool handHeld, scenes::Random& random)
             continue;
         view.stem = format("view%02d", i++);
         views.push_back(view);
+        if (places)
+            places->push_back(place);
     }
 }
 
@@ -235,7 +244,8 @@ inline bool applies(Mistake mistake, RigKind kind)
     case SQUARE: return !water;         // nothing else has a length
     case UNPAIRED:
     case BOARD_SIZE:
-    case MOTION: return !water;         // needs pairs
+    case MOTION:
+    case NUDGE: return !water;         // needs pairs
     case MIRRORED: return true;
     case PLACE:
     case SWAPPED_CAMERAS:
@@ -254,6 +264,8 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
     const int last = scene.cameras() - 1;
     if (mistake == MOTION)
         scene.throughWindow.targetMotion = motionOfBoards(normalVector(random, 1e-3), 0.6*normalize(normalVector(random, 1.)));
+    if (mistake == NUDGE)
+        scene.throughWindow.targetMotion.T = random.uniform(0.1, 0.15)*normalize(normalVector(random, 1.));
     if (mistake == WEDGE)
     {
         VectorXd numbers = toVector(scene.throughWindow);

@@ -22,7 +22,8 @@ std::vector<std::string> namesOf(Mistake mistake)
     case INDEX: return {"contradict --index"};
     case MEDIUM: return {"--outer-index="};
     case SQUARE: return {"contradict --square"};
-    case MOTION: return {"--placement-std"};
+    case MOTION:
+    case NUDGE: return {"--placement-std"};
     case WEDGE: return {"--wedge-std"};
     case FOCUS: return {"focus or zoom"};
     case PLACE: return {"moved in the rig"};
@@ -48,7 +49,7 @@ bool isNamed(Mistake mistake, const std::string& text)
 //! A rig that takes the mistake for a tilt or a distance, which are estimated, shows nothing.
 bool mayHide(Mistake mistake, RigKind kind)
 {
-    return mistake == MOTION || (mistake == WEDGE && kind == STEREO_IN_WATER) || (mistake == SQUARE && kind == STEREO_IN_WATER);
+    return mistake == MOTION || mistake == NUDGE || (mistake == WEDGE && kind == STEREO_IN_WATER) || (mistake == SQUARE && kind == STEREO_IN_WATER);
 }
 
 struct Score

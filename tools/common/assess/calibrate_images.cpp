@@ -49,6 +49,7 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     PlainFit plain;
     if (!isSlowToStart(input))
     {
+        requireNoMixUp(input);
         plain = fitPlainly(input);
         if (!(plain.px < largestSoundError(c.data)))
             requireNoCause(input, plain);

@@ -3,6 +3,7 @@
 
 #include "diagnose/diagnosis.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "diagnose/image_disagreement.hpp"
 #include "diagnose/image_mistakes.hpp"
 #include "diagnose/image_mixups.hpp"
 #include "diagnose/target_mistakes.hpp"
@@ -23,6 +24,7 @@ const double MIN_IMPLAUSIBLE_PX = 1.;   // then the given values do not belong t
 const double CLEAN = 1.3;               // times what the lens's own images leave: no more than noise
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
 const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
+const double UNRELATED_PX = 4.*WINDOWS_PX;      // of boards, by cameras whose lens is a pinhole and whose windows are left out
 const double AS_GOOD = 3.;              // as the best of them
 
 const char* const NOTHING_TRIED = "neither another square, thickness, index or medium, nor images exchanged or wrongly paired "
@@ -62,6 +64,9 @@ bool sharesWindows(const CalibrationInput& input)
     const std::vector<int>& windows = input.options.windows;
     return std::set<int>(windows.begin(), windows.end()).size() < windows.size();
 }
+
+//! Two cameras see another board, or it moved between their images.
+bool areUnrelated(const CalibrationInput& input) { return camerasApart(input.data, input.options) > UNRELATED_PX; }
 
 bool isRig(const CalibrationInput& input) { return input.data.cameraCount > 1; }
 
@@ -143,11 +148,31 @@ std::vector<std::string> confirmed(const CalibrationInput& input, const std::vec
 {
     std::vector<Explanation> tried;
     for (const MixUp& mixUp : mixUps)
-        tried.push_back({mixUp.sentence, medianErrorOfFit(mixUp.undone, input.options)});
+        tried.push_back({mixUp.sentence, medianErrorOfFit(mixUp.undone, input.options, nullptr, SOON)});
     std::vector<std::string> sentences;
     for (const Explanation& e : bestBelow(largestSoundError(input.data), tried))
         sentences.push_back(fits(e.px, e.sentence));
     return sentences;
+}
+
+/** What is wrong with images whatever the window is: each image and each camera is right by itself. Those that give images or cameras
+places of their own come last, as they explain any other. */
+std::vector<std::string> imageMistakes(const CalibrationInput& input)
+{
+    const std::vector<std::string> mixUps = confirmed(input, findMixUps(input));
+    if (!mixUps.empty())
+        return mixUps;
+    for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
+        if (!sentence.empty())
+            return {sentence};
+    const double sound = largestSoundError(input.data);
+    const Explanation unpaired = pairsFromOneMap(input.data) > WINDOWS_PX ? unpairedImages(input) : Explanation{"", NO_FIT};
+    if (unpaired.px < sound)
+        return {fits(unpaired.px, unpaired.sentence)};
+    const Explanation unrelated = areUnrelated(input) ? unrelatedViews(input) : Explanation{"", NO_FIT};
+    if (unrelated.px < sound)
+        return {fits(unrelated.px, unrelated.sentence)};
+    return {};
 }
 
 //! A contradicted value and others that explain the images about as well, the best first.
@@ -169,12 +194,9 @@ std::vector<std::string> toldBeside(const Contradiction& value, const std::vecto
 
 std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain)
 {
-    std::vector<std::string> sentences = confirmed(input, findMixUps(input));
+    std::vector<std::string> sentences = imageMistakes(input);
     if (!sentences.empty())
         return sentences;
-    for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
-        if (!sentence.empty())
-            return {sentence};
     const double sound = largestSoundError(input.data), clean = cleanError(input);
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
@@ -216,16 +238,36 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
     }
 }
 
-void requireNoCause(const CalibrationInput& input, const PlainFit& plain)
+namespace {
+
+//! @param px of the fit
+[[noreturn]] void refuse(const CalibrationInput& input, double px, std::vector<std::string> reasons)
 {
-    const double px = plain.px;
-    std::vector<std::string> reasons = diagnose(input, plain);
-    if (reasons.empty())
-        return;
     reasons.insert(reasons.begin(), input.notices.begin(), input.notices.end());        // seen without a fit
     throw Failure((px < NO_FIT ? format("the calibration does not fit its images: half of the corners lie more than %.2g px from "
                                         "where it puts them", px) : std::string("no calibration fits these images"))
                   + ": " + joined(reasons));
+}
+
+} // namespace
+
+void requireNoMixUp(const CalibrationInput& input)
+{
+    if (findMixUps(input).empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
+        return;
+    const double px = medianErrorOfFit(input.data, input.options, nullptr, SOON);
+    if (px < largestSoundError(input.data))
+        return;
+    const std::vector<std::string> reasons = imageMistakes(input);
+    if (!reasons.empty())
+        refuse(input, px, reasons);
+}
+
+void requireNoCause(const CalibrationInput& input, const PlainFit& plain)
+{
+    const std::vector<std::string> reasons = diagnose(input, plain);
+    if (!reasons.empty())
+        refuse(input, plain.px, reasons);
 }
 
 namespace {

@@ -23,6 +23,10 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input);
 
+/** Throws Failure if images are mixed up: turned, mirrored, exchanged, of another moment. A fit to such images creeps, so that they are
+looked at before any that is not short. */
+void requireNoMixUp(const CalibrationInput& input);
+
 //! Throws Failure if a mistake explains why the images fit no better.
 void requireNoCause(const CalibrationInput& input, const PlainFit& plain);
 

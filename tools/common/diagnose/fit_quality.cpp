@@ -15,7 +15,6 @@ namespace {
 
 const double CORNERS_PX = 2.;           // half of the corners are never farther off, in an image of usual size;
 const double CORNERS_SHARE = 1./640.; // in a larger one, of its longer side
-const int ITERATIONS = 100;             // what explains the images fits them soon; a wrong guess may creep for a thousand
 
 } // namespace
 
@@ -49,7 +48,7 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result)
+double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result, int maxIterations)
 {
     // What is known of a value does not matter to pixels; a wedge that is free makes each iteration slow.
     RigOptions options = given;
@@ -58,7 +57,7 @@ double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* 
     try
     {
         std::vector<LensSource> sources;
-        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, ITERATIONS);
+        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, maxIterations);
         if (result)
             *result = fit.rig;
         return medianCornerError(data, residualsOf(data, fit));

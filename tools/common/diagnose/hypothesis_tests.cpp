@@ -23,8 +23,7 @@ order, is that of the place to which noise has carried it. */
 
 // Probabilities: told, and decided; those of four and six standard deviations. Corners err a little together, so that they seem more
 // sure than they are, and there are some ten hypotheses.
-const double TOLD = 6.3e-5, SURE = 2e-9;
-const double PROMISING = 5.;            // a gain, to first order, for which a hypothesis is fitted
+const double TOLD = 6.3e-5, SURE = CERTAIN;
 const double OTHER_NOISE = 1.05;        // so much more or less noise weighs priors otherwise
 const int MOST_NAMED = 6;
 
@@ -41,7 +40,7 @@ struct Trial
 {
     Relaxed given;
     std::vector<Tested> tested;
-    double noise, dof;
+    double noise = 0., dof = 0.;
 
     double leastNoise() const
     {
@@ -87,19 +86,39 @@ double deviationsOf(double deviance, int parameters)
     return low;
 }
 
+//! All, for the noise that the best of them leaves. @param single px, the noise of images by themselves
+Trial triedAll(const RigData& data, const RigOptions& options, const Fit& fit, const std::vector<Cause>& causes, double& single)
+{
+    single = RelaxedFit(data, fit, options.flags & GLASS_USE_POSES, fit.sigma).noiseOfSingleImages();
+    const double noise = single > 0. ? std::min(single, fit.sigma) : fit.sigma;
+    if (!(noise > 0.) || !(fit.dof > 0.))
+        return {};
+    const Trial trial = tried(data, options, fit, causes, noise);
+    const double least = trial.leastNoise();
+    return least > 0. && std::max(least/noise, noise/least) > OTHER_NOISE ? tried(data, options, fit, causes, least) : trial;
+}
+
 } // namespace
+
+std::vector<CauseTest> testCauses(const RigData& data, const RigOptions& options, const Fit& fit)
+{
+    const std::vector<Cause> causes = causesOf(data, options, fit);
+    double single;
+    const Trial trial = triedAll(data, options, fit, causes, single);
+    const double variance = std::pow(trial.leastNoise()/trial.noise, 2);
+    std::vector<CauseTest> tests;
+    for (const Tested& t : trial.tested)
+        tests.push_back({t.cause->kind, (trial.given.chiSquare - t.chiSquare)/variance, t.parameters});
+    return tests;
+}
 
 std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions& options, const Fit& fit)
 {
     const std::vector<Cause> causes = causesOf(data, options, fit);
-    const double single = RelaxedFit(data, fit, options.flags & GLASS_USE_POSES, fit.sigma).noiseOfSingleImages();
-    double noise = single > 0. ? std::min(single, fit.sigma) : fit.sigma;
-    if (!(noise > 0.) || !(fit.dof > 0.))
+    double single = 0.;
+    const Trial trial = triedAll(data, options, fit, causes, single);
+    if (trial.tested.empty())
         return {};
-    Trial trial = tried(data, options, fit, causes, noise);
-    const double least = trial.leastNoise();
-    if (least > 0. && std::max(least/noise, noise/least) > OTHER_NOISE)
-        trial = tried(data, options, fit, causes, least);
     const double squares = trial.noise*trial.noise;
     std::vector<Hypothesis> hypotheses;
     for (const Tested& t : trial.tested)

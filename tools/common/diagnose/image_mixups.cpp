@@ -3,11 +3,10 @@
 
 #include "diagnose/image_mixups.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "diagnose/image_disagreement.hpp"
 #include "console/table.hpp"
-#include <opencv2/calib3d.hpp>
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <numeric>
 
 using namespace cv;
 
@@ -15,10 +14,9 @@ namespace tools {
 
 namespace {
 
-const double CLEARLY_BETTER = 0.5;      // what is left of the worst disagreement, at most
-const double NOT_WORSE = 1.5;           // any other
+const double CLEARLY_BETTER = 0.5;      // what is left of the disagreements, at most
+const double NOT_WORSE = 1.5;           // any of them
 const double AS_GOOD = 1.3;             // as the least that any leaves
-const double LEAST_PX = 20.;            // less is a window's doing
 
 enum Change { HALF_TURN, MIRROR, QUARTER_TURN, BACK_TURN, CHANGES };
 
@@ -140,145 +138,25 @@ RigData exchanged(const RigData& given, int a, int b, bool direct)
     return data;
 }
 
-//! How far the two images of a pair are apart; px, the median of all points of a camera.
-double pairsApart(const RigData& data, int camera)
-{
-    std::vector<double> lengths;
-    for (const View& view : data.views)
-        if (view.isPair(camera))
-            for (size_t i = 0; i < view.objectPoints.size(); i++)
-                if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
-                    lengths.push_back(norm(view.direct[camera][i] - view.glass[camera][i]));
-    return median(lengths);
-}
-
-//! A lens that is good enough to tell boards that are turned or elsewhere.
-Matx33d roughLens(const RigData& data, int camera, bool glass)
-{
-    std::vector<std::vector<Point3f>> objects;
-    std::vector<std::vector<Point2f>> images;
-    for (const View& view : data.views)
-    {
-        const std::vector<Point2d>& pixels = (glass ? view.glass : view.direct)[camera];
-        objects.emplace_back();
-        images.emplace_back();
-        for (size_t i = 0; i < pixels.size(); i++)
-            if (seen(pixels[i]) && view.objectPoints[i].z == view.objectPoints[0].z)
-            {
-                objects.back().emplace_back((float)view.objectPoints[i].x, (float)view.objectPoints[i].y, 0.f);
-                images.back().push_back(pixels[i]);
-            }
-        if (images.back().size() < 8)
-        {
-            objects.pop_back();
-            images.pop_back();
-        }
-    }
-    if (images.size() < 3)
-        return Matx33d::zeros();
-    return Matx33d(initCameraMatrix2D(objects, images, data.imageSize[camera], 1.));
-}
-
-bool rigidPose(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
-{
-    std::vector<Point3d> object;
-    std::vector<Point2d> image;
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
-        {
-            object.push_back(view.objectPoints[i]);
-            image.push_back(pixels[i]);
-        }
-    Vec3d rvec, tvec;
-    if (image.size() < 6 || !solvePnP(object, image, K, noArray(), rvec, tvec, false, SOLVEPNP_IPPE))
-        return false;
-    solvePnPRefineLM(object, image, K, noArray(), rvec, tvec);
-    pose = transformOf(rvec, tvec);
-    return true;
-}
-
-//! A board that two cameras saw at one moment.
-struct Both
-{
-    RigidTransform one, other;
-    const View* view;
-};
-
-std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, double& focal)
-{
-    const Matx33d K1 = roughLens(data, 0, glass), K2 = roughLens(data, camera, glass);
-    std::vector<Both> boards;
-    focal = K2(0, 0);
-    if (!(K1(0, 0) > 0.) || !(focal > 0.))
-        return boards;
-    for (const View& view : data.views)
-    {
-        Both b{{}, {}, &view};
-        const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
-        if (rigidPose(view, images[0], K1, b.one) && rigidPose(view, images[camera], K2, b.other))
-            boards.push_back(b);
-    }
-    return boards;
-}
-
-//! How far boards are from where the place of two cameras to each other has them, which one of some boards gives; px, of the middling one.
-double apart(const std::vector<Both>& boards, const std::vector<Both>& places, double focal)
-{
-    if (boards.size() < 3 || places.size() < 3)
-        return 0.;
-    double least = NO_FIT;
-    for (const Both& from : places)
-    {
-        const RigidTransform place = fromTo(from.one, from.other);
-        std::vector<double> errors;
-        for (const Both& b : boards)
-        {
-            double sum = 0.;
-            for (const Point3d& X : b.view->objectPoints)
-            {
-                const Vec3d here = b.other*Vec3d(X);
-                sum += norm(place*(b.one*Vec3d(X)) - here)/std::abs(here[2]);
-            }
-            errors.push_back(focal*sum/b.view->objectPoints.size());
-        }
-        least = std::min(least, median(errors));
-    }
-    return least;
-}
-
-//! All disagreements that there can be, in one order.
-std::vector<double> disagreements(const RigData& data)
-{
-    std::vector<double> all;
-    for (int c = 0; c < data.cameraCount; c++)
-        all.push_back(pairsApart(data, c));
-    for (int c = 1; c < data.cameraCount; c++)
-    {
-        double focal, focalThrough;
-        const std::vector<Both> direct = boardsOf(data, c, false, focal), glass = boardsOf(data, c, true, focalThrough);
-        for (double px : {apart(direct, direct, focal), apart(glass, glass, focalThrough), apart(glass, direct, focalThrough)})
-            all.push_back(px);
-    }
-    return all;
-}
-
 struct Candidate
 {
     MixUp mixUp;
-    double left;                //!< the largest disagreement
+    double left;                //!< product of the disagreements
 };
 
-//! Whether the largest disagreement is much less, and no other is more.
+//! What is less than the doing of windows does not count.
+double product(const std::vector<double>& px)
+{
+    return std::accumulate(px.begin(), px.end(), 1., [](double all, double one) { return all*(one + WINDOWS_PX); });
+}
+
+//! Whether there is much less disagreement, and nowhere more.
 bool explains(const std::vector<double>& before, const std::vector<double>& after)
 {
-    const size_t worst = std::max_element(before.begin(), before.end()) - before.begin();
-    const double most = *std::max_element(after.begin(), after.end());
-    if (!(before[worst] > LEAST_PX) || !(most < CLEARLY_BETTER*before[worst]))
-        return false;
     for (size_t i = 0; i < before.size(); i++)
-        if (after[i] > NOT_WORSE*before[i] + LEAST_PX)
+        if (after[i] > NOT_WORSE*before[i] + WINDOWS_PX)
             return false;
-    return true;
+    return product(after) < CLEARLY_BETTER*product(before);
 }
 
 std::string sentenceOf(Change change, const RigData& data, int camera, bool directToo)
@@ -297,16 +175,16 @@ std::string sentenceOf(Change change, const RigData& data, int camera, bool dire
 std::vector<MixUp> findMixUps(const CalibrationInput& input)
 {
     const RigData& data = input.data;
-    const std::vector<double> before = disagreements(data);
-    if (!(*std::max_element(before.begin(), before.end()) > LEAST_PX))
+    const std::vector<double> before = disagreementsOf(data, input.options);
+    if (!(*std::max_element(before.begin(), before.end()) > WINDOWS_PX))
         return {};
     std::vector<Candidate> candidates;
     double least = NO_FIT;
     const auto attempt = [&](const RigData& changed, const std::string& sentence) {
-        const std::vector<double> after = disagreements(changed);
+        const std::vector<double> after = disagreementsOf(changed, input.options);
         if (!explains(before, after))
             return;
-        candidates.push_back({{sentence, changed}, *std::max_element(after.begin(), after.end())});
+        candidates.push_back({{sentence, changed}, product(after)});
         least = std::min(least, candidates.back().left);
     };
     for (int b = 1; b < data.cameraCount; b++)

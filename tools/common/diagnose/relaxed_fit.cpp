@@ -130,6 +130,14 @@ MatrixXd changesOf(const RigModel& rig, const MatrixXd& free, const std::vector<
     return consistentChanges(rig)*changes;
 }
 
+VectorXd knownShifts(const std::vector<Shift>& freed)
+{
+    VectorXd known(freed.size());
+    for (size_t k = 0; k < freed.size(); k++)
+        known[k] = freed[k].known;
+    return known;
+}
+
 VectorXd toVector(const Vec3d& rvec, const Vec3d& tvec)
 {
     VectorXd pose(6);
@@ -213,6 +221,14 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
     normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = own*free_;
     normal.right.head(free_.cols()) = own*off;
     normal.chiSquare = priorOf(at.before);
+    for (size_t k = 0; k < freed.size(); k++)
+        if (freed[k].std > 0.)
+        {
+            const double weight = 1./(freed[k].std*freed[k].std), rest = freed[k].known - at.shifts[k];
+            normal.matrix(free_.cols() + k, free_.cols() + k) += weight;
+            normal.right[free_.cols() + k] += weight*rest;
+            normal.chiSquare += weight*rest*rest;
+        }
     for (size_t k = 0; k < at.views.size(); k++)
     {
         const ViewObservations& observed = at.views[k];
@@ -267,19 +283,27 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
     return normal;
 }
 
-bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const
+//! The rigs of both states from their numbers; false: a window that cannot be.
+bool RelaxedFit::setRigs(const std::vector<Shift>& freed, Relaxed& at) const
 {
-    at.before += free_*step.head(free_.cols());
-    at.shifts += step.tail(at.shifts.size());
     try
     {
         at.direct = withVector(rig_, shifted(at.before, freed, at.shifts, false));
         at.glass = withVector(rig_, shifted(at.before, freed, at.shifts, true));
+        return true;
     }
-    catch (const cv::Exception&)        // a window that cannot be
+    catch (const cv::Exception&)
     {
         return false;
     }
+}
+
+bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const
+{
+    at.before += free_*step.head(free_.cols());
+    at.shifts += step.tail(at.shifts.size());
+    if (!setRigs(freed, at))
+        return false;
     for (size_t k = 0; k < at.views.size(); k++)
     {
         if (normal.byPose[k].cols() == 0)
@@ -306,7 +330,9 @@ static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double dam
 Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) const
 {
     Relaxed at = start;
-    at.shifts = VectorXd::Zero(freed.size());
+    at.shifts = knownShifts(freed);
+    if (!at.shifts.isZero() && !setRigs(freed, at))
+        return at;
     Normal normal = linearize(at, freed);
     double damping = 1e-9;
     for (int i = 0; i < ITERATIONS && normal.isFinite() && damping < MOST_DAMPING; i++)
@@ -349,7 +375,9 @@ std::vector<double> RelaxedFit::gains(const Relaxed& at, const std::vector<std::
     std::vector<Shift> all;
     for (const std::vector<Shift>& set : sets)
         all.insert(all.end(), set.begin(), set.end());
-    const Normal normal = linearize(at, all);
+    Relaxed here = at;
+    here.shifts = knownShifts(all);
+    const Normal normal = linearize(here, all);
     const Eigen::Index own = free_.cols();
     const double without = normal.right.head(own).dot(solved(normal.matrix.topLeftCorner(own, own), normal.right.head(own), 1e-12));
     std::vector<double> gains;

@@ -7,6 +7,7 @@
 #include "calibrate/fit.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/view_observations.hpp"
+#include <cmath>
 
 /* A calibration fitted again to the same images, with more free than it had. Gauss-Newton from where the calibration is, which is near:
 tens of milliseconds, where the library's fit, which searches and tests, takes seconds. It also frees what the library cannot, as what is
@@ -14,11 +15,12 @@ different between the direct images and those through the windows. All that the 
 noise that is given: a noise that a wrong value has made large would make the prior of that value as weak. */
 namespace tools {
 
-//! A number that is freed, with nothing known of it: it moves some numbers of the rig (as toVector has them) together.
+//! A number that is freed: it moves some numbers of the rig (as toVector has them) together.
 struct Shift
 {
     std::vector<std::pair<int, double>> numbers;    //!< which, and by how much for a shift of 1
     bool glassOnly = false;                         //!< only in the images through the windows
+    double known = 0., std = 0.;                    //!< what is known of the shift; 0: nothing
 };
 
 struct Relaxed
@@ -27,7 +29,7 @@ struct Relaxed
     std::vector<ViewObservations> views;
     VectorXd before;                    //!< numbers of the rig without the shifts
     VectorXd shifts;
-    double chiSquare = 0.;              //!< squared residuals over noise^2, and what the priors add
+    double chiSquare = INFINITY;        //!< squared residuals over noise^2, and what the priors add
     MatrixXd covariance;                //!< of the numbers with the shifts, in images through the windows; then of the shifts
 };
 
@@ -53,6 +55,7 @@ public:
 private:
     struct Normal;
     Normal linearize(const Relaxed& at, const std::vector<Shift>& freed) const;
+    bool setRigs(const std::vector<Shift>& freed, Relaxed& at) const;
     bool move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const;
     double priorOf(const VectorXd& numbers) const;
 

@@ -69,7 +69,8 @@ Matx33d axesOf(const Vec3d& normal)
     return Matx33d(e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], normal[0], normal[1], normal[2]);
 }
 
-//! One pane, seen from another camera, where its normal through the centre of projection meets it elsewhere.
+/** One pane, seen from another camera, where its normal through the centre of projection meets it elsewhere. Between equal media any
+distance will do, or with a wedge nearly so: that of a camera that is taken to be beyond it is 0, whatever the others do. */
 GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
 {
     const Matx33d before = axesOf(window.normal), after = axesOf(there.R*window.normal), turn = after*there.R*before.t();
@@ -87,6 +88,8 @@ GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
         window.thickness[i] += next - offset;
         offset = next;
     }
+    if (window.innerIndex == window.outerIndex)
+        window.distance = std::max(0., window.distance);
     return window;
 }
 

@@ -13,14 +13,20 @@ namespace tools {
 
 namespace {
 
+const double MOST = 0.8;                // of the pairs that are apart
 const double WHOLE_SQUARES = 0.25;      // of a shift remains if it is one by whole squares
 
-//! By how many rows and columns the glass image of a pair shows another part of the board than the direct one.
-Point shiftOfPair(const CalibrationInput& input, const View& view, int camera)
+struct PairShift
+{
+    Point shift;                //!< by how many rows and columns the glass image shows another part of the board than the direct one
+    bool isApart;               //!< by more than half a square, however that comes
+};
+
+PairShift shiftOfPair(const CalibrationInput& input, const View& view, int camera)
 {
     std::vector<Point2d> board, direct, glass;
     if (view.neighbours.empty())        // no board
-        return Point();
+        return {};
     for (size_t i = 0; i < view.objectPoints.size(); i++)
         if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
         {
@@ -30,7 +36,7 @@ Point shiftOfPair(const CalibrationInput& input, const View& view, int camera)
         }
     const Mat H = board.size() < 4 ? Mat() : findHomography(board, direct);
     if (H.empty())
-        return Point();
+        return {};
     const auto offBy = [&](Point shift) {
         std::vector<Point2d> moved, there;
         for (const Point2d& p : board)
@@ -46,22 +52,32 @@ Point shiftOfPair(const CalibrationInput& input, const View& view, int camera)
         for (int y = -2; y <= 2; y++)
             if (offBy(Point(x, y)) < WHOLE_SQUARES*offBy(best))
                 best = Point(x, y);
-    return best;
+    std::vector<Point2d> ends, there;
+    for (const Point2d& p : board)
+        ends.push_back(p + 0.5*input.square*Point2d(1, 0));
+    perspectiveTransform(ends, there, H);
+    std::vector<double> halves;
+    for (size_t i = 0; i < there.size(); i++)
+        halves.push_back(norm(there[i] - direct[i]));
+    return {best, best != Point() || offBy(Point()) > median(halves)};
 }
 
 } // namespace
 
 std::string partOfBoard(const CalibrationInput& input)
 {
-    int pairs = 0, shifted = 0;
+    int pairs = 0, apart = 0, shifted = 0;
     for (const View& view : input.data.views)
         for (int c = 0; c < input.data.cameraCount; c++)
             if (view.isPair(c))
             {
                 pairs++;
-                shifted += shiftOfPair(input, view, c) != Point();
+                const PairShift pair = shiftOfPair(input, view, c);
+                apart += pair.isApart;
+                shifted += pair.shift != Point();
             }
-    return shifted == 0 ? "" : format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is "
+    // Pairs of different moments are apart by anything, now and then by whole squares.
+    return shifted == 0 || shifted < MOST*apart ? "" : format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is "
                                       "smaller than the board: count the inner corners (dots)", shifted, pairs);
 }
 

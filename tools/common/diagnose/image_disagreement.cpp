@@ -1,0 +1,197 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "diagnose/image_disagreement.hpp"
+#include "diagnose/fit_quality.hpp"
+#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const int LENS_ITERATIONS = 10;
+
+//! How far the two images of a pair are apart; px, the median of all points of a camera.
+double pairsApart(const RigData& data, int camera)
+{
+    std::vector<double> lengths;
+    for (const View& view : data.views)
+        if (view.isPair(camera))
+            for (size_t i = 0; i < view.objectPoints.size(); i++)
+                if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
+                    lengths.push_back(norm(view.direct[camera][i] - view.glass[camera][i]));
+    return median(lengths);
+}
+
+void addImage(const View& view, const std::vector<Point2d>& pixels, std::vector<std::vector<Point3f>>& objects,
+              std::vector<std::vector<Point2f>>& images)
+{
+    std::vector<Point3f> object;
+    std::vector<Point2f> image;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (seen(pixels[i]) && view.objectPoints[i].z == view.objectPoints[0].z)
+        {
+            object.emplace_back((float)view.objectPoints[i].x, (float)view.objectPoints[i].y, 0.f);
+            image.push_back(pixels[i]);
+        }
+    if (image.size() < 8)
+        return;
+    objects.push_back(object);
+    images.push_back(image);
+}
+
+//! A pinhole that is good enough to tell boards that are turned or elsewhere. Zeros: there is none.
+Matx33d roughLens(const RigData& data, int camera, bool glass)
+{
+    std::vector<std::vector<Point3f>> objects;
+    std::vector<std::vector<Point2f>> images;
+    for (const View& view : data.views)
+        addImage(view, (glass ? view.glass : view.direct)[camera], objects, images);
+    if (images.size() < 3)
+        return Matx33d::zeros();
+    Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
+    calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
+                    CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
+                    | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
+    return K;
+}
+
+/** A lens through its window: with the focal length that a pane across the axis gives it. A lens from these images alone would err by
+itself, and put the same camera elsewhere. */
+Matx33d throughWindow(const RigData& data, const RigOptions& options, int camera, const Matx33d& direct)
+{
+    if (!(direct(0, 0) > 0.))
+        return roughLens(data, camera, true);
+    const double longer = options.window.outerIndex/options.window.innerIndex;
+    return Matx33d(longer*direct(0, 0), 0, direct(0, 2), 0, longer*direct(1, 1), direct(1, 2), 0, 0, 1);
+}
+
+bool rigidPose(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+{
+    std::vector<Point3d> object;
+    std::vector<Point2d> image;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (seen(pixels[i]))
+        {
+            object.push_back(view.objectPoints[i]);
+            image.push_back(pixels[i]);
+        }
+    Vec3d rvec, tvec;
+    if (image.size() < 6 || !solvePnP(object, image, K, noArray(), rvec, tvec, false, SOLVEPNP_IPPE))
+        return false;
+    solvePnPRefineLM(object, image, K, noArray(), rvec, tvec);
+    pose = transformOf(rvec, tvec);
+    return true;
+}
+
+//! A board that two cameras saw at one moment.
+struct Both
+{
+    RigidTransform one, other;
+    const View* view;
+};
+
+//! @param K1, K2 lenses of camera 1 and of this one
+std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Matx33d& K1, const Matx33d& K2)
+{
+    std::vector<Both> boards;
+    if (!(K1(0, 0) > 0.) || !(K2(0, 0) > 0.))
+        return boards;
+    for (const View& view : data.views)
+    {
+        Both b{{}, {}, &view};
+        const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
+        if (rigidPose(view, images[0], K1, b.one) && rigidPose(view, images[camera], K2, b.other))
+            boards.push_back(b);
+    }
+    return boards;
+}
+
+//! How far boards are from where the place of two cameras to each other has them, which one of some boards gives; px, of the middling one.
+double apart(const std::vector<Both>& boards, const std::vector<Both>& places, double focal)
+{
+    if (boards.size() < 3 || places.size() < 3)
+        return 0.;
+    double least = NO_FIT;
+    for (const Both& from : places)
+    {
+        const RigidTransform place = fromTo(from.one, from.other);
+        std::vector<double> errors;
+        for (const Both& b : boards)
+        {
+            double sum = 0.;
+            for (const Point3d& X : b.view->objectPoints)
+            {
+                const Vec3d here = b.other*Vec3d(X);
+                sum += norm(place*(b.one*Vec3d(X)) - here)/std::abs(here[2]);
+            }
+            errors.push_back(focal*sum/b.view->objectPoints.size());
+        }
+        least = std::min(least, median(errors));
+    }
+    return least;
+}
+
+} // namespace
+
+std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options)
+{
+    std::vector<double> all;
+    for (int c = 0; c < data.cameraCount; c++)
+        all.push_back(pairsApart(data, c));
+    PerCamera<Matx33d> direct, glass;
+    for (int c = 0; c < data.cameraCount && data.cameraCount > 1; c++)
+    {
+        direct[c] = roughLens(data, c, false);
+        glass[c] = throughWindow(data, options, c, direct[c]);
+    }
+    for (int c = 1; c < data.cameraCount; c++)
+    {
+        const std::vector<Both> boards = boardsOf(data, c, false, direct[0], direct[c]), through = boardsOf(data, c, true, glass[0], glass[c]);
+        all.push_back(apart(boards, boards, direct[c](0, 0)));
+        all.push_back(apart(through, through, glass[c](0, 0)));
+        all.push_back(apart(through, boards, glass[c](0, 0)));
+    }
+    return all;
+}
+
+double pairsFromOneMap(const RigData& data)
+{
+    double worst = 0.;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        std::vector<Point2d> direct, glass, there;
+        for (const View& view : data.views)
+            if (view.isPair(c))
+                for (size_t i = 0; i < view.objectPoints.size(); i++)
+                    if (seen(view.direct[c][i]) && seen(view.glass[c][i]))
+                    {
+                        direct.push_back(view.direct[c][i]);
+                        glass.push_back(view.glass[c][i]);
+                    }
+        const Mat H = direct.size() < 8 ? Mat() : findHomography(direct, glass);
+        if (H.empty())
+            continue;
+        perspectiveTransform(direct, there, H);
+        std::vector<double> lengths;
+        for (size_t i = 0; i < there.size(); i++)
+            lengths.push_back(norm(there[i] - glass[i]));
+        worst = std::max(worst, median(lengths));
+    }
+    return worst;
+}
+
+double camerasApart(const RigData& data, const RigOptions& options)
+{
+    const std::vector<double> all = disagreementsOf(data, options);
+    double worst = 0.;
+    for (size_t i = data.cameraCount; i + 2 < all.size(); i += 3)
+        worst = std::max({worst, all[i], all[i + 1]});
+    return worst;
+}
+
+} // namespace tools

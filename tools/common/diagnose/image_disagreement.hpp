@@ -1,0 +1,27 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
+#define REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
+
+#include "diagnose/calibration_input.hpp"
+
+/* How far images contradict each other, px, whatever the window is: told without it, by pinholes, in milliseconds. */
+namespace tools {
+
+const double WINDOWS_PX = 20.;          //!< less is a window's doing
+
+/** All disagreements that there can be, in one order: of each camera, how far the two images of a pair are apart; then of each further
+camera, how far boards are from where one of them has this camera to the first: of direct images, of those through the windows, and of
+these by the direct images. 0 where there is nothing to compare. */
+std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options);
+
+//! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
+double pairsFromOneMap(const RigData& data);
+
+//! The largest disagreement of two cameras in images of one state.
+double camerasApart(const RigData& data, const RigOptions& options);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
