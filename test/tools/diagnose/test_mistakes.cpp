@@ -118,11 +118,12 @@ TEST_CASE("Every mistake is called by its name: a sample", "[mistakes][slow]")
 TEST_CASE("Every mistake is called by its name: the matrix", "[.monte-carlo][mistakes]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
-    const char* only = std::getenv("ONLY");         // some of the mistakes
+    const char* only = std::getenv("ONLY");         // a mistake, or "mistake, rig"
     std::vector<std::pair<Mistake, RigKind>> cases;
     for (int m = NONE_AT_ALL + 1; m < MISTAKES; m++)
         for (int k = 0; k < RIG_KINDS; k++)
-            if (applies((Mistake)m, (RigKind)k) && (!only || std::string(only) == MISTAKE_NAMES[m]))
+            if (applies((Mistake)m, (RigKind)k) && (!only || only == std::string(MISTAKE_NAMES[m])
+                                                    || only == MISTAKE_NAMES[m] + std::string(", ") + RIG_NAMES[k]))
                 cases.push_back({(Mistake)m, (RigKind)k});
     checkMatrix(cases, scenes::trials(5));
 }

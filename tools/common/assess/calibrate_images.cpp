@@ -13,7 +13,7 @@ namespace tools {
 
 namespace {
 
-const int FEW_ITERATIONS = 100;         // where a wrong value is known to be, a fit within what is known of it may creep
+const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep
 
 void fit(RigCalibration& c, bool robust, const std::function<void()>& step, int maxIterations)
 {
