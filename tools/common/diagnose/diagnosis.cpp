@@ -157,11 +157,11 @@ std::vector<std::string> confirmed(const CalibrationInput& input, const std::vec
 
 /** What is wrong with images whatever the window is: each image and each camera is right by itself. Those that give images or cameras
 places of their own come last, as they explain any other. */
-std::vector<std::string> imageMistakes(const CalibrationInput& input)
+std::vector<std::string> imageMistakes(const CalibrationInput& input, const std::vector<MixUp>& mixUps)
 {
-    const std::vector<std::string> mixUps = confirmed(input, findMixUps(input));
-    if (!mixUps.empty())
-        return mixUps;
+    const std::vector<std::string> sentences = confirmed(input, mixUps);
+    if (!sentences.empty())
+        return sentences;
     for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
         if (!sentence.empty())
             return {sentence};
@@ -194,7 +194,7 @@ std::vector<std::string> toldBeside(const Contradiction& value, const std::vecto
 
 std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain)
 {
-    std::vector<std::string> sentences = imageMistakes(input);
+    std::vector<std::string> sentences = imageMistakes(input, findMixUps(input));
     if (!sentences.empty())
         return sentences;
     const double sound = largestSoundError(input.data), clean = cleanError(input);
@@ -253,12 +253,13 @@ namespace {
 
 void requireNoMixUp(const CalibrationInput& input)
 {
-    if (findMixUps(input).empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
+    const std::vector<MixUp> mixUps = findMixUps(input);
+    if (mixUps.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
         return;
     const double px = medianErrorOfFit(input.data, input.options, nullptr, SOON);
     if (px < largestSoundError(input.data))
         return;
-    const std::vector<std::string> reasons = imageMistakes(input);
+    const std::vector<std::string> reasons = imageMistakes(input, mixUps);
     if (!reasons.empty())
         refuse(input, px, reasons);
 }

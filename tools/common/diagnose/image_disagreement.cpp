@@ -3,6 +3,7 @@
 
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ void addImage(const View& view, const std::vector<Point2d>& pixels, std::vector<
     images.push_back(image);
 }
 
-//! A pinhole that is good enough to tell boards that are turned or elsewhere. Zeros: there is none.
+//! Zeros: there is none.
 Matx33d roughLens(const RigData& data, int camera, bool glass)
 {
     std::vector<std::vector<Point3f>> objects;
@@ -53,25 +54,34 @@ Matx33d roughLens(const RigData& data, int camera, bool glass)
         addImage(view, (glass ? view.glass : view.direct)[camera], objects, images);
     if (images.size() < 3)
         return Matx33d::zeros();
-    Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
-    calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
-                    CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
-                    | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
-    return K;
+    try
+    {
+        Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
+        calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
+                        CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
+                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
+        return K;
+    }
+    catch (const cv::Exception&)        // degenerate images
+    {
+        return Matx33d::zeros();
+    }
 }
 
 /** A lens through its window: with the focal length that a pane across the axis gives it. A lens from these images alone would err by
 itself, and put the same camera elsewhere. */
-Matx33d throughWindow(const RigData& data, const RigOptions& options, int camera, const Matx33d& direct)
+Matx33d throughWindow(const Matx33d& direct, const Matx33d& glass, const RigOptions& options)
 {
     if (!(direct(0, 0) > 0.))
-        return roughLens(data, camera, true);
+        return glass;
     const double longer = options.window.outerIndex/options.window.innerIndex;
     return Matx33d(longer*direct(0, 0), 0, direct(0, 2), 0, longer*direct(1, 1), direct(1, 2), 0, 0, 1);
 }
 
 bool rigidPose(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
 {
+    if (isSolid(view.objectPoints))
+        return false;
     std::vector<Point3d> object;
     std::vector<Point2d> image;
     for (size_t i = 0; i < pixels.size(); i++)
@@ -136,25 +146,44 @@ double apart(const std::vector<Both>& boards, const std::vector<Both>& places, d
     return least;
 }
 
+/** By how much the images through the window are not magnified against direct ones as a pane across the axis does, at half an image's
+width; px. */
+double magnificationOff(const Matx33d& direct, const Matx33d& glass, const RigOptions& options, Size size)
+{
+    const double expected = direct(0, 0)*options.window.outerIndex/options.window.innerIndex;
+    return direct(0, 0) > 0. && glass(0, 0) > 0. ? 0.5*size.width*std::abs(std::log(glass(0, 0)/expected)) : 0.;
+}
+
 } // namespace
 
-std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options)
+RoughLenses roughLensesOf(const RigData& data)
+{
+    RoughLenses lenses;
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        lenses.direct[c] = roughLens(data, c, false);
+        lenses.glass[c] = roughLens(data, c, true);
+    }
+    return lenses;
+}
+
+std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses)
 {
     std::vector<double> all;
+    PerCamera<Matx33d> through;
     for (int c = 0; c < data.cameraCount; c++)
-        all.push_back(pairsApart(data, c));
-    PerCamera<Matx33d> direct, glass;
-    for (int c = 0; c < data.cameraCount && data.cameraCount > 1; c++)
     {
-        direct[c] = roughLens(data, c, false);
-        glass[c] = throughWindow(data, options, c, direct[c]);
+        all.push_back(pairsApart(data, c));
+        all.push_back(magnificationOff(lenses.direct[c], lenses.glass[c], options, data.imageSize[c]));
+        through[c] = throughWindow(lenses.direct[c], lenses.glass[c], options);
     }
     for (int c = 1; c < data.cameraCount; c++)
     {
-        const std::vector<Both> boards = boardsOf(data, c, false, direct[0], direct[c]), through = boardsOf(data, c, true, glass[0], glass[c]);
-        all.push_back(apart(boards, boards, direct[c](0, 0)));
-        all.push_back(apart(through, through, glass[c](0, 0)));
-        all.push_back(apart(through, boards, glass[c](0, 0)));
+        const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c]),
+                                glass = boardsOf(data, c, true, through[0], through[c]);
+        all.push_back(apart(direct, direct, lenses.direct[c](0, 0)));
+        all.push_back(apart(glass, glass, through[c](0, 0)));
+        all.push_back(apart(glass, direct, through[c](0, 0)));
     }
     return all;
 }
@@ -187,9 +216,9 @@ double pairsFromOneMap(const RigData& data)
 
 double camerasApart(const RigData& data, const RigOptions& options)
 {
-    const std::vector<double> all = disagreementsOf(data, options);
+    const std::vector<double> all = disagreementsOf(data, options, roughLensesOf(data));
     double worst = 0.;
-    for (size_t i = data.cameraCount; i + 2 < all.size(); i += 3)
+    for (size_t i = 2*data.cameraCount; i < all.size(); i += 3)
         worst = std::max({worst, all[i], all[i + 1]});
     return worst;
 }

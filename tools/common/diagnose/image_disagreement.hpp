@@ -11,10 +11,19 @@ namespace tools {
 
 const double WINDOWS_PX = 20.;          //!< less is a window's doing
 
-/** All disagreements that there can be, in one order: of each camera, how far the two images of a pair are apart; then of each further
-camera, how far boards are from where one of them has this camera to the first: of direct images, of those through the windows, and of
-these by the direct images. 0 where there is nothing to compare. */
-std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options);
+//! Pinholes that are good enough to tell boards that are turned or elsewhere; zeros: there is none.
+struct RoughLenses
+{
+    PerCamera<cv::Matx33d> direct, glass;
+};
+
+RoughLenses roughLensesOf(const RigData& data);
+
+/** All disagreements that there can be, in one order: of each camera, how far the two images of a pair are apart, and how much the images
+through its window are magnified otherwise than by it; then of each further camera, how far boards are from where one of them has this
+camera to the first: of direct images, of those through the windows, and of these by the direct images. 0 where there is nothing to
+compare. */
+std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses);
 
 //! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
 double pairsFromOneMap(const RigData& data);

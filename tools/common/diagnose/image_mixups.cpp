@@ -138,6 +138,14 @@ RigData exchanged(const RigData& given, int a, int b, bool direct)
     return data;
 }
 
+RigData exchangedStates(const RigData& given)
+{
+    RigData data = given;
+    for (View& view : data.views)
+        std::swap(view.direct, view.glass);
+    return data;
+}
+
 struct Candidate
 {
     MixUp mixUp;
@@ -175,24 +183,28 @@ std::string sentenceOf(Change change, const RigData& data, int camera, bool dire
 std::vector<MixUp> findMixUps(const CalibrationInput& input)
 {
     const RigData& data = input.data;
-    const std::vector<double> before = disagreementsOf(data, input.options);
+    const RoughLenses lenses = roughLensesOf(data);
+    const std::vector<double> before = disagreementsOf(data, input.options, lenses);
     if (!(*std::max_element(before.begin(), before.end()) > WINDOWS_PX))
         return {};
     std::vector<Candidate> candidates;
     double least = NO_FIT;
-    const auto attempt = [&](const RigData& changed, const std::string& sentence) {
-        const std::vector<double> after = disagreementsOf(changed, input.options);
+    const auto attempt = [&](const RigData& changed, const RoughLenses& now, const std::string& sentence) {
+        const std::vector<double> after = disagreementsOf(changed, input.options, now);
         if (!explains(before, after))
             return;
         candidates.push_back({{sentence, changed}, product(after)});
         least = std::min(least, candidates.back().left);
     };
+    attempt(exchangedStates(data), {lenses.glass, lenses.direct}, "--direct and --glass exchanged");
     for (int b = 1; b < data.cameraCount; b++)
         for (int a = 0; a < b; a++)
             for (bool direct : {false, true})
             {
                 const char* const option = direct ? "--direct" : "--glass";
-                attempt(exchanged(data, a, b, direct), option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
+                RoughLenses now = lenses;
+                direct ? std::swap(now.direct[a], now.direct[b]) : std::swap(now.glass[a], now.glass[b]);
+                attempt(exchanged(data, a, b, direct), now, option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
             }
     for (int camera = 0; camera < data.cameraCount; camera++)
         for (bool directToo : {false, true})
@@ -200,7 +212,8 @@ std::vector<MixUp> findMixUps(const CalibrationInput& input)
             {
                 const bool square = data.imageSize[camera].width == data.imageSize[camera].height;
                 if (change <= MIRROR || square)
-                    attempt(changedBack(data, (Change)change, camera, directToo), sentenceOf((Change)change, data, camera, directToo));
+                    attempt(changedBack(data, (Change)change, camera, directToo), lenses,
+                            sentenceOf((Change)change, data, camera, directToo));
             }
     std::vector<MixUp> best;
     for (const Candidate& candidate : candidates)

@@ -18,7 +18,8 @@ namespace tools {
 namespace {
 
 const int ITERATIONS = 25;
-const double CONVERGED = 1e-3;          // of chi^2
+const double CONVERGED = 0.02;          // of chi^2, of which ten decide,
+const double CONVERGED_SHARE = 1e-5;    // or of its size: what leaves that much explains nothing
 const double LEAST_DAMPING = 1e-12, MOST_DAMPING = 1e3;
 
 //! Inverse of a covariance, 0 for what has no variance (it is fixed) or an unknown one (NaN, about which nothing is known).
@@ -354,7 +355,7 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
         at = next;
         normal = there;
         damping = std::max(LEAST_DAMPING, damping/30.);
-        if (gained < CONVERGED)
+        if (gained < std::max(CONVERGED, CONVERGED_SHARE*normal.chiSquare))
             break;
     }
     at.chiSquare = normal.isFinite() ? normal.chiSquare : std::numeric_limits<double>::infinity();
