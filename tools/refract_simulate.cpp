@@ -7,6 +7,7 @@
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "simulate/scene_file.hpp"
+#include "simulate/true_line.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>
@@ -23,6 +24,8 @@ given, and for each image the pose of the target in camera 1 and the exact pixel
 poses as refract_calib --poses takes them.
 Of a scene: DIR/SET/scene.png, in colour, and DIR/SET/scene_depth.tiff, float32: z in the frame of the image's camera of
 what the pixel's centre sees; NaN where it sees nothing.
+In the light of emitters all images are in colour, surfaces of a scene throw shadows, and truth.yml has the lines: for each v of the
+emitter the pixel and the point in camera 1.
 The same RIG.yml gives the same images.
 
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
@@ -47,11 +50,19 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
     - { shape: mesh, file: part.ply, rvec: [0., 0., 0.], tvec: [0., 0., 600.], scale: 1. }    # or .obj; beside RIG.yml
   texture: { size: 60., contrast: 0.8, octaves: 8 }      # of the scene: size of its coarsest grains, each octave halves
                          # it; the finest should be a pixel where the scene is nearest
+  emitters:              # lines and fringes of light, by name: a camera that sends light, refracted at its own window
+    laser: { camera_matrix, distortion_coefficients, image_width, image_height, glass_window,      # as of a camera
+             rvec: [0., -0.4, 0.], tvec: [150., 0., 40.],      # camera 1 -> emitter
+             line: 320., width: 4., brightness: 90.,           # u and full width, pixels of the emitter; levels on white
+             color: [0., 1., 0.], speckle: 0.1, speckle_size: 0.8 }     # contrast; size of a grain, pixels of the camera
+    projector: { ..., brightness: 120., fringes: { periods: [640., 32.], steps: 4, phase: 0. } }     # picture k = 0 ... of
+                         # `steps` for each period: (1 + cos(2 pi (u/period - k/steps) + phase))/2; files STEM_1, STEM_2, ...
   sets:                  # what to render; equal poses get equal file names
     direct: { window: 0, poses: [ pair ] }
     glass: { window: 1, poses: [ pair, board ], motion: { rvec: [0., 0., 0.], tvec: [0.02, 0., 0.] } }  # all boards moved by
                          # it in camera 1 (or the mount by its inverse), as they do a little between direct and glass images
-    room: { window: 1, scene: 1 })";
+    room: { window: 1, scene: 1 }
+    scan: { window: 1, scene: 1, emitters: [ laser ] }         # lit by these too)";
 
 namespace {
 
@@ -64,13 +75,16 @@ struct Job
     std::string path;       // in the output folder
     std::string set, stem;
     int camera;
-    bool window;
+    const ImageSet* settings;
+    int picture;            // of fringes
+    bool ofScene;           // or of the target
     BoardPose pose;         // of the target in camera 1, before the set's motion
-    RigidTransform motion;
-    std::string depthPath;  // of a textured scene; empty: it is of the target
+    std::string depthPath;  // of a textured scene; of fringes all have the same
     cv::Mat depth;
 
-    bool isOfScene() const { return !depthPath.empty(); }
+    bool window() const { return settings->window; }
+    bool isOfScene() const { return ofScene; }
+    bool hasDepth() const { return ofScene && picture == 0; }
 };
 
 std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
@@ -80,12 +94,15 @@ std::vector<Job> listJobs(const Scene& scene, const std::string& extension)
         for (int camera = 0; camera < (int)scene.cameras.cameras.size(); camera++)
         {
             const std::string folder = set.name + (scene.cameras.single() ? "" : std::to_string(camera + 1)) + "/";
-            if (set.scene)
-                jobs.push_back({folder + "scene." + extension, set.name, "scene", camera, set.window, {}, {},
-                                folder + "scene_depth.tiff", {}});
-            for (const NamedPose& pose : set.poses)
-                jobs.push_back({folder + pose.stem + "." + extension, set.name, pose.stem, camera, set.window, pose.pose,
-                                set.motion, "", {}});
+            const int pictures = set.pictures(), digits = (int)std::to_string(pictures).size();
+            for (int k = 0; k < pictures; k++)
+            {
+                const std::string end = (pictures > 1 ? cv::format("_%0*d.", digits, k + 1) : ".") + extension;
+                if (set.scene)
+                    jobs.push_back({folder + "scene" + end, set.name, "scene", camera, &set, k, true, {}, folder + "scene_depth.tiff", {}});
+                for (const NamedPose& pose : set.poses)
+                    jobs.push_back({folder + pose.stem + end, set.name, pose.stem, camera, &set, k, false, pose.pose, "", {}});
+            }
         }
     return jobs;
 }
@@ -94,13 +111,13 @@ cv::Ptr<cv::refract::RefractiveCamera> cameraOf(const Scene& scene, const Job& j
 {
     const auto& camera = scene.cameras.cameras[job.camera].camera;
     cv::Ptr<cv::refract::RefractiveCamera> result =
-        copyWithWindow(camera, job.window ? camera->window() : GlassWindow());
+        copyWithWindow(camera, job.window() ? camera->window() : GlassWindow());
     result->setImageSize(camera->imageSize());
     return result;
 }
 
 //! In camera 1.
-BoardPose movedPose(const Job& job) { return inOtherCamera(job.pose, job.motion); }
+BoardPose movedPose(const Job& job) { return inOtherCamera(job.pose, job.settings->motion); }
 
 BoardPose poseOf(const Scene& scene, const Job& job)
 {
@@ -121,10 +138,10 @@ Viewpoint viewOf(const Scene& scene, const Job& job)
 
 cv::Mat imageOf(const Scene& scene, const Target* target, const Job& job, uint64_t seed)
 {
+    const Illumination light = {job.settings->sources, job.picture, job.window(), seed};
     if (job.isOfScene())
-        return renderScene(scene.surfaces, viewOf(scene, job), scene.exposure, seed);
-    const auto colours = coloursOf(scene, job);
-    return render(*target, poseOf(scene, job), colours.empty() ? std::vector{cameraOf(scene, job)} : colours, scene.exposure, seed);
+        return renderScene(scene.surfaces, viewOf(scene, job), scene.exposure, seed, &light);
+    return render(*target, movedPose(job), viewOf(scene, job), scene.exposure, seed, &light);
 }
 
 //! Before anything is written, as a camera that sees nothing is a mistake in the file.
@@ -132,7 +149,7 @@ void traceDepths(const std::string& rig, const Scene& scene, std::vector<Job>& j
 {
     for (Job& job : jobs)
     {
-        if (!job.isOfScene())
+        if (!job.hasDepth())
             continue;
         job.depth = depthOfScene(scene.surfaces, viewOf(scene, job));
         if (cv::countNonZero(job.depth == job.depth) == 0)
@@ -149,6 +166,22 @@ void writeTarget(FileStorage& fs, const TargetOptions& options, const Target& ta
     fs << "}";
 }
 
+//! Where the sheets of light are: the pixel and the point of each of the emitter's v.
+void writeLines(FileStorage& fs, const Scene& scene, const Target* target, const Job& job)
+{
+    if (job.settings->sources.empty() || !job.settings->sources[0].isLine())
+        return;
+    fs << "lines" << "[";
+    for (const LightSource& source : job.settings->sources)
+    {
+        const TrueLine line = job.isOfScene() ? trueLine(source, job.window(), scene.surfaces, viewOf(scene, job))
+            : trueLine(source, job.window(), *target, movedPose(job), viewOf(scene, job));
+        fs << "{" << "emitter" << source.name << "pixels" << cv::Mat(line.pixels).reshape(1) << "points" << cv::Mat(line.points).reshape(1)
+           << "}";
+    }
+    fs << "]";
+}
+
 //! The list of all views of the target, or of all of the scene.
 void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const std::vector<Job>& jobs)
 {
@@ -158,7 +191,7 @@ void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const
         if (job.isOfScene() == (target != nullptr))
             continue;
         fs << "{" << "file" << job.path << "set" << job.set << "stem" << job.stem << "camera" << job.camera + 1
-           << "window" << (int)job.window;
+           << "window" << (int)job.window();
         if (job.isOfScene())
             fs << "depth" << job.depthPath;
         else
@@ -166,9 +199,24 @@ void writeViews(FileStorage& fs, const Scene& scene, const Target* target, const
             const std::vector<cv::Point2d> pixels = projectTarget(*target, poseOf(scene, job), cameraOf(scene, job));
             fs << "rvec" << movedPose(job).rvec << "tvec" << movedPose(job).tvec << "pixels" << cv::Mat(pixels).reshape(1);
         }
+        writeLines(fs, scene, target, job);
         fs << "}";
     }
     fs << "]";
+}
+
+void writeEmitters(FileStorage& fs, const Scene& scene)
+{
+    if (scene.sources.empty())
+        return;
+    fs << "emitters" << "{";
+    for (const LightSource& source : scene.sources)
+    {
+        fs << source.name << "{";
+        writeEmitter(fs, source.emitter);
+        fs << "}";
+    }
+    fs << "}";
 }
 
 void writeTruth(const std::string& path, const Scene& scene, const Target* target, const std::vector<Job>& jobs,
@@ -180,6 +228,7 @@ void writeTruth(const std::string& path, const Scene& scene, const Target* targe
         if (target)
             writeTarget(fs, scene.target, *target);
         writeCameras(fs, calibrationOf(modelOf(scene.cameras)));
+        writeEmitters(fs, scene);
         if (target)
             writeViews(fs, scene, target, jobs);
         if (!scene.surfaces.surfaces.empty())
@@ -212,7 +261,7 @@ void renderAll(const std::string& folder, const Scene& scene, const Target* targ
         const Job& job = jobs[i];
         progress.at(job.path);
         writeImage(folder + "/" + job.path, imageOf(scene, target, job, scene.seed*1000003 + i + 1), parameters);
-        if (job.isOfScene())
+        if (job.hasDepth())
             writeImage(folder + "/" + job.depthPath, job.depth);
         progress.step();
     }
@@ -228,7 +277,7 @@ void refuseOverwriting(const std::vector<std::string>& files, const Scene& scene
     for (const Job& job : jobs)
     {
         outputs.push_back({"--out-dir", folder + "/" + job.path, OUTPUT_IN_FOLDER});
-        if (job.isOfScene())
+        if (job.hasDepth())
             outputs.push_back({"--out-dir", folder + "/" + job.depthPath, OUTPUT_IN_FOLDER});
     }
     std::vector<std::string> inputs = scene.meshes;

@@ -159,7 +159,7 @@ std::vector<Point2d> findRendered(const RigModel& rig, int c, bool glass, Vec3d 
 {
     poseInCamera(rig, c, rvec, tvec);
     const Ptr<RefractiveCamera> camera = glass ? rig.cameras[c] : copyWithWindow(rig.cameras[c], GlassWindow());
-    const Mat image = render(renderedBoard(), {rvec, tvec}, {camera}, Exposure(), (uint64_t)random.uniform(0, 1e9));
+    const Mat image = render(renderedBoard(), {rvec, tvec}, Viewpoint{camera}, Exposure(), (uint64_t)random.uniform(0, 1e9));
     return renderedBoard().detect(image);
 }
 

@@ -377,3 +377,85 @@ TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence",
         CHECK(!std::filesystem::exists(folder / "out/truth.yml"));
     }
 }
+
+//! Of a camera above a laser, and a projector at the same place.
+static std::string litScene(const std::string& laser, const std::string& sets)
+{
+    const std::string device = "image_width: 160, image_height: 320, camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: "
+        "[ 300., 0., 80., 0., 300., 160., 0., 0., 1. ] }, distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: "
+        "[ 0., 0., 0., 0. ] }, glass_window: { normal: [ 0.3, 0.1, 0.9486832980505138 ], distance: 20., thickness: [ 8. ], index: [ 1.5 ] "
+        "}, rvec: [ 0., -0.25, 0. ], tvec: [ 200., 0., 0. ]";
+    return texturedScene(SHAPES, sets) + "emitters:\n   laser: { " + device + ", " + laser + " }\n   projector: { " + device
+        + ", brightness: 60., fringes: { periods: [ 160., 16. ], steps: 4 } }\n";
+}
+
+static const char* const LINE = "line: 80., width: 4., brightness: 90., color: [ 0., 1., 0. ]";
+
+TEST_CASE("refract_simulate renders the light of emitters, and says where their lines are", "[tools][simulate][emitters]")
+{
+    const TemporaryFolder folder;
+    writeFile(folder / "rig.yml", litScene(LINE, "   dark: { window: 1, scene: 1 }\n   line: { window: 1, scene: 1, emitters: [ laser ] }\n"
+        "   phases: { window: 1, scene: 1, emitters: [ projector ] }\n"));
+    const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    const cv::Mat dark = cv::imread(folder / "out/dark1/scene.png"), line = cv::imread(folder / "out/line1/scene.png");
+    const cv::FileStorage truth(folder / "out/truth.yml", cv::FileStorage::READ);
+    CHECK((double)truth["emitters"]["laser"]["line"] == 80.);
+    CHECK(truth["emitters"]["projector"]["line"].empty());
+    for (const cv::FileNode& view : truth["scene_views"])
+    {
+        const std::string set = view["set"];
+        CHECK(view["lines"].size() == (set == "line" ? 1u : 0u));
+        if (set != "line" || (int)view["camera"] != 1)
+            continue;
+        const cv::Mat pixels = view["lines"][0]["pixels"].mat();
+        REQUIRE(pixels.rows > 50);
+        int brighter = 0;
+        for (int i = 0; i < pixels.rows; i++)
+        {
+            const cv::Point at(cvRound(pixels.at<double>(i, 0)), cvRound(pixels.at<double>(i, 1)));
+            brighter += line.at<cv::Vec3b>(at)[1] > dark.at<cv::Vec3b>(at)[1] + 10;
+        }
+        CHECK(brighter > 0.9*pixels.rows);
+    }
+    for (const char* name : {"scene_1.png", "scene_8.png", "scene_depth.tiff"})
+        CHECK(std::filesystem::exists(folder / ("out/phases2/" + std::string(name))));
+    CHECK_FALSE(std::filesystem::exists(folder / "out/phases2/scene_9.png"));
+}
+
+TEST_CASE("refract_simulate refuses emitters that it cannot render, with one sentence", "[tools][simulate][emitters]")
+{
+    const TemporaryFolder folder;
+    const std::string set = "   line: { window: 1, scene: 1, emitters: [ laser ] }\n", good = litScene(LINE, set);
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const auto laser = [&](const std::string& keys) { return litScene(keys, set); };
+    struct Case { std::string text, expected; };
+    for (const Case& c : {Case{replaced("[ laser ]", "[ lamp ]"), "no emitter called 'lamp'"},
+                          Case{replaced("[ laser ]", "laser"), "'emitters' must be a list"},
+                          Case{replaced("[ laser ]", "[ laser, projector ]"), "a set of their own"},
+                          Case{laser("width: 4., brightness: 90."), "either 'line'"},
+                          Case{laser("line: 80., width: 4., brightness: 90., fringes: { periods: [ 9. ] }"), "either 'line'"},
+                          Case{laser("line: 80., brightness: 90."), "'width'"}, Case{laser("line: 80., width: 4."), "'brightness'"},
+                          Case{laser("line: 80., width: 0., brightness: 90."), "'width'"},
+                          Case{laser("line: .nan, width: 4., brightness: 90."), "'line'"},
+                          Case{laser("line: 80., width: 4., brightness: 90., speckle: -1."), "'speckle'"},
+                          Case{laser("line: 80., width: 4., brightness: 90., color: [ 0., 2., 0. ]"), "'color'"},
+                          Case{laser("line: 80., width: 4., brightnes: 90."), "no key 'brightnes'"},
+                          Case{laser("brightness: 9., fringes: { periods: [ 0. ] }"), "'periods'"},
+                          Case{laser("brightness: 9., fringes: { periods: [ 9. ], steps: 2 }"), "'steps'"},
+                          Case{replaced("rvec: [ 0., -0.25, 0. ], ", ""), "'rvec' is missing"},
+                          Case{replaced("image_width: 160, image_height: 320", "line_width: 1"), "no key 'line_width'"}})
+    {
+        writeFile(folder / "rig.yml", c.text);
+        const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
+        CAPTURE(c.text, c.expected, result.err);
+        CHECK(result.code == 1);
+        CHECK(result.err.find(c.expected) != std::string::npos);
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        CHECK(!std::filesystem::exists(folder / "out"));
+    }
+}

@@ -19,6 +19,10 @@ namespace {
 const int PARTS = 8;        // points per sample at an edge, each way
 const int DRAWING = 240;    // pixels per square of a ChArUco board's drawing
 
+int columnsOf(const Target& target) { return target.size().width*(target.pattern() == Target::ACIRCLES ? 2 : 1); }
+
+bool isInside(double s, double t, int columns, int rows) { return s > -1.5 && t > -1.5 && s < columns + 0.5 && t < rows + 0.5; }
+
 //! Grey level of the target's plane at (s, t) in units of --square, (0, 0) the first point.
 class Paint
 {
@@ -26,13 +30,13 @@ public:
     Paint(const Target& target, const Exposure& exposure) : pattern_(target.pattern()), exposure_(exposure)
     {
         drawing_ = target.drawing(DRAWING);
-        columns_ = target.size().width*(pattern_ == Target::ACIRCLES ? 2 : 1);
+        columns_ = columnsOf(target);
         rows_ = target.size().height;
     }
 
     double operator()(double s, double t) const
     {
-        if (!(s > -1.5 && t > -1.5 && s < columns_ + 0.5 && t < rows_ + 0.5))
+        if (!isInside(s, t, columns_, rows_))
             return exposure_.background;
         return isDark(s, t) ? exposure_.dark : exposure_.light;
     }
@@ -131,12 +135,48 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
 
 } // namespace
 
-Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& colours,
-           const Exposure& exposure, uint64_t seed)
+//! What emitters add, on the fine grid. @param pose in camera 1
+static void lightBoard(const Target& target, const BoardPose& pose, const Mat& coordinates, const Illumination& light,
+                       const Exposure& exposure, Mat& levels)
 {
+    Mat fine, points(levels.size(), CV_64FC3), reflectance(levels.size(), CV_32FC3);
+    cv::resize(coordinates, fine, levels.size(), 0, 0, cv::INTER_LINEAR);
+    const Matx33d R = rotationMatrix(pose.rvec);
+    for (int y = 0; y < fine.rows; y++)
+        for (int x = 0; x < fine.cols; x++)
+        {
+            const Vec2d p = fine.at<Vec2d>(y, x);
+            points.at<Vec3d>(y, x) = R*Vec3d(p[0]*target.square(), p[1]*target.square(), 0) + pose.tvec;
+            reflectance.at<cv::Vec3f>(y, x) = isOnBoard(target, p[0], p[1]) ? levels.at<cv::Vec3f>(y, x)*(1/exposure.light) : cv::Vec3f();
+        }
+    addLight(light, points, reflectance, nullptr, levels);
+}
+
+bool isOnBoard(const Target& target, double s, double t) { return isInside(s, t, columnsOf(target), target.size().height); }
+
+Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
+           const Illumination* light)
+{
+    const BoardPose inView = inOtherCamera(pose, {view.R, view.T});
+    const bool lit = light && !light->sources.empty();
     std::vector<Mat> channels;
-    for (const auto& camera : colours)
-        channels.push_back(paintFine(Paint(target, exposure), traceTarget(target, pose, camera)));
+    for (size_t c = 0; c < std::max<size_t>(view.colours.size(), 1); c++)
+    {
+        const Mat coordinates = traceTarget(target, inView, view.colours.empty() ? view.camera : view.colours[c]);
+        Mat channel = paintFine(Paint(target, exposure), coordinates);
+        if (lit)
+        {
+            Mat levels;
+            cv::merge(std::vector<Mat>(3, channel), levels);
+            lightBoard(target, pose, coordinates, *light, exposure, levels);
+            if (view.colours.empty())
+                cv::split(levels, channels);
+            else
+                cv::extractChannel(levels, channel, (int)c);
+        }
+        if (!lit || !view.colours.empty())
+            channels.push_back(channel);
+    }
     Mat levels;
     cv::merge(channels, levels);
     return expose(levels, exposure, seed);

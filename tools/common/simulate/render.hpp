@@ -6,6 +6,7 @@
 
 #include "calibrate/rigid_transform.hpp"
 #include "simulate/exposure.hpp"
+#include "simulate/light_source.hpp"
 #include "target/target.hpp"
 #include <opencv2/refract.hpp>
 
@@ -21,9 +22,14 @@ struct BoardPose
 the target is drawn there from its formula. Twice as many samples as pixels each way, each the mean of 8x8 points where
 it meets an edge; between pixels the target's coordinates are interpolated linearly, which is wrong by less than 1e-4
 pixels at any usual distortion. Blur at the finer resolution, then the mean over each pixel, then noise.
-@param colours one camera: a grey image; the camera in the light of blue, green and red: a colour image */
-cv::Mat render(const Target& target, const BoardPose& pose, const std::vector<cv::Ptr<cv::refract::RefractiveCamera>>& colours,
-               const Exposure& exposure, uint64_t seed);
+Lines and fringes light what is printed and its rim; a white square has the level `light` without them.
+@param pose in camera 1
+@param view one camera: a grey image, or in colours if emitters light it; with colours: a colour image */
+cv::Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
+               const Illumination* light = nullptr);
+
+//! On the board, and not on what is behind it. @param s, t in units of --square, (0, 0) the first point
+bool isOnBoard(const Target& target, double s, double t);
 
 //! Camera 2's pose of a target whose pose in camera 1 is known.
 BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_cam1);

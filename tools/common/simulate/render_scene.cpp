@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/render_scene.hpp"
+#include "simulate/light_source.hpp"
 
 #include <cmath>
 #include <functional>
@@ -18,23 +19,6 @@ namespace {
 
 const Vec3d LAMP = cv::normalize(Vec3d(-0.5, -0.6, -0.8));      // towards it
 const double AMBIENT = 0.35;                                    // share of the light that comes from everywhere
-
-//! The first surface on the ray of a sample, or none.
-struct SurfaceHit
-{
-    const Surface* surface = nullptr;
-    Intersection intersection;
-};
-
-SurfaceHit firstSurface(const TexturedScene& scene, const SceneRay& ray)
-{
-    SurfaceHit hit;
-    if (!std::isnan(ray.direction[0]))
-        for (const auto& surface : scene.surfaces)
-            if (surface->intersect(ray, hit.intersection))
-                hit.surface = surface.get();
-    return hit;
-}
 
 using PixelOfSample = std::function<Point2d(int x, int y)>;
 using Visit = std::function<void(int x, int y, const SceneRay& ray, const SurfaceHit& hit)>;
@@ -64,6 +48,16 @@ double lambert(const Intersection& hit, const Vec3d& direction)
 
 } // namespace
 
+SurfaceHit firstSurface(const TexturedScene& scene, const SceneRay& ray)
+{
+    SurfaceHit hit;
+    if (!std::isnan(ray.direction[0]))
+        for (const auto& surface : scene.surfaces)
+            if (surface->intersect(ray, hit.intersection))
+                hit.surface = surface.get();
+    return hit;
+}
+
 Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view)
 {
     Mat depth(view.camera->imageSize(), CV_32F);
@@ -75,11 +69,16 @@ Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view)
 }
 
 //! The light on the fine grid, blue, green, red.
-static Mat lightOf(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure)
+static Mat lightOf(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, const Illumination* light)
 {
     const SolidTexture texture(scene.texture, scene.seed);
     const double spacing = pixelAngle(view)/FINE;       // of samples, at range 1
-    Mat levels(paddedSize(view.camera->imageSize())*FINE, CV_32FC3);
+    Mat levels(paddedSize(view.camera->imageSize())*FINE, CV_32FC3), points, reflectance;
+    if (light && !light->sources.empty())
+    {
+        points = Mat(levels.size(), CV_64FC3, cv::Scalar::all(NAN));
+        reflectance = Mat::zeros(levels.size(), CV_32FC3);
+    }
     traceRays(scene, view, levels.size(), pixelOfSample,
               [&](int x, int y, const SceneRay& ray, const SurfaceHit& hit) {
         Vec3f& level = levels.at<Vec3f>(y, x);
@@ -87,21 +86,28 @@ static Mat lightOf(const TexturedScene& scene, const Viewpoint& view, const Expo
         if (!hit.surface)
             return;
         const double s = hit.intersection.s;
-        const double light = texture.at(ray.at(s), s*spacing)*lambert(hit.intersection, ray.direction);
+        const double grain = texture.at(ray.at(s), s*spacing), lamp = lambert(hit.intersection, ray.direction);
         const Vec3d& color = hit.surface->color();
         for (int channel = 0; channel < 3; channel++)
-            level[channel] = (float)(exposure.dark + (exposure.light - exposure.dark)*light*color[2 - channel]);
+            level[channel] = (float)(exposure.dark + (exposure.light - exposure.dark)*grain*lamp*color[2 - channel]);
+        if (points.empty())
+            return;
+        points.at<Vec3d>(y, x) = ray.at(s);
+        for (int channel = 0; channel < 3; channel++)
+            reflectance.at<Vec3f>(y, x)[channel] = (float)(grain*color[2 - channel]);
     });
+    if (!points.empty())
+        addLight(*light, points, reflectance, &scene, levels);
     return levels;
 }
 
-Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed)
+Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed, const Illumination* light)
 {
-    Mat levels = lightOf(scene, {view.colours.empty() ? view.camera : view.colours[0], view.R, view.T}, exposure);
+    Mat levels = lightOf(scene, {view.colours.empty() ? view.camera : view.colours[0], view.R, view.T}, exposure, light);
     for (int channel = 1; channel < (int)view.colours.size(); channel++)
     {
         const int one[] = {channel, channel};
-        cv::mixChannels(lightOf(scene, {view.colours[channel], view.R, view.T}, exposure), levels, one, 1);
+        cv::mixChannels(lightOf(scene, {view.colours[channel], view.R, view.T}, exposure, light), levels, one, 1);
     }
     return expose(levels, exposure, seed);
 }

@@ -4,7 +4,7 @@
 #include "simulate/scene_file.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
-#include "simulate/keys.hpp"
+#include "console/keys.hpp"
 #include "simulate/surfaces_file.hpp"
 
 #include <opencv2/calib3d.hpp>
@@ -183,6 +183,25 @@ PosesByName readTarget(const FileStorage& fs, Scene& scene, const std::string& f
     return poses;
 }
 
+//! Those of the file that a set names.
+std::vector<LightSource> sourcesOf(const FileNode& names, const Scene& scene, const Keys& keys)
+{
+    std::vector<LightSource> sources;
+    if (!names.empty() && !names.isSeq())
+        throw Failure(keys.name() + ": 'emitters' must be a list of names of emitters");
+    for (const FileNode& name : names)
+    {
+        const auto found = std::find_if(scene.sources.begin(), scene.sources.end(), [&](const LightSource& source) {
+            return source.name == (std::string)name; });
+        if (found == scene.sources.end())
+            throw Failure(keys.name() + ": there is no emitter called '" + (std::string)name + "'");
+        sources.push_back(*found);
+    }
+    if (sources.size() > 1 && std::any_of(sources.begin(), sources.end(), [](const LightSource& source) { return !source.isLine(); }))
+        throw Failure(keys.name() + ": fringes are a set of their own, without other emitters");
+    return sources;
+}
+
 ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& poses)
 {
     ImageSet set;
@@ -200,6 +219,7 @@ ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& po
     if (set.name.find('/') != std::string::npos || (set.scene ? keys.has("poses") : !posesNamed))
         throw Failure(keys.name() + ": either 'poses' must be a list of names of poses, or 'scene' 1; and the set's name a "
                       "folder's");
+    set.sources = sourcesOf(node["emitters"], scene, keys);
     if (set.scene && scene.surfaces.surfaces.empty())
         throw Failure(keys.name() + ": 'scene: 1' renders the 'scene' of the file, which has none");
     for (const FileNode& name : node["poses"])
@@ -251,6 +271,7 @@ Scene readScene(const std::string& filename)
     if (!fs["scene"].empty())
         scene.surfaces = readSurfaces(fs["scene"], fs["texture"], filename, scene.meshes);
     scene.surfaces.seed = scene.seed;
+    scene.sources = readLightSources(fs["emitters"], filename);
     const PosesByName poses = readTarget(fs, scene, filename);
     for (const FileNode& node : fs["sets"])
         scene.sets.push_back(readSet(node, scene, poses));

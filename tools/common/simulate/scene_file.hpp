@@ -8,6 +8,7 @@
 #include "calibrate/light.hpp"
 #include "simulate/render.hpp"
 #include "simulate/render_scene.hpp"
+#include "simulate/light_source.hpp"
 
 /* RIG.yml, what refract_simulate renders (cv::FileStorage):
 
@@ -27,8 +28,10 @@
       glass: { window: 1, poses: [ pair ], motion: { rvec: [0., 0., 0.], tvec: [0.02, 0., 0.] } }    # all boards moved by
                                              # it in camera 1, or the cameras' mount by its inverse
       room: { window: 1, scene: 1 }          # the textured scene, which surfaces_file.hpp tells, in place of the target
+      lines: { window: 1, poses: [ pair ], emitters: [ laser ] }    # in the light of these, beside all other
     scene: ...
     texture: ...
+    emitters: ...                            # lines and fringes, which light_source.hpp tells
 
 There is a target, a scene, or both. Drawn poses keep every point of the target `margin` pixels inside all images, or those of
 `seen_by` cameras, with and without window. */
@@ -47,6 +50,10 @@ struct ImageSet
     bool scene = false;             //!< of the textured scene; then it has no poses
     RigidTransform motion = {};     //!< of all its boards in camera 1, from their poses
     std::vector<NamedPose> poses;
+    std::vector<LightSource> sources = {};
+
+    //! Images of each pose, and of the scene: fringes take several.
+    int pictures() const { return sources.empty() ? 1 : sources[0].pictures(); }
 };
 
 struct Scene
@@ -58,6 +65,7 @@ struct Scene
     Exposure exposure;
     uint64_t seed = 1;
     std::vector<ImageSet> sets;
+    std::vector<LightSource> sources;
     bool coloured = false;          //!< each colour is seen through the window at its wavelength
     ChannelWavelengths wavelengths;
 };

@@ -4,7 +4,7 @@
 #include "simulate/surfaces_file.hpp"
 #include "calibrate/rigid_transform.hpp"
 #include "console/failure.hpp"
-#include "simulate/keys.hpp"
+#include "console/keys.hpp"
 #include "simulate/mesh_file.hpp"
 
 #include <opencv2/calib3d.hpp>

@@ -16,7 +16,7 @@ struct Viewpoint
 {
     cv::Ptr<cv::refract::RefractiveCamera> camera;
     cv::Matx33d R = cv::Matx33d::eye();         //!< scene -> camera
-    cv::Vec3d T;
+    cv::Vec3d T = cv::Vec3d();
     //! The camera in the light of blue, green and red; empty: it is the same in all.
     std::vector<cv::Ptr<cv::refract::RefractiveCamera>> colours = {};
 
