@@ -16,3 +16,6 @@ cd "$root/samples/data/stereo"
 refract_simulate rig.yml --out-dir=. --format=jpg --quality=88
 cd "$root/samples/data/scene"
 refract_simulate rig.yml --out-dir=. --format=jpg --quality=92
+cd "$root/samples/data/projector"
+refract_simulate rig.yml --out-dir=. --format=jpg --quality=92
+rm truth.yml        # rig.yml says all of it

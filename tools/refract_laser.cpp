@@ -9,7 +9,12 @@ static const char MANUAL[] = R"(Calibrates a sheet of laser light behind windows
 
 The sheet: take ten or more images of a board with the line across it, through the window, at several distances and tilts. The pose of
 each board is that of its corners, so the line must leave enough of them alone. The sheet is a plane in the scene's medium, in the frame
-of camera 1. Edges of the board are lines too: the line is the one that lies on the same sheet in most images.
+of camera 1, or, with --emitter, that of a laser behind a window of its own, which bends it. Edges of the board are lines too: the line is
+the one that lies on the same sheet in most images.
+
+--emitter=FILE: camera_matrix, distortion_coefficients, glass_window of the laser (as of a camera in calib.yml; its z is the way of the
+light, any focal length does), rvec and tvec (camera 1 -> emitter), line (u of its sheet), and how well that is known: rotation_std_deg,
+position_std, glass_window_std (normal_deg, distance, thickness, index, outer_index). The images and these numbers together are fitted.
 
 --laser says the line's colour: its excess over the two other colours is looked at, which white and black do not have. With
 --laser-off='GLOB', images of the same names without the laser, the difference is looked at.
@@ -53,7 +58,7 @@ const double CONTRADICTED = 2.;         // error of held-out boards over stated
 
 struct Options
 {
-    std::string calibration, images, off, laser = "green", sheet, sheetOut, out, cloud, pictures, profile, depth, unit;
+    std::string calibration, images, off, laser = "green", emitter, sheet, sheetOut, out, cloud, pictures, profile, depth, unit;
     TargetOptions target;
     double maxRms = 0.;
     bool noWindow = false;
@@ -72,6 +77,7 @@ void addOptions(CLI::App& app, Options& o)
         ->capture_default_str();
     app.add_option("--laser-off", o.off, "images of the same names without the laser: a quoted glob");
     CLI::Option* sheetOut = app.add_option("--sheet-out", o.sheetOut, "calibrate the sheet, and write it (.yml, .xml, .json)");
+    app.add_option("--emitter", o.emitter, "of a laser behind its own window: what is known of it, a file")->needs(sheetOut);
     CLI::Option* sheet = app.add_option("--sheet", o.sheet, "measure with this sheet")->excludes(sheetOut);
     app.add_option("--max-rms", o.maxRms, "limit: RMS distance of held-out lines from the sheet")->check(moreThanZero())->needs(sheetOut);
     app.add_option("--out", o.out, "points.csv to write")->needs(sheet);
@@ -189,8 +195,24 @@ std::string bendNotice(const SheetFit& fit, const std::string& unit)
     }
     if (!(std::abs(sum) > SURE*std::sqrt(weight)))
         return "";
-    return format("the lines on the boards are bent, by %.2g %s on average and at most %.2g: the sheet is not quite a plane (refracted "
-                  "at a window that it does not cross straight), or the boards are not flat", std::abs(sum/weight), unit.c_str(), largest);
+    const char* const why = isPlane(fit.sheet)
+        ? "the sheet is not quite a plane (refracted at a window that it does not cross straight: describe that by --emitter), or the "
+          "boards are not flat"
+        : "it is not the sheet of the emitter that --emitter describes, or the boards are not flat";
+    return format("the lines on the boards are bent off the sheet, by %.2g %s on average and at most %.2g: %s", std::abs(sum/weight),
+                  unit.c_str(), largest, why);
+}
+
+//! What the images say against what was given of the emitter.
+void warnOfEmitter(const Options& o, const SheetFit& fit, const Command& command)
+{
+    const double SURE = 4., BETTER = 10.;
+    if (fit.moved > SURE)
+        command.warn(format("the lines contradict '%s' by %.1f of its standard deviations: check its numbers", o.emitter.c_str(),
+                            fit.moved));
+    if (fit.planeExcess < -BETTER)
+        command.warn(format("a plane explains the lines better than the sheet of '%s' (chi-square smaller by %.0f): check its window",
+                            o.emitter.c_str(), -fit.planeExcess));
 }
 
 void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet, const std::string& unit)
@@ -201,9 +223,15 @@ void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, cons
     for (const LineOnBoard& line : fit.lines)
         rms += line.rmsPx*line.rmsPx/fit.lines.size();
     std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f %s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
-                        sheet.plane[3], unit.c_str())
-              << format("  +- %.3f deg, at z %.4g to %.4g %s; %zu of %zu boards\n", tilt, sheet.depth[0], sheet.depth[1], unit.c_str(),
-                        fit.lines.size(), boards.size())
+                        sheet.plane[3], unit.c_str());
+    if (isPlane(sheet))
+        std::cout << format("  +- %.3f deg, ", tilt);
+    else
+        std::cout << "  is the nearest plane to the emitter's, which is refracted at its window;\n"
+                  << format("  for a plane, chi-square is larger by %.1f\n", fit.planeExcess)
+                  << format("  +- %.3g %s (RMS where the lines are), ", fit.sheetStd, unit.c_str());
+    std::cout << format("at z %.4g to %.4g %s; %zu of %zu boards\n", sheet.depth[0], sheet.depth[1], unit.c_str(), fit.lines.size(),
+                        boards.size())
               << format("  lines: %.3f px off straight (RMS), profile %.1f px wide (standard deviation)\n", std::sqrt(rms), sheet.scale)
               << format("  boards' poses: errors %.1f times those of the corners' noise\n", fit.poseNoise)
               << format("Each board held out: %.3f %s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
@@ -225,12 +253,13 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     Progress progress("looking for lines", 2*(int)set.images.size(), command.quiet());
     const double sigma = pixelSigmaOf(calibration);
     std::vector<BoardImage> boards = findBoards(calibration, target, set, laser, FIRST_SCALE, progress);
-    SheetFit fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., FIRST_SCALE);
+    const std::unique_ptr<const EmitterPrior> emitter(o.emitter.empty() ? nullptr : new EmitterPrior(o.emitter));
+    SheetFit fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., FIRST_SCALE, emitter.get());
     const double scale = scaleOf(boards, fit, set, laser);
     if (std::max(scale/FIRST_SCALE, FIRST_SCALE/scale) > SAME_SCALE)
     {
         boards = findBoards(calibration, target, set, laser, scale, progress);
-        fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., scale);
+        fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., scale, emitter.get());
     }
     Sheet& sheet = fit.sheet;
     sheet.colour = colour;
@@ -241,6 +270,8 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     sheet.time = timeOfFiles(inputs);
     for (int m : fit.without)
         command.warn("'" + boards[m].name + "' is left out: no line of its board lies on the sheet of the others");
+    if (emitter)
+        warnOfEmitter(o, fit, command);
     const std::string bend = bendNotice(fit, sheet.unit);
     if (!bend.empty())
         command.warn(bend);
@@ -388,7 +419,7 @@ void checkOptions(const Options& o, const std::string& settings)
         Plot::checkAvailable();
     checkOutputs({{"--sheet-out", o.sheetOut, OUTPUT_CALIBRATION}, {"--out", o.out, OUTPUT_TEXT}, {"--cloud", o.cloud, OUTPUT_TEXT},
                   {"--profile", o.profile, OUTPUT_TEXT}},
-                 {o.calibration, o.images, o.off, o.sheet, settings});
+                 {o.calibration, o.images, o.off, o.emitter, o.sheet, settings});
 }
 
 } // namespace

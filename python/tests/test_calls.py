@@ -184,6 +184,92 @@ def test_triangulate_by_any_number_of_cameras(rig):
         refract.triangulateRefractive(cameras, Rs, Ts, images[:2])
 
 
+def test_half_pixels_are_observations(rig, board):
+    """A coordinate that is NaN is not known, and the other one is; pixelCovariances says how well."""
+    from conftest import rotation
+    sheet = rig.pixels2.copy()
+    sheet[..., 1] = np.nan
+    cameras, Rs, Ts = [rig.camera1, rig.camera2], [np.eye(3), rig.R], [np.zeros(3), rig.T]
+    points, status = refract.triangulateRefractive(cameras, Rs, Ts, [rig.pixels1, sheet])
+    np.testing.assert_allclose(points[:, 0], rig.points, atol=1e-7)
+    assert not status.any()
+    # Of three coordinates the point is the same, whatever their variances; its covariance is not.
+    worse = np.tile((1., 0., 1.), (40, 1))
+    depth = []
+    for factor in (1., 9.):
+        found, _, covariance, _ = refract.triangulateRefractiveExtended(cameras, Rs, Ts, [rig.pixels1, sheet], 0, 0.1, None,
+                                                                        pixelCovariances=[worse, factor*worse])
+        np.testing.assert_allclose(found, points, atol=1e-6)
+        depth.append(covariance[:, 8])
+    assert (depth[1] > 2*depth[0]).all() and (depth[1] < 9*depth[0]).all()
+    sheet[3] = np.nan
+    points, status = refract.triangulateRefractive(cameras, Rs, Ts, [rig.pixels1, sheet])
+    assert status[3] == refract.REFRACT_TOO_FEW_VIEWS and np.isnan(points[3]).all() and np.flatnonzero(status).tolist() == [3]
+    with pytest.raises(refract.error, match="pixelCovariances"):
+        refract.triangulateRefractiveExtended(cameras, Rs, Ts, [rig.pixels1, sheet], 0, 0.1, None, pixelCovariances=[worse, -worse])
+
+
+def test_half_pixels_of_a_pose(rig, board):
+    pixels = board.glass1[0].copy()
+    pixels[::3, 0, 0], pixels[1::3, 0, 1] = np.nan, np.nan
+    found, rvec, tvec, error = refract.refractiveSolvePnP(board.target[0], pixels, rig.camera1)
+    assert found and error < 1e-6
+    np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-4)
+    # One coordinate that is wrong, and said to be.
+    pixels[0, 0, 1] += 30
+    said = np.tile((1., 0., 1.), (30, 1))
+    said[0, 2] = 1e10
+    found, rvec, tvec, _, covariance = refract.refractiveSolvePnPExtended(board.target[0], pixels, rig.camera1, False, sigma=0.1,
+                                                                          pixelCovariances=said)
+    np.testing.assert_allclose(tvec.ravel(), board.tvecs[0], atol=1e-3)
+    assert found and covariance.shape == (6, 6)
+    unseen = np.full_like(pixels, np.nan)
+    assert not refract.refractiveSolvePnP(board.target[0], unseen, rig.camera1)[0]
+
+
+def test_half_pixels_of_a_rig(rig, board):
+    """A projector behind its window is calibrated by u alone."""
+    from conftest import rotation
+    start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
+    halves = [pixels.copy() for pixels in board.glass2]
+    for pixels in halves:
+        pixels[..., 1] = np.nan
+    cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
+    weights = [[np.tile((1., 0., 1.), (30, 1))]*8, [np.tile((4., 0., 4.), (30, 1))]*8]
+    rms = refract.calibrateGlassRigExtended(
+        board.target, [board.direct1, board.direct2], [board.glass1, halves], cameras, [0, 1],
+        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], (), (), pixelCovariancesDirect=weights, pixelCovariancesRefracted=weights)[0]
+    assert rms < 1e-5
+    for camera, window in zip(cameras, (rig.window1, rig.window2)):
+        np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-5)
+
+
+def test_half_pixels_of_a_bundle(rig):
+    """A camera and a projector that sees u, of one scene in four poses."""
+    from conftest import rotation
+    rvecs = [np.array((0.05*i, -0.08*i, 0.03)) for i in (1, 2, 3, 4)]
+    tvecs = [np.array((0., 0., 600.)) - rotation(rvec) @ (0., 0., 600.) for rvec in rvecs]
+    images1, images2 = [], []
+    for rvec, tvec in zip(rvecs, tvecs):
+        scene = rig.points @ rotation(rvec).T + tvec
+        images1.append(refract.refractiveProjectPoints(scene, np.zeros(3), np.zeros(3), rig.camera1)[0])
+        images2.append(refract.refractiveProjectPoints(scene, rig.R, rig.T, rig.camera2)[0])
+        images2[-1][..., 1] = np.nan
+    cameras = [rig.camera1.clone(), rig.camera2.clone()]
+    weights = [[np.tile((1., 0., 1.), (40, 1))]*4, [np.tile((2., 0., 2.), (40, 1))]*4]
+    result = refract.refractiveBundleAdjustExtended(
+        [images1, images2], cameras, [0, 1], [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, rig.points + 0.3, None,
+        flags=refract.GLASS_FIX_NORMAL, pixelCovariances=weights)
+    assert result[0] < 1e-4
+    moved = result[5].reshape(-1, 3)
+    for rvec, tvec, pixels in zip(result[3], result[4], images1):      # the scene's frame is free: where camera 1 sees it
+        seen = refract.refractiveProjectPoints(moved, rvec, tvec, rig.camera1)[0]
+        np.testing.assert_allclose(seen, pixels, atol=1e-3)
+    def lengths(points):
+        return np.linalg.norm(np.diff(points, axis=0), axis=1)
+    np.testing.assert_allclose(lengths(moved), lengths(rig.points), atol=1e-2)
+
+
 def test_calibrate_normal(rig, board):
     for camera in ((rig.K1, rig.D1), (rig.camera1,)):
         rms, normal, center, covariance = refract.calibrateGlassNormal(board.direct1, board.glass1, *camera)

@@ -11,7 +11,8 @@ using cv::refract::RefractiveCamera;
 
 std::vector<std::string> emitterKeys()
 {
-    return {"image_width", "image_height", "camera_matrix", "distortion_coefficients", "lens_model", "glass_window", "rvec", "tvec", "line"};
+    return {"image_width", "image_height", "camera_matrix", "distortion_coefficients", "lens_model", "glass_window", "rvec", "tvec",
+            "line"};
 }
 
 Emitter readEmitter(const cv::FileNode& node, const std::string& name, bool needsLine)

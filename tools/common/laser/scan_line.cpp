@@ -60,8 +60,9 @@ std::vector<RidgePoint> atDepth(const std::vector<RidgePoint>& ridges, const Cal
     for (const RidgePoint& r : ridges)
         pixels.push_back(r.pixel);
     std::vector<Point3d> points;
+    std::vector<uchar> status;
     if (!pixels.empty())
-        refractivePointsOnPlane(pixels, points, calibration.cameras[0].camera, sheet.plane);
+        pointsOnSheet(calibration, sheet, pixels, points, status);
     std::vector<RidgePoint> kept;
     for (size_t i = 0; i < ridges.size(); i++)
         if (points[i].z >= depth[0] && points[i].z <= depth[1])     // false for NaN

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/sheet.hpp"
+#include "laser/sheet_surface.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
@@ -47,6 +48,24 @@ bool areSame(const std::vector<double>& a, const std::vector<double>& b)
 
 } // namespace
 
+bool isPlane(const Sheet& sheet) { return sheet.emitter.camera.empty(); }
+
+void pointsOnSheet(const Calibration& calibration, const Sheet& sheet, const std::vector<Point2d>& pixels, std::vector<Point3d>& points,
+                   std::vector<uchar>& status)
+{
+    const auto& camera = calibration.cameras[0].camera;
+    if (isPlane(sheet))
+    {
+        refractivePointsOnPlane(pixels, points, camera, sheet.plane, status);
+        return;
+    }
+    // The emitter's part of each pair is half a pixel.
+    const std::vector<Point2d> halves(pixels.size(), Point2d(sheet.emitter.line, std::numeric_limits<double>::quiet_NaN()));
+    triangulateRefractive({camera, sheet.emitter.camera}, std::vector<Matx33d>{Matx33d::eye(), sheet.emitter.R},
+                          std::vector<Vec3d>{Vec3d(), sheet.emitter.translation()}, std::vector<std::vector<Point2d>>{pixels, halves},
+                          points, status);
+}
+
 Sheet readSheet(const std::string& filename, const Calibration& calibration)
 {
     FileStorage fs;
@@ -60,6 +79,12 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     Sheet sheet;
     std::vector<double> camera;
     std::vector<double> plane, depth;
+    int state = 4;
+    if (!fs["emitter"].empty())
+    {
+        sheet.emitter = readEmitter(fs["emitter"], "'" + filename + "': emitter", true);
+        state = 6 + columnsOf(*sheet.emitter.camera).end;
+    }
     std::string colour;
     fs["sheet_plane"] >> plane;
     fs["covariance"] >> sheet.covariance;
@@ -70,7 +95,7 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     fs["depth"] >> depth;
     fs["unit"] >> sheet.unit;
     fs["camera_parameters"] >> camera;
-    if (plane.size() != 4 || sheet.covariance.size() != Size(4, 4) || sheet.byParameters.rows != 4 || !(sheet.scale > 0.) ||
+    if (plane.size() != 4 || sheet.covariance.size() != Size(state, state) || sheet.byParameters.rows != state || !(sheet.scale > 0.) ||
         depth.size() != 2)
         throw Failure("'" + filename + "' is not a sheet of light: it must be what refract_laser --sheet-out wrote");
     sheet.plane = Vec4d(plane.data());
@@ -89,6 +114,12 @@ void writeSheet(const std::string& filename, const Sheet& sheet, const Calibrati
 {
     writeStorage(filename, ".yml", [&](FileStorage& fs) {
         fs << "sheet_plane" << std::vector<double>(sheet.plane.val, sheet.plane.val + 4);
+        if (!isPlane(sheet))
+        {
+            fs << "emitter" << "{";
+            writeEmitter(fs, sheet.emitter);
+            fs << "}";
+        }
         fs << "covariance" << sheet.covariance << "by_parameters" << sheet.byParameters;
         fs << "line_scale_px" << sheet.scale << "line_noise_px" << sheet.lineNoise << "laser" << laserColourNames()[sheet.colour];
         fs << "depth" << std::vector<double>(sheet.depth.val, sheet.depth.val + 2);
@@ -97,7 +128,29 @@ void writeSheet(const std::string& filename, const Sheet& sheet, const Calibrati
     });
 }
 
-/* X with projection u and n . X = d:     [G; n^T] dX = [du - A dp; dd - X^T dn]     G: pixel by point, A: pixel by lens and window */
+/* X with projection u and distance e = 0 from the sheet:     [G; n^T] dX = [du - A dp; -B ds]     G: pixel by point, A: pixel by lens and
+window, n, B: distance by point and by the sheet's state s */
+OnSheetDerivatives differentiateOnSheet(const Calibration& calibration, const Sheet& sheet, const std::vector<RidgePoint>& line,
+                                        const std::vector<Point3d>& points)
+{
+    const SheetDistances from = isPlane(sheet) ? distancesFromPlane(sheet.plane, points) : distancesFromEmitter(sheet.emitter, points);
+    const PointDerivatives d = differentiatePoints(calibration.cameras[0].camera, points, Vec3d(), Vec3d());
+    const MatrixXd sheetByParameters = toEigen(sheet.byParameters);
+    const Eigen::Index rows = 3*(Eigen::Index)points.size();
+    OnSheetDerivatives result = {MatrixXd(rows, 1), MatrixXd(rows, from.byState.cols()), MatrixXd(rows, d.byParameters.cols())};
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        Eigen::Matrix3d M;
+        M << d.byPose.block(2*i, 3, 2, 3), from.byPoint.row(i);
+        const Eigen::Matrix3d inverse = M.inverse();
+        result.byAcross.middleRows(3*i, 3) = inverse*Eigen::Vector3d(line[i].across[0], line[i].across[1], 0.);
+        result.byState.middleRows(3*i, 3) = -inverse.col(2)*from.byState.row(i);
+        result.byParameters.middleRows(3*i, 3) = -inverse.leftCols(2)*d.byParameters.middleRows(2*i, 2)
+            + result.byState.middleRows(3*i, 3)*sheetByParameters;
+    }
+    return result;
+}
+
 Measurement measureOnSheet(const Calibration& calibration, const Sheet& sheet, const std::vector<RidgePoint>& line)
 {
     const auto& camera = calibration.cameras[0].camera;
@@ -110,15 +163,15 @@ Measurement measureOnSheet(const Calibration& calibration, const Sheet& sheet, c
         return result;
     Mat origins, directions;
     refractiveUnprojectPoints(pixels, origins, directions, camera);
-    refractivePointsOnPlane(pixels, result.points, camera, sheet.plane, result.status);
-    const Vec3d n(sheet.plane[0], sheet.plane[1], sheet.plane[2]);
-    const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
-    const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
-    const MatrixXd ofSheet = toEigen(sheet.covariance), byParameters = toEigen(sheet.byParameters);
+    pointsOnSheet(calibration, sheet, pixels, result.points, result.status);
+    const SheetDistances from = isPlane(sheet) ? distancesFromPlane(sheet.plane, result.points)
+                                               : distancesFromEmitter(sheet.emitter, result.points);
+    const OnSheetDerivatives d = differentiateOnSheet(calibration, sheet, line, result.points);
+    const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols()), ofSheet = toEigen(sheet.covariance);
     const double none = std::numeric_limits<double>::quiet_NaN();
     for (size_t i = 0; i < line.size(); i++)
     {
-        const Vec3d direction = directions.at<Vec3d>((int)i);
+        const Vec3d direction = directions.at<Vec3d>((int)i), n(from.byPoint(i, 0), from.byPoint(i, 1), from.byPoint(i, 2));
         if (result.status[i] == REFRACT_OK && std::abs(n.dot(direction)) < IN_SHEET)
             result.status[i] = REFRACT_PARALLEL_RAYS;
         if (result.status[i] != REFRACT_OK)
@@ -127,18 +180,15 @@ Measurement measureOnSheet(const Calibration& calibration, const Sheet& sheet, c
             result.sigma.push_back(Vec3d::all(none));
             continue;
         }
-        const Point3d& X = result.points[i];
-        const Eigen::RowVector4d byPlane(-X.x, -X.y, -X.z, 1.);
-        Eigen::Matrix3d M;
-        M << d.byPose.block(2*i, 3, 2, 3), n[0], n[1], n[2];
-        MatrixXd rows(3, C.rows());
-        rows << -d.byParameters.middleRows(2*i, 2), byPlane*byParameters;
-        MatrixXd V = rows*C*rows.transpose();
-        const Eigen::Vector2d across(line[i].across[0], line[i].across[1]);
-        V.topLeftCorner(2, 2) += std::pow(line[i].sigma, 2)*across*across.transpose();
-        V(2, 2) += (byPlane*ofSheet*byPlane.transpose())(0, 0);
-        const Eigen::Matrix3d inverse = M.inverse(), ofPoint = inverse*V*inverse.transpose();
-        result.sigma.emplace_back(std::sqrt(ofPoint(0, 0)), std::sqrt(ofPoint(1, 1)), std::sqrt(ofPoint(2, 2)));
+        Vec3d variance;
+        for (int k = 0; k < 3; k++)
+        {
+            const Eigen::Index row = 3*(Eigen::Index)i + k;
+            variance[k] = std::pow(line[i].sigma*d.byAcross(row, 0), 2)
+                + (d.byState.row(row)*ofSheet*d.byState.row(row).transpose())(0, 0)
+                + (d.byParameters.row(row)*C*d.byParameters.row(row).transpose())(0, 0);
+        }
+        result.sigma.emplace_back(std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2]));
     }
     return result;
 }

@@ -5,12 +5,14 @@
 #define REFRACT_TOOLS_SHEET_FIT_HPP
 
 #include "laser/board_line.hpp"
+#include "laser/emitter_prior.hpp"
 #include "laser/sheet.hpp"
 
 /* The sheet of light from lines on boards. Which of each board's candidates is the line, the sheet decides on which most boards agree.
-Of each line two numbers tell of the sheet: how far from it the line's middle is, and how it turns. Their errors are those of the line's
-points, of the board's pose and of the calibration; where the boards disagree by more than their poses' errors, these are taken to be
-larger (a board that is not flat, corners that err together). */
+What each line tells is in sheet_line.hpp. Where the boards disagree by more than their poses' errors, these are taken to be larger (a
+board that is not flat, corners that err together).
+
+A sheet is a plane, or that of an emitter behind a window, which is not: then of maximum likelihood with what is known of the emitter. */
 namespace tools {
 
 //! A board's line with the sheet that the other boards make.
@@ -35,14 +37,18 @@ struct SheetFit
     Sheet sheet;
     std::vector<LineOnBoard> lines;
     std::vector<int> without;           //!< images in which no line is on the sheet
+    double sheetStd = 0.;               //!< of the sheet's distance where the lines are, RMS; camera and noise
     double poseNoise = 1.;              //!< errors of the boards' poses over those of the pixels' noise
+    double planeExcess = 0.;            //!< chi-square of the nearest plane minus that of the emitter's sheet
+    double moved = 0.;                  //!< standard deviations of the emitter's prior by which the lines move it, the largest
     double heldOutRms() const;
     double heldOutRatio() const;        //!< error over stated, RMS
 };
 
-/** Throws Failure if fewer than two boards agree, or the lines do not determine a plane.
+/** Throws Failure if fewer than two boards agree, the lines do not determine a plane, or the emitter sends them no light.
 @param pixelSigma of a corner's coordinate. @param scale px, at which the lines were found */
-SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& calibration, double pixelSigma, double scale);
+SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& calibration, double pixelSigma, double scale,
+                  const EmitterPrior* emitter = nullptr);
 
 } // namespace tools
 
