@@ -220,6 +220,20 @@ TEST_CASE("A straight sheet of light: three of its six are told, the others are 
     CHECK(std::abs(Vec3d(call.Ts[1])[0] - T[0]) < 5*sigma);
 }
 
+TEST_CASE("A camera of which both coordinates are unknown everywhere has no images", "[half_pixels][calibrate_rig]")
+{
+    Random random(2926);
+    RigTruth rig = makeRig(2, { 0, 1 }, 1.333);
+    RigScene scene = makeRigScene(rig, 4, random, 0);
+    for (std::vector<Point2d>& view : scene.refracted[1])
+        for (Point2d& pixel : view)
+            pixel = Point2d(NaN, NaN);
+    scene.direct[1] = PixelViews();
+    HalfCall call(rig, scene);
+    const std::string why = whyNot([&] { call.run(0); });
+    CHECK_THAT(why, Contains("imagePointsRefracted[1] has no point that was seen"));
+}
+
 TEST_CASE("Weighted pixels calibrate a rig, and their common factor is estimated", "[half_pixels][calibrate_rig]")
 {
     Random random(2922);
@@ -348,6 +362,14 @@ TEST_CASE("Points that a camera and a sheet see start from their meeting", "[hal
         }
     CHECK(used > 30);
     CHECK(worst < 1e-5);
+    SECTION("both coordinates unknown everywhere")
+    {
+        for (std::vector<Point2d>& view : scene.pixels[1])
+            for (Point2d& pixel : view)
+                pixel = Point2d(NaN, NaN);
+        BundleCall blind(rig, scene, random, 0);
+        CHECK_THROWS_AS(blind.run(GLASS_FIX_NORMAL), Exception);
+    }
     SECTION("two halves are not enough")
     {
         forgetV(scene.pixels[0]);

@@ -244,6 +244,7 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
         throw Failure("a sheet is calibrated with a board: give --size and --square");
     const Target target(o.target);
     requireSameUnit(calibration, target.square(), o.unit);
+    const std::unique_ptr<const EmitterPrior> emitter(o.emitter.empty() ? nullptr : new EmitterPrior(o.emitter));
     const DetectedImages set = readDetectedImages(o.images, &target, calibration.cameras[0].camera->imageSize(), command.quiet(),
                                                   calibration.channel);
     for (const std::string& path : set.withoutTarget)
@@ -253,7 +254,6 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     Progress progress("looking for lines", 2*(int)set.images.size(), command.quiet());
     const double sigma = pixelSigmaOf(calibration);
     std::vector<BoardImage> boards = findBoards(calibration, target, set, laser, FIRST_SCALE, progress);
-    const std::unique_ptr<const EmitterPrior> emitter(o.emitter.empty() ? nullptr : new EmitterPrior(o.emitter));
     SheetFit fit = fitSheet(boards, calibration, sigma > 0. ? sigma : 0., FIRST_SCALE, emitter.get());
     const double scale = scaleOf(boards, fit, set, laser);
     if (std::max(scale/FIRST_SCALE, FIRST_SCALE/scale) > SAME_SCALE)

@@ -186,7 +186,6 @@ def test_triangulate_by_any_number_of_cameras(rig):
 
 def test_half_pixels_are_observations(rig, board):
     """A coordinate that is NaN is not known, and the other one is; pixelCovariances says how well."""
-    from conftest import rotation
     sheet = rig.pixels2.copy()
     sheet[..., 1] = np.nan
     cameras, Rs, Ts = [rig.camera1, rig.camera2], [np.eye(3), rig.R], [np.zeros(3), rig.T]

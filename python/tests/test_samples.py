@@ -47,6 +47,13 @@ def test_triangulate_refractive():
     assert number(r"corrected ([\d.]+)", out) < 0.05 < number(r"ignored ([\d.]+)", out)
 
 
+def test_points_from_fringes():
+    out = run("points_from_fringes.py")
+    assert number(r"corrected ([\d.]+)", out) < 0.15 < 10 < number(r"windows ignored ([\d.]+)", out)
+    assert number(r"projector's ignored ([\d.]+)", out) > 10
+    assert 0.8 < number(r"([\d.]+) times the stated", out) < 1.25
+
+
 DROP_IN = [r"lengths on the board: ([\d.]+) mm", r"partners beside their epipolar curves: ([\d.]+) px",
            r"undistorted points: ([\d.]+) px"]
 

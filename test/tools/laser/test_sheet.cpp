@@ -130,6 +130,42 @@ TEST_CASE("A weaker reflection beside the line does not change the sheet", "[las
     CHECK(chiSquare(fit.sheet, laser::sheet()) < 16.3);         // 0.1 % of 3 degrees of freedom
 }
 
+TEST_CASE("A bright edge of the board, where its pattern has none, is not the line", "[laser][sheet]")
+{
+    const Calibration calibration = laser::camera();
+    const auto withEdge = [&](const laser::Light& light)
+    {
+        scenes::Random random(2955);
+        std::vector<BoardImage> images;
+        for (int i = 0; i < 8; i++)
+        {
+            const laser::Pose pose = laser::randomPose(random);
+            const std::vector<Point2d> corners = cornersOf(calibration, pose, random);
+            Mat signal = laserSignal(laser::render(calibration, pose, true, laser::sheet(), light, random), LASER_GREEN);
+            // Twice as bright as the line, and as long as the board.
+            std::vector<Point2d> ends;
+            const std::vector<Point3d> edge = {Point3d(-1.2*laser::SQUARE, -1.3*laser::SQUARE, 0),
+                                               Point3d(8.2*laser::SQUARE, -1.3*laser::SQUARE, 0)};
+            refract::refractiveProjectPoints(edge, pose.rvec, pose.tvec, calibration.cameras[0].camera, ends);
+            Mat strip = Mat::zeros(signal.size(), CV_8U);
+            line(strip, Point(cvRound(16*ends[0].x), cvRound(16*ends[0].y)), Point(cvRound(16*ends[1].x), cvRound(16*ends[1].y)),
+                 Scalar(255), 3, LINE_AA, 4);
+            strip.convertTo(strip, CV_32F);
+            GaussianBlur(strip, strip, Size(), 1.2);
+            signal += strip;
+            images.push_back(findLinesOnBoard(std::to_string(i), calibration, laser::board(), corners, signal, 1.7));
+        }
+        return images;
+    };
+    const SheetFit fit = fitSheet(withEdge(laser::Light()), calibration, CORNER, 1.7);
+    CHECK(fit.lines.size() >= 7);
+    CHECK(chiSquare(fit.sheet, laser::sheet()) < 16.3);         // 0.1 % of 3 degrees of freedom
+    // Edges alone are no sheet.
+    laser::Light none;
+    none.amplitude = 0.;
+    CHECK_THROWS_AS(fitSheet(withEdge(none), calibration, CORNER, 1.7), Failure);
+}
+
 TEST_CASE("Points on a sheet are true within their standard deviations", "[laser][sheet]")
 {
     const Calibration calibration = laser::camera();

@@ -66,9 +66,11 @@ TEST_CASE("refract_laser calibrates a sheet in water, real images", "[laser_tool
     CHECK_FALSE(std::filesystem::exists(folder / "sheet3.yml"));
 }
 
-TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
+namespace {
+
+//! A small camera, and images without a board.
+void writeSmallCamera(const TemporaryFolder& folder)
 {
-    const TemporaryFolder folder;
     writeFile(folder / "calib.yml", "%YAML:1.0\n---\nimage_width: 64\nimage_height: 48\n"
         "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
         "   dt: d\n   data: [ 80, 0, 32, 0, 80, 24, 0, 0, 1 ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n"
@@ -76,6 +78,44 @@ TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
         "   inner_index: 1.\n   outer_index: 1.333\n");
     cv::imwrite(folder / "grey.png", cv::Mat(48, 64, CV_8U, cv::Scalar(20)));
     cv::imwrite(folder / "colour.png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(20, 20, 20)));
+}
+
+} // namespace
+
+TEST_CASE("refract_laser says what is wrong with an emitter", "[laser_tool]")
+{
+    const TemporaryFolder folder;
+    writeSmallCamera(folder);
+    const std::string good = readFile(paths::bundled() + "/laser/emitter.yml");
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        REQUIRE(text.find(from) != std::string::npos);
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const struct { std::string text, sentence; } cases[] = {
+        {"", "cannot read"}, {replaced("line:", "lines:"), "no key 'lines'"}, {replaced("rvec:", "rotation:"), "no key 'rotation'"},
+        {replaced("line: 200.", "line: .nan"), "'line'"}, {replaced("tvec:", "# "), "'tvec' is missing"},
+        {replaced("rotation_std_deg: 1.5", "rotation_std_deg: 0."), "'rotation_std_deg'"},
+        {replaced("position_std: 4.", "position_std: .nan"), "'position_std'"},
+        {replaced("normal_deg: [ 0.3, 0.3 ]", "normal_deg: [ 0.3 ]"), "'normal_deg'"},
+        {replaced("index: [ 1.52 ]", "index: [ 0.52 ]"), "index"}, {replaced("distance: 1.", "distance: -1."), "'distance'"},
+        {good, "not found in any image"}};
+    for (const auto& c : cases)
+    {
+        writeFile(folder / "emitter.yml", c.text);
+        const ToolResult result = runTool("refract_laser " + (folder / "calib.yml") + " '" + (folder / "colour.png")
+            + "' --size=8x7 --square=20 --emitter=" + (folder / "emitter.yml") + " --sheet-out=" + (folder / "s.yml"));
+        CAPTURE(c.sentence, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, c.sentence));
+        CHECK_FALSE(std::filesystem::exists(folder / "s.yml"));
+    }
+}
+
+TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
+{
+    const TemporaryFolder folder;
+    writeSmallCamera(folder);
     writeFile(folder / "sheet.yml", "%YAML:1.0\n---\nplane: 1\n");
     const std::string calib = "refract_laser " + (folder / "calib.yml") + " ", colour = "'" + (folder / "colour.png") + "' ";
     const struct { std::string arguments, sentence; } cases[] = {
@@ -86,6 +126,7 @@ TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
         {colour + "--sheet=" + (folder / "none.yml"), "cannot read"},
         {colour + "--sheet=" + (folder / "sheet.yml"), "not a sheet of light"},
         {colour + "--sheet=" + (folder / "sheet.yml") + " --sheet-out=" + (folder / "s.yml"), "--sheet-out"},
+        {colour + "--emitter=e.yml --sheet=" + (folder / "sheet.yml"), "--sheet-out"},
         {colour + "--laser=violet --sheet=" + (folder / "sheet.yml"), "--laser"},
         {"'" + (folder / "no*.png") + "' --sheet=" + (folder / "sheet.yml"), "sheet"}};
     for (const auto& c : cases)

@@ -157,6 +157,10 @@ struct Estimate
         }
         if (lines.size() < 2)
             throw Failure("the line was found on fewer than two boards: take images of the board at several distances and tilts");
+        if (2*lines.size() < boards.images.size())      // chance makes planes of two or three edges of boards
+            throw Failure(format("only %zu of %zu boards have a line on the same sheet of light, which may be edges: say the line's colour "
+                                 "(--laser), give images without it (--laser-off), or leave out images that do not show it", lines.size(),
+                                 boards.images.size()));
     }
     void linearize(const Boards& boards)
     {
