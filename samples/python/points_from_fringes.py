@@ -20,9 +20,9 @@ def decode(first):
         image = cv2.imread(os.path.join(DATA, "fringes", f"scene_{k}.jpg"), cv2.IMREAD_GRAYSCALE)
         assert image is not None, f"cannot read image {k}"
         images.append(image.astype(float))
-    angles = 2*np.pi*np.arange(STEPS)/STEPS
-    wave = sum(image*np.exp(1j*angle) for image, angle in zip(images, angles))
-    contradiction = sum(image*(-1)**k for k, image in enumerate(images))       # neither A nor B has a part in it
+    step = np.arange(STEPS)
+    wave = np.tensordot(np.exp(2j*np.pi*step/STEPS), np.array(images), 1)
+    contradiction = np.tensordot((-1.)**step, np.array(images), 1)             # neither A nor B has a part in it
     return np.angle(wave), 2*np.abs(wave)/STEPS, contradiction.std()/np.sqrt(STEPS)
 
 
@@ -47,7 +47,7 @@ rvec, T = (np.array([device.getNode(key).at(i).real() for i in range(3)]) for ke
 periods = [device.getNode("fringes").getNode("periods").at(i).real() for i in range(2)]
 
 (coarse, _, _), (fine, amplitude, noise) = decode(1), decode(1 + STEPS)
-part, whole = (phase % (2*np.pi)*period/(2*np.pi) for phase, period in zip((fine, coarse), reversed(periods)))
+part, whole = fine % (2*np.pi)*periods[1]/(2*np.pi), coarse % (2*np.pi)*periods[0]/(2*np.pi)
 u = part + periods[1]*np.round((whole - part)/periods[1])
 u[amplitude < CONTRAST] = -1e3                                     # in shadow
 around = np.ones((5, 5))

@@ -157,10 +157,6 @@ struct Estimate
         }
         if (lines.size() < 2)
             throw Failure("the line was found on fewer than two boards: take images of the board at several distances and tilts");
-        if (2*lines.size() < boards.images.size())      // chance makes planes of two or three edges of boards
-            throw Failure(format("only %zu of %zu boards have a line on the same sheet of light, which may be edges: say the line's colour "
-                                 "(--laser), give images without it (--laser-off), or leave out images that do not show it", lines.size(),
-                                 boards.images.size()));
     }
     void linearize(const Boards& boards)
     {
@@ -227,6 +223,15 @@ Estimate nearestPlane(const Boards& boards, const Vec4d& start, Estimate estimat
             estimate.sheet = estimate.sheet->moved(estimate.step().step);
     }
     return estimate;
+}
+
+//! Chance makes planes of two or three edges of boards.
+void requireMostBoards(const Boards& boards, const Estimate& estimate)
+{
+    if (2*estimate.lines.size() < boards.images.size())
+        throw Failure(format("only %zu of %zu boards have a line on the same sheet of light, which may be edges: say the line's colour "
+                             "(--laser), give images without it (--laser-off), or leave out images that do not show it",
+                             estimate.lines.size(), boards.images.size()));
 }
 
 Vec4d planeOf(const Estimate& estimate) { return static_cast<const PlaneSurface&>(*estimate.sheet).plane(); }
@@ -302,6 +307,7 @@ SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& cali
         fit.planeExcess = plane.step().chiSquare - estimate.step().chiSquare;
         fit.moved = estimate.sheet->deviation().cwiseAbs().maxCoeff();
     }
+    requireMostBoards(boards, estimate);
     fit.poseNoise = estimate.poseNoise;
     const SheetStep step = estimate.step();
     const MatrixXd basis = estimate.sheet->basis();
