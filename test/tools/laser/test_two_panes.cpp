@@ -6,6 +6,7 @@ stated uncertainty; beside them a plane for the sheet, and the camera's window i
 calibration leaves them, and so is how the laser was built. */
 #include "laser/scan_line.hpp"
 #include "laser/sheet_fit.hpp"
+#include "laser/sheet_surface.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
@@ -317,6 +318,94 @@ TEST_CASE("Steps of a block behind two panes, many rigs", "[.][monte-carlo][two_
     CHECK(c.bent.ratio() > 0.75);           // three steps of a rig share most of their error
     CHECK(c.bent.ratio() < 1.3);
     CHECK(c.bent.covered >= 0.87*c.bent.count);
+}
+
+TEST_CASE("Derivatives of an emitter's sheet are those of differences", "[laser][two_panes]")
+{
+    scenes::Random random(2977);
+    const LightSource source = laserBehindPane();
+    const EmitterPrior prior = drawing(source.emitter, random);
+    const Calibration calibration = laser::camera();
+    std::vector<Point2d> pixels;
+    std::vector<RidgePoint> line;
+    for (int i = 0; i < 6; i++)
+    {
+        pixels.emplace_back(120. + 80*i, 180. + 20*i);
+        line.push_back({pixels.back(), normalize(Vec2d(0.2, 1.)), 1., 0.1});
+    }
+    Sheet sheet;
+    sheet.emitter = source.emitter;
+    const Eigen::Index states = prior.basis().rows(), parameters = columnsOf(*calibration.cameras[0].camera).end;
+    sheet.byParameters = Mat::zeros((int)states, (int)parameters, CV_64F);
+    std::vector<Point3d> X;
+    std::vector<uchar> status;
+    pointsOnSheet(calibration, sheet, pixels, X, status);
+    REQUIRE(countNonZero(status) == 0);
+    const SheetDistances at = distancesFromEmitter(sheet.emitter, X);
+    const OnSheetDerivatives on = differentiateOnSheet(calibration, sheet, line, X);
+    CHECK(at.e.cwiseAbs().maxCoeff() < 1e-8);
+    const auto agree = [](const VectorXd& expected, const VectorXd& found)
+    { return (expected - found).cwiseAbs().maxCoeff() < 1e-4*expected.cwiseAbs().maxCoeff() + 1e-7; };
+    const auto asVector = [](const std::vector<Point3d>& points)
+    {
+        VectorXd v(3*points.size());
+        for (size_t i = 0; i < points.size(); i++)
+            v.segment(3*i, 3) << points[i].x, points[i].y, points[i].z;
+        return v;
+    };
+
+    // By the state: the sheet moves, points on it stay where they are, and pixels see others.
+    const double H = 1e-3;
+    for (Eigen::Index k = 0; k < prior.basis().cols(); k++)
+    {
+        VectorXd step = VectorXd::Zero(prior.basis().cols());
+        step[k] = H;
+        const Emitter more = prior.moved(source.emitter, step), less = prior.moved(source.emitter, -step);
+        CAPTURE(k);
+        CHECK(agree((distancesFromEmitter(more, X).e - distancesFromEmitter(less, X).e)/(2*H), at.byState*prior.basis().col(k)));
+        Sheet moved = sheet;
+        std::vector<Point3d> after, before;
+        moved.emitter = more;
+        pointsOnSheet(calibration, moved, pixels, after, status);
+        moved.emitter = less;
+        pointsOnSheet(calibration, moved, pixels, before, status);
+        CHECK(agree((asVector(after) - asVector(before))/(2*H), on.byState*prior.basis().col(k)));
+        // Turned by degrees from the prior, a rotation vector adds up to some hundredths only.
+        CHECK((prior.deviation(more) - prior.deviation(less) - 2*step).cwiseAbs().maxCoeff() < 0.05*H);
+    }
+    // By the point: a unit normal.
+    for (int k = 0; k < 3; k++)
+    {
+        std::vector<Point3d> more = X, less = X;
+        for (size_t i = 0; i < X.size(); i++)
+        {
+            (&more[i].x)[k] += H;
+            (&less[i].x)[k] -= H;
+        }
+        CHECK(agree((distancesFromEmitter(sheet.emitter, more).e - distancesFromEmitter(sheet.emitter, less).e)/(2*H), at.byPoint.col(k)));
+    }
+    // By the pixel, and by the camera's window.
+    std::vector<Point2d> up = pixels, down = pixels;
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        up[i] += H*Point2d(line[i].across);
+        down[i] -= H*Point2d(line[i].across);
+    }
+    std::vector<Point3d> after, before;
+    pointsOnSheet(calibration, sheet, up, after, status);
+    pointsOnSheet(calibration, sheet, down, before, status);
+    CHECK(agree((asVector(after) - asVector(before))/(2*H), on.byAcross));
+    const ParameterColumns columns = columnsOf(*calibration.cameras[0].camera);
+    std::vector<Point3d> ends[2];
+    for (int sign : {1, -1})
+    {
+        Calibration other = calibration;
+        GlassWindow window = calibration.cameras[0].camera->window();
+        window.distance += sign*H;
+        other.cameras[0].camera = copyWithWindow(calibration.cameras[0].camera, window);
+        pointsOnSheet(other, sheet, pixels, ends[sign < 0], status);
+    }
+    CHECK(agree((asVector(ends[0]) - asVector(ends[1]))/(2*H), on.byParameters.col(columns.distance)));
 }
 
 TEST_CASE("A sheet that crosses its window straight is a plane, with and without its emitter", "[laser][two_panes]")

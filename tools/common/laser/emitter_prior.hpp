@@ -26,7 +26,7 @@ public:
     const std::string& filename() const { return filename_; }
     //! State by what is free, in units of its standard deviations.
     const MatrixXd& basis() const { return basis_; }
-    //! How far an emitter is from what it was built like, in these units.
+    //! How far an emitter is from what it was built like, in these units. A step adds to it, but for the square of the turn.
     VectorXd deviation(const Emitter& other) const;
     Emitter moved(const Emitter& from, const VectorXd& step) const;
 
