@@ -16,8 +16,8 @@
 #include <filesystem>
 #include <iostream>
 
-static const char MANUAL[] = R"(Tests a calibrated rig by calibrated lengths that it measures through its windows: the error of indication of each, its
-uncertainty U, and whether it is within what is permitted; with a certificate to sign.
+static const char MANUAL[] = R"(Tests a calibrated rig by calibrated lengths that it measures through its windows: the error of
+indication of each, its uncertainty U, and whether it is within what is permitted; with a certificate to sign.
 
   refract_accept calib.yml --points=points.csv --lengths=lengths.csv --max-error=0.1               points of refract_measure
   refract_accept calib.yml LEFT RIGHT --size=6x5 --square=39 --lengths=... --max-error=0.05+L/2000  images of a certified board

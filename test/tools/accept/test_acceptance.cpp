@@ -40,7 +40,8 @@ Rates simulate(double trueError, double limit, int trials, uint64_t seed)
     const TrueRigs rigs(calibration);
     const double U = 0.02, trueLength = norm(ENDS[1] - ENDS[0]);
     scenes::Random random(seed);
-    const auto pointsOf = [&](const RigModel& rig, double sigma) { return testPoints(calibration, pixelsOf(rig, ENDS, sigma, random), SIGMA); };
+    const auto pointsOf = [&](const RigModel& rig, double sigma) {
+        return testPoints(calibration, pixelsOf(rig, ENDS, sigma, random), SIGMA); };
     const TestPoints nominal = pointsOf(modelOf(calibration), 0.);
     const double u = PointErrors(calibration, nominal, SIGMA, std::nullopt).table(distanceOf(nominal, 0, 1), "", U).u;
     const PermissibleError permitted(format("%.9f", limit*u));
@@ -122,7 +123,8 @@ TEST_CASE("The decision of ISO 14253-1 at its borders", "[acceptance]")
     CHECK(PermissibleError("0.05").of(1000.) == 0.05);
     CHECK(PermissibleError("0.05+L/1000").of(500.) == Approx(0.55));
     CHECK(PermissibleError("L/1000").of(500.) == Approx(0.5));
-    for (const char* bad : {"", "-1", "0", "nan", "inf", "0.1+", "0.1+L", "0.1+L/0", "0.1+L/-5", "a+L/5", "L", "0.1-L/5", "0.1x", "0.1+K/5"})
+    for (const char* bad : {"", "-1", "0", "nan", "inf", "0.1+", "0.1+L", "0.1+L/0", "0.1+L/-5", "a+L/5", "L", "0.1-L/5", "0.1x",
+                            "0.1+K/5"})
     {
         CAPTURE(bad);
         CHECK_THROWS_AS(PermissibleError(bad), Failure);

@@ -28,9 +28,9 @@ struct Bench
         options.stereo = true;
         writeScene(folder, options, 4100);
         writeScene(fresh, options, 4101);
-        const ToolResult calibrated = runTool("refract_calib" + std::string(TARGET) + PANE + " --direct=" + folder / "direct1.vnl" + " --glass="
-                                              + folder / "glass1.vnl" + images2(folder) + " --no-cross-validation --serial=W-17 --quiet --out="
-                                              + folder / "calib.yml");
+        const ToolResult calibrated = runTool("refract_calib" + std::string(TARGET) + PANE + " --direct=" + folder / "direct1.vnl"
+                                              + " --glass=" + folder / "glass1.vnl" + images2(folder) + " --no-cross-validation"
+                                              + " --serial=W-17 --quiet --out=" + folder / "calib.yml");
         INFO(calibrated.err);
         REQUIRE(calibrated.code == 0);
         measure(fresh, "points.csv");
@@ -154,7 +154,8 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
         html = readFile(out / "c.html");
         xml = readFile(out / "d.xml");
     }
-    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water", "Signature", "2+L/1000"})
+    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water",
+                             "Signature", "2+L/1000"})
     {
         CAPTURE(part);
         CHECK(mentions(html, part));
@@ -169,8 +170,8 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
         return;
     }
     const std::string xpath = "string(//*[local-name()='customer']/*[local-name()='name'])";
-    REQUIRE(std::system(("xmllint --noout " + out / "d.xml" + " && xmllint --xpath \"" + xpath + "\" " + out / "d.xml" + " >" + out / "t").c_str())
-            == 0);
+    REQUIRE(std::system(("xmllint --noout " + out / "d.xml").c_str()) == 0);
+    REQUIRE(std::system(("xmllint --xpath \"" + xpath + "\" " + out / "d.xml" + " >" + out / "t").c_str()) == 0);
     CHECK(mentions(readFile(out / "t"), "Wet & <Dry>"));
     const char* const schema = std::getenv("REFRACT_DCC_SCHEMA");
     if (!schema)

@@ -67,7 +67,8 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
     const std::string rig = STEREO + "/rig.yml", file = folder / "run.yml";
     const std::string target = " --size=6x5 --square=39";
     const std::string tools[] = {"refract_accept", "refract_board", "refract_bundle", "refract_calib", "refract_check", "refract_epilines",
-                                 "refract_export", "refract_laser", "refract_measure", "refract_simulate", "refract_stereo", "refract_undistort"};
+                                 "refract_export", "refract_laser", "refract_measure", "refract_simulate", "refract_stereo",
+                                 "refract_undistort"};
     const struct { std::string text, expected; } bad[] = {
         {"squares = 39\n", "no setting 'squares'"}, {"[camera]\nsize = 5\n", "begins a section"},
         {"quiet = true\nquiet = false\n", "'quiet' is set twice"},

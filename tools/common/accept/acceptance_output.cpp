@@ -90,8 +90,9 @@ void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTa
 {
     Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "limit", "decision"});
     for (const LengthResult& r : a.lengths)
-        table.add({r.length.name, format("%.4f", r.length.length), format("%.4f", r.measured), format("%+.4f", r.error), format("%.4f", r.U()),
-                   format("%.2f", r.budget.k), format("%.4f", r.limit), textOf(r.decision) + (r.outside ? " *" : "")});
+        table.add({r.length.name, format("%.4f", r.length.length), format("%.4f", r.measured), format("%+.4f", r.error),
+                   format("%.4f", r.U()), format("%.2f", r.budget.k), format("%.4f", r.limit),
+                   textOf(r.decision) + (r.outside ? " *" : "")});
     out << '\n';
     table.print(out);
     for (const GumTable& budget : budgets)
@@ -99,8 +100,8 @@ void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTa
         out << '\n' << budget.quantity << format(": %.5g", budget.value) << "\n\n";
         Table rows({"source", "standard uncertainty", "sensitivity", "contribution", "share, %", "degrees of freedom"});
         for (const GumRow& row : budget.rows)
-            rows.add({row.source, std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given, orBlank(row.sensitivity),
-                      format("%.5f", row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
+            rows.add({row.source, std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given,
+                      orBlank(row.sensitivity), format("%.5f", row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
         rows.add({"u; effective degrees of freedom", "", "", format("%.5f", budget.u), "100.0", textOfDof(budget.dof)});
         rows.add({format("U (k = %.2f, 95.45 %%)", budget.k), "", "", format("%.5f", budget.U), "", ""});
         rows.print(out);

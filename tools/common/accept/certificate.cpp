@@ -125,7 +125,7 @@ std::string verdictOf(const Acceptance& a)
     const std::string all = format("%d of %zu lengths", a.count(Decision::PASS), a.lengths.size());
     switch (a.decision())
     {
-    case Decision::PASS: return "Conforms: all " + std::to_string(a.lengths.size()) + " lengths are within the limit, their uncertainty included";
+    case Decision::PASS: return format("Conforms: all %zu lengths are within the limit, their uncertainty included", a.lengths.size());
     case Decision::FAIL: return format("Does not conform: %d of %zu lengths are beyond the limit by more than their uncertainty",
                                        a.count(Decision::FAIL), a.lengths.size());
     default: return "Undecided: " + all + " are within the limit, their uncertainty included; of the others the uncertainty is too large "

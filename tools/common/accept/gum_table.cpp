@@ -42,7 +42,10 @@ RigPixels predictedPixels(const Calibration& calibration, const std::vector<Poin
     return all;
 }
 
-std::string nameOf(const TestPoint& point) { return "'" + point.id + "'" + (point.image.empty() ? "" : " of the image '" + point.image + "'"); }
+std::string nameOf(const TestPoint& point)
+{
+    return "'" + point.id + "'" + (point.image.empty() ? "" : " of the image '" + point.image + "'");
+}
 
 void add(GumTable& table, const std::string& source, const std::string& given, double std, double variance, double dof)
 {
@@ -80,7 +83,8 @@ LinearQuantity distanceOf(const TestPoints& points, size_t a, size_t b)
 {
     const Vec3d between = points.points[b].X - points.points[a].X;
     const double length = norm(between);
-    return {"length from " + nameOf(points.points[a]) + " to " + nameOf(points.points[b]), length, {{a, -between/length}, {b, between/length}}};
+    return {"length from " + nameOf(points.points[a]) + " to " + nameOf(points.points[b]), length,
+            {{a, -between/length}, {b, between/length}}};
 }
 
 /* Heights of points over the plane, h = n dX, are fitted by those of a plane: the change at the foot of the perpendicular from the
@@ -147,14 +151,15 @@ PointErrors::PointErrors(const Calibration& calibration, const TestPoints& point
 
 void PointErrors::requireSamePoints(const TestPoints& points, const RigPixels& pixels, const std::optional<Vec4d>& plane) const
 {
-    const Measurement m = plane ? measureOnPlane(calibration_, pixels[0], *plane, pixelSigma_) : measureRig(calibration_, pixels, pixelSigma_);
+    const Measurement m = plane ? measureOnPlane(calibration_, pixels[0], *plane, pixelSigma_)
+                                : measureRig(calibration_, pixels, pixelSigma_);
     for (size_t i = 0; i < points.points.size(); i++)
     {
         const TestPoint& point = points.points[i];
         const double off = norm(point.X - m.points[i]);
         if (point.status == 0 && off > std::max(1e-6*norm(point.X), ROUNDING*norm(m.sigma[i])))
-            throw Failure("'" + points.source + "' is not of this calibration" + (plane ? " and --plane" : "") + ": the point " + nameOf(point)
-                          + format(" is %.3g away from where its pixels show it. Measure again (refract_measure)", off));
+            throw Failure("'" + points.source + "' is not of this calibration" + (plane ? " and --plane" : "") + ": the point "
+                          + nameOf(point) + format(" is %.3g away from where its pixels show it. Measure again (refract_measure)", off));
     }
 }
 
@@ -187,7 +192,8 @@ GumTable PointErrors::table(const LinearQuantity& quantity, const std::string& s
         noise += noise_[weight.first]*(w*joint_.noise[weight.first]*w.transpose())(0, 0);
         meanNoise += noise_[weight.first]/quantity.weights.size();
     }
-    const double calibration = byCalibration*covariance_*byCalibration.transpose(), dof = calibration_.dof > 0 ? calibration_.dof : INFINITE;
+    const double calibration = byCalibration*covariance_*byCalibration.transpose();
+    const double dof = calibration_.dof > 0 ? calibration_.dof : INFINITE;
     double left = calibration;
     for (const UncertaintySource& s : calibration_.provenance.sources)
     {

@@ -36,7 +36,8 @@ public:
             if (isAnswered(points_.find(image, id1)) && isAnswered(points_.find(image, id2)))
                 pairs.push_back({{points_.find(image, id1), points_.find(image, id2)}, image});
         if (pairs.empty())
-            throw Failure(table_.where(row_) + ": no image of '" + points_.source + "' shows both '" + id1 + "' and '" + id2 + "' with status 0");
+            throw Failure(table_.where(row_) + ": no image of '" + points_.source + "' shows both '" + id1 + "' and '" + id2
+                          + "' with status 0");
         return pairs;
     }
 
@@ -99,7 +100,8 @@ std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoi
                 throw Failure(table.where(row) + ": both ends are the same point");
             const auto first = lineOfPair.emplace(std::minmax(a, b), row.line);
             if (!first.second)
-                throw Failure(table.where(row) + cv::format(": the length between these points stands in line %d already", first.first->second));
+                throw Failure(table.where(row) + cv::format(": the length between these points stands in line %d already",
+                                                                first.first->second));
             lengths.push_back({pair.second.empty() ? name : name + ", " + pair.second, {a, b}, length, U});
         }
     }

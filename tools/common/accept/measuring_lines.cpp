@@ -55,7 +55,8 @@ std::vector<MeasuringLine> measuringLines(const Acceptance& a)
 {
     std::vector<size_t> order(a.lengths.size());
     std::iota(order.begin(), order.end(), size_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return a.lengths[i].length.length > a.lengths[j].length.length; });
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) {
+        return a.lengths[i].length.length > a.lengths[j].length.length; });
     std::vector<MeasuringLine> lines;
     for (size_t i : order)
     {
@@ -79,12 +80,13 @@ std::vector<std::string> missingOf(const Acceptance& a)
         longest = std::max(longest, length.length.length);
     std::vector<std::string> missing;
     if (whole < LINES)
-        missing.push_back(format("%zu of %zu measuring lines have %zu lengths or more (of %zu lines)", whole, LINES, LENGTHS_A_LINE, lines.size()));
+        missing.push_back(format("%zu of %zu measuring lines have %zu lengths or more (of %zu lines)", whole, LINES, LENGTHS_A_LINE,
+                                 lines.size()));
     if (!a.volume)
         missing.push_back("the volume is not known, of whose diagonal the longest length must be two thirds (--volume)");
     else if (longest < OF_DIAGONAL*a.volume->diagonal())
-        missing.push_back(format("the longest length is %.2g of the volume's diagonal of %.4g, not two thirds", longest/a.volume->diagonal(),
-                                 a.volume->diagonal()));
+        missing.push_back(format("the longest length is %.2g of the volume's diagonal of %.4g, not two thirds",
+                                 longest/a.volume->diagonal(), a.volume->diagonal()));
     return missing;
 }
 

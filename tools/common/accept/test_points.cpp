@@ -49,8 +49,8 @@ TestPoints readTestPoints(const std::string& path, size_t cameras)
     result.haveSigma = table.find("sx") >= 0 && table.find("sy") >= 0 && table.find("sz") >= 0;
     const bool hasImage = table.find("image") >= 0, hasStatus = table.find("status") >= 0;
     if (table.find(format("u%zu", cameras + 1)) >= 0 && cameras >= 2)
-        throw Failure(format("'%s' has pixels of camera %zu, the calibration has %zu cameras: are they of one rig?", path.c_str(), cameras + 1,
-                             cameras));
+        throw Failure(format("'%s' has pixels of camera %zu, the calibration has %zu cameras: are they of one rig?", path.c_str(),
+                             cameras + 1, cameras));
     std::set<std::pair<std::string, std::string>> names;
     for (const CsvTable::Row& row : table.rows())
     {

@@ -104,7 +104,8 @@ std::optional<CalibratedVolume> calibratedVolume(const RigCalibration& calibrati
         const std::vector<Point3d> object = pointsOfTarget(fit.rig, view.objectPoints);
         for (size_t i = 0; i < object.size(); i++)
         {
-            if (std::none_of(view.glass.begin(), view.glass.end(), [i](const auto& pixels) { return i < pixels.size() && seen(pixels[i]); }))
+            const auto sees = [i](const std::vector<Point2d>& pixels) { return i < pixels.size() && seen(pixels[i]); };
+            if (std::none_of(view.glass.begin(), view.glass.end(), sees))
                 continue;
             const Point3d X = cam1_from_board*Vec3d(object[i]);
             if (!volume)

@@ -40,7 +40,8 @@ MatrixXd directionsOf(const std::optional<Vec4d>& plane)
 {
     if (!plane)
         return MatrixXd::Identity(3, 3);
-    return Eigen::JacobiSVD<MatrixXd>(Eigen::RowVector3d((*plane)[0], (*plane)[1], (*plane)[2]), Eigen::ComputeFullV).matrixV().rightCols(2);
+    const Eigen::RowVector3d normal((*plane)[0], (*plane)[1], (*plane)[2]);
+    return Eigen::JacobiSVD<MatrixXd>(normal, Eigen::ComputeFullV).matrixV().rightCols(2);
 }
 
 } // namespace
