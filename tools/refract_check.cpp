@@ -28,6 +28,7 @@ degrees with a probability of 95 %.)";
 #include "console/cli.hpp"
 #include "console/colour.hpp"
 #include "console/file_output.hpp"
+#include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include <nlohmann/json.hpp>
@@ -39,6 +40,7 @@ using namespace tools;
 
 namespace {
 
+const size_t SCREEN = 80;               // columns
 const double CERTAIN = 0.95;            // probability with which --detect degrees must show
 
 struct Options
@@ -237,27 +239,30 @@ std::string jsonOf(const CheckResult& result, const Options& o, const CheckInput
     return json.dump(1) + '\n';
 }
 
+void printLines(const std::string& text)
+{
+    for (const std::string& line : brokenInto(text, SCREEN, "", LongWords::WHOLE))
+        std::cout << line << '\n';
+}
+
 void printCause(const CheckResult& result)
 {
     if (result.changes.empty())
-    {
-        std::cout << "No single change explains the new images: were camera, window, board or the order of the images others?\n\n";
-        return;
-    }
-    std::cout << causesIn(result);
-    if (!result.explained)
-        std::cout << ".\nThis does not explain all: more than one thing changed, or one that is not in the list (--help).\n"
-                     "What is left is " << format("%.3g px, the noise %.3g px", result.sigmaSeen, result.sigma);
-    else if (result.changes.size() == 1)
-        std::cout << "; nothing else";
-    std::cout << "\n\n";
+        printLines("No single change explains the new images: were camera, window, board or the order of the images others?");
+    else
+        printLines(causesIn(result) + (!result.explained ? "." : result.changes.size() == 1 ? "; nothing else" : ""));
+    if (!result.changes.empty() && !result.explained)
+        printLines("This does not explain all: more than one thing changed, or one that is not in the list (--help). "
+                   + format("What is left is %.3g px, the noise %.3g px.", result.sigmaSeen, result.sigma));
+    std::cout << '\n';
 }
 
 void print(const CheckResult& result, const Options& o, const CheckInput& input)
 {
     if (result.changed)
         printCause(result);
-    Table table({"", "tilt since then, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect), ""});
+    Table table({"", "tilt, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect), ""},
+                SCREEN);
     for (const WindowCheck& w : result.windows)
         table.add({format("window of camera %d", w.camera + 1), w.tiltDeg == w.tiltDeg ? format("%.4f", w.tiltDeg) : "-",
                    format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
@@ -265,8 +270,9 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
                    w.moved ? "moved" : result.changed ? "not the cause" : "no sign of it"});
     if (!result.windows.empty())
         table.print(std::cout);
-    std::cout << format("\nNoise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.\n",
-                        result.sigmaSeen, input.sigma, o.falseAlarm);
+    std::cout << '\n';
+    printLines(format("Noise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.", result.sigmaSeen,
+                      input.sigma, o.falseAlarm));
 }
 
 } // namespace

@@ -103,7 +103,7 @@ std::vector<MistakeMade> mistakesMade()
                        } }});
     all.push_back({"boards moved by 0.2 mm between direct and glass", {"all boards"}, PANE, withPairs,
                    [](RigModel& rig, scenes::Random& random) { rig.targetMotion.T = 0.2*direction(random); }});
-    all.push_back({"square 1 % wrong", {"square"}, {"base line", "T of camera", "thickness", "focal"}, always,
+    all.push_back({"square 1 % wrong", {"square"}, {"base line", "T of camera", "thickness", "index of the window", "focal"}, always,
                    [](RigModel& rig, scenes::Random&) { rig.targetScale = 1.01; }});
     all.push_back({"images of cameras 1 and 2 exchanged", {"images of cameras 1 and 2 exchanged"}, {}, several,
                    [](RigModel&, scenes::Random&) {},

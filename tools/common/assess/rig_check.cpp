@@ -221,12 +221,9 @@ private:
             fitOf(tested);
         for (const Tested& tested : tested_)
             addCandidate(tested);
-        double best = unchanged_.chiSquare;
-        for (const Candidate& c : candidates_)
-            best = std::min(best, c.chiSquare);
         addUndone(unrelatedImages(input_.rig, views_));
-        const bool isGross = !(unchanged_.chiSquare < GROSS*GROSS*problem_->observations());
-        if (isGross && !(probabilityOfResiduals(best, 0) > UNEXPLAINED))
+        // Also where a change explains all: of a camera in the middle of its images, mirrored ones look like a window mirrored.
+        if (!(unchanged_.chiSquare < GROSS*GROSS*problem_->observations()))
             addUndone(swappedImages(input_.rig, views_));
         dropNested();
         rankThem();
