@@ -23,11 +23,15 @@ points.csv: image,id,u1,v1,x,y,z,sx,sy,sz,status, one row a point of the line, a
 runs down the image). s* is one standard deviation, from the line's own noise, the sheet's covariance and that of calib.yml; nan where
 there is no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 7: the ray lies in the sheet).
 
+--outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of calib.yml. The sheet must have been calibrated in it,
+too, as its own light bends with the medium.
+
 Exit code: 0 done; 1 could not do it: no line, too few boards, lines that do not determine a sheet; 2 done, but the limit --max-rms is not
 met, or the boards contradict the sheet.)";
 
 #include "laser/scan_line.hpp"
 #include "laser/sheet_fit.hpp"
+#include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
@@ -62,6 +66,7 @@ struct Options
     TargetOptions target;
     double maxRms = 0.;
     bool noWindow = false;
+    ConditionsOptions conditions;
 
     bool calibrates() const { return !sheetOut.empty(); }
 };
@@ -84,6 +89,7 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--cloud", o.cloud, "PLY file to write: the points of all images, with colours and +-")->needs(sheet);
     app.add_option("--profile", o.profile, "SVG file to write: x and z of the points (needs gnuplot)")->needs(sheet);
     app.add_option("--depth", o.depth, "NEAR,FAR: z of the scene; other points are left out")->needs(sheet);
+    o.conditions.addTo(app);
     app.add_flag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
     app.add_option("--picture-dir", o.pictures, "folder for pictures of the lines that were found");
 }
@@ -429,9 +435,12 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
         checkOptions(options, command.settings());
-        const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, options.noWindow);
-        warnOfContradictions(calibration, options.calibration, command);
+        const Calibration asCalibrated = readCalibration(options.calibration);
+        requireWindows(asCalibrated, options.calibration, options.noWindow);
+        warnOfContradictions(asCalibrated, options.calibration, command);
+        const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
+        if (options.conditions.isSaid() && !command.quiet())
+            std::cout << options.conditions.notice(asCalibrated) << '\n';
         return options.calibrates() ? calibrateSheet(options, calibration, command) : measureWithSheet(options, calibration, command);
     });
 }

@@ -6,6 +6,7 @@
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
 #include "measure/target_lengths.hpp"
+#include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
@@ -44,6 +45,9 @@ no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 1 al
 point has the s* of that misfit, and far beyond it is nan; of a pose that its points contradict, all s* are nan. Look for
 swapped images, images of two moments, a moved camera. 11: a pixel of the point lies outside of its image, so there is no answer.
 
+--outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration: the window is the calibrated
+one, and what is not known of the index (--outer-index-std) is in sx, sy, sz.
+
 The table compares the distances between neighbouring points with --square, which must be in the unit of the calibration.
 
 Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9 or
@@ -64,6 +68,7 @@ struct Options
     double pixelSigma = 0.;
     bool compare = false, noWindow = false;
     std::string unit;
+    ConditionsOptions conditions;
 
     bool triangulates() const { return plane.empty() && (images.size() > 1 || !points.empty()); }
     //! From the pose of a target of known shape, the distances come out as they went in; other points have no known ones.
@@ -446,6 +451,7 @@ void addOptions(CLI::App& app, Options& options)
     options.target.addTo(app, false);
     app.add_option("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         ->check(CLI::IsMember(unitNames()));
+    options.conditions.addTo(app);
     app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
     app.add_option("--out", options.out, "points.csv to write");
     app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
@@ -491,9 +497,10 @@ int main(int argc, char** argv)
         std::unique_ptr<const Target> target;
         if (options.target.given())
             target = std::make_unique<Target>(options.target);
-        const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, options.noWindow);
-        warnOfContradictions(calibration, options.calibration, command);
+        const Calibration asCalibrated = readCalibration(options.calibration);
+        requireWindows(asCalibrated, options.calibration, options.noWindow);
+        warnOfContradictions(asCalibrated, options.calibration, command);
+        const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);
@@ -527,11 +534,15 @@ int main(int argc, char** argv)
         if (!cause.empty())
             command.warn("what explains them: " + cause);
         warnNoisier(options, calibration, measured, results, command);
-        sayUncovered(options, calibration, command);
+        sayUncovered(options, asCalibrated, command);
         if (!options.out.empty())
             writeText(options.out, csvOf(measured, results, calibration.cameras.size()));
         if (!command.quiet())
+        {
+            if (options.conditions.isSaid())
+                std::cout << options.conditions.notice(asCalibrated) << '\n';
             printTable(options, calibration, others, measured, results);
+        }
         return isDoubtful ? LIMIT_NOT_MET : DONE;
     });
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/calib_file.hpp"
+#include "calibrate/conditions.hpp"
 #include "calibrate/light.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
@@ -40,6 +41,9 @@ deviation of x, y, z; nan: unknown). depth.tiff: float32, z of each raw pixel of
 same in colours, with a scale. --out-dir writes STEM.ply, STEM_depth.tiff and STEM_depth.png of each pair; frames of videos
 are called frame000001 and so on.
 
+--outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration; what is not known of its index
+(--outer-index-std) is in sx, sy, sz.
+
 The table: pixels of camera 1 with a depth; the range of depths but for the outermost percent at either end; the median sz; the
 row error stated, which a rectification for one plane leaves over the range (RMS, largest; the second pass removes it); the
 row error found in the images (RMS), of one standard deviation of what the calibration's covariance and the noise allow for.
@@ -65,6 +69,7 @@ struct Options
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
     bool ascii = false, noWindow = false, crop = false;
+    ConditionsOptions conditions;
 };
 
 //! Of one pair; empty: not asked for.
@@ -128,7 +133,9 @@ Calibration readPair(const Options& options, const Command& command)
     warnOfContradictions(rig, options.calibration, command);
     if (rig.cameras.size() > 2)
         command.warn(format("'%s' has %d cameras: depth is that of cameras 1 and 2", options.calibration.c_str(), (int)rig.cameras.size()));
-    return firstPair(rig);
+    if (!command.quiet() && options.conditions.isSaid())
+        std::cout << options.conditions.notice(rig) << "\n\n";
+    return firstPair(options.conditions.appliedTo(rig, options.calibration));
 }
 
 std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePair>& pairs)
@@ -450,6 +457,7 @@ void addOptions(CLI::App& app, Options& options)
         ->check(CLI::Range(1, 2))->capture_default_str();
     app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel of colour images, nm, as 610,540,465; each "
                    "is rectified by itself, as a window in front of water bends blue more than red");
+    options.conditions.addTo(app);
     app.add_flag("--crop", options.crop, "a part of the scene outside --depth is left out on purpose: no warning of it");
     app.add_option("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more")->check(moreThanZero());
     app.add_flag("--ascii", options.ascii, "cloud as text, not binary");

@@ -25,19 +25,18 @@ const double PLACEMENT_MM = 0.02;           // a board on a stand, a camera on i
 
 const char* const DEFAULT = "default";
 
-//! A rectangular distribution of that half width (GUM 4.3.7); air as a number is exact.
-Std usualOf(const GivenIndex& index)
-{
-    if (index.isNamed())
-        return Std(index.deviation/std::sqrt(3.), index.light());
-    return Std(index.value == 1. ? 0. : INDEX, DEFAULT);
-}
-
 } // namespace
 
 std::string Std::text(const std::string& unit, double factor) const
 {
     return cv::format("%.2g", value*factor) + unit + (source.empty() ? "" : " (" + source + ")");
+}
+
+Std usualStdOf(const GivenIndex& index)
+{
+    if (index.isNamed())        // a rectangular distribution of that half width (GUM 4.3.7)
+        return Std(index.deviation/std::sqrt(3.), index.light());
+    return Std(index.value == 1. ? 0. : INDEX, DEFAULT);
 }
 
 bool GivenStd::ofIndices() const
@@ -99,8 +98,8 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     GivenStd std;
     std.thickness = choose(THICKNESS, 1., Std(THICKNESS_MM*v.millimetre, DEFAULT), layers && !isFree(GLASS_FREE_THICKNESS));
     for (const GivenIndex& layer : v.layers)
-        std.index.push_back(choose(INDEX, 1., usualOf(layer), !isFree(GLASS_FREE_INDEX)));
-    std.outerIndex = choose(OUTER_INDEX, 1., usualOf(v.outer), !v.equalMedia && !isFree(GLASS_FREE_OUTER_INDEX));
+        std.index.push_back(choose(INDEX, 1., usualStdOf(layer), !isFree(GLASS_FREE_INDEX)));
+    std.outerIndex = choose(OUTER_INDEX, 1., usualStdOf(v.outer), !v.equalMedia && !isFree(GLASS_FREE_OUTER_INDEX));
     std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT),
                           !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
     std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && !isFree(GLASS_FREE_WEDGE));

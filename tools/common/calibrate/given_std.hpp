@@ -25,6 +25,9 @@ struct Std
     std::string text(const std::string& unit, double factor = 1.) const;
 };
 
+//! Of an index where nothing is said: of a material's name its tolerance and the light's band, 0.001 of a number; air as a number is exact.
+Std usualStdOf(const GivenIndex& index);
+
 struct GivenStd
 {
     Std thickness, outerIndex, distance;

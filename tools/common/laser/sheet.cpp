@@ -23,12 +23,14 @@ namespace {
 
 const double IN_SHEET = 0.01;           // sine of the angle between a ray and the sheet
 
-//! Of lens and window, to know a camera by.
-std::vector<double> parametersOf(const RefractiveCamera& camera)
+//! Of lens and window, to know a camera by. @param outerIndexAt if given: where among them the scene's index is
+std::vector<double> parametersOf(const RefractiveCamera& camera, size_t* outerIndexAt = nullptr)
 {
     std::vector<double> values = camera.lensParameters();
     const GlassWindow w = camera.window();
     values.insert(values.end(), {w.normal[0], w.normal[1], w.normal[2], w.distance, w.innerIndex, w.outerIndex});
+    if (outerIndexAt)
+        *outerIndexAt = values.size() - 1;
     values.insert(values.end(), w.thickness.begin(), w.thickness.end());
     values.insert(values.end(), w.index.begin(), w.index.end());
     for (const Vec2d& wedge : w.wedge)
@@ -44,6 +46,21 @@ bool areSame(const std::vector<double>& a, const std::vector<double>& b)
         if (!(std::abs(a[i] - b[i]) <= 1e-12*std::max(1., std::abs(a[i]))))
             return false;
     return true;
+}
+
+/** A sheet in another medium is another one: its light comes through a window of its own.
+@param camera that it was calibrated with */
+void requireSameMedium(const std::string& filename, std::vector<double>& camera, const CameraCalibration& now)
+{
+    size_t at;
+    const std::vector<double> values = parametersOf(*now.camera, &at);
+    if (camera.size() != values.size())
+        return;                     // another camera at all
+    if (!(std::abs(camera[at] - values[at]) <= std::max(now.windowStd.outerIndex, 1e-9)))
+        throw Failure("'" + filename + format("' was calibrated in a medium of index %.5f, not %.5f: the sheet itself is bent where it "
+                      "leaves its projector; calibrate it again in this medium (--sheet-out, with the same --outer-index)", camera[at],
+                      values[at]));
+    camera[at] = values[at];
 }
 
 } // namespace
@@ -103,6 +120,7 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     sheet.colour = laserColourOf(colour);
     if (std::abs(norm(Vec3d(plane.data())) - 1.) > 1e-9)
         throw Failure("'" + filename + "': the normal of sheet_plane is not a unit vector");
+    requireSameMedium(filename, camera, calibration.cameras[0]);
     if (!areSame(camera, parametersOf(*calibration.cameras[0].camera))
         || sheet.byParameters.cols != columnsOf(*calibration.cameras[0].camera).end)
         throw Failure("'" + filename + "' was calibrated with another camera calibration: calibrate the sheet again with this one "
