@@ -17,11 +17,20 @@ The noise comes from the calibration's residuals, the calibration's own error fr
 A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
 If nothing changed, it says that something did with the probability --false-alarm.
 
-Exit code: 0 unchanged, 2 something changed, 1 could not tell: bad images, or images that would not show a tilt of --detect
-degrees with a probability of 95 %.)";
+  refract_check calib.yml ... --history=rig7.json              every month: keeps this check, and draws the control charts of all
+
+The charts (rig7.html, or --history-page) show drifts that no single check does: an EWMA of each parameter and T^2 of all, whose limits
+take into account that the calibration's own error is the same in all checks. --false-alarm (then 1/370) is for all charts and the
+check together. The images of each check must be new ones, and the calibration the same.
+
+--outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration.
+
+Exit code: 0 unchanged, 2 something changed (with --history, or a chart is beyond its limit), 1 could not tell: bad images, or images
+that would not show a tilt of --detect degrees with a probability of 95 % (not with --history, which says what drift would be found).)";
 
 #include "assess/new_pane.hpp"
 #include "assess/rig_check.hpp"
+#include "calibrate/conditions.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
 #include "calibrate/units.hpp"
@@ -31,8 +40,11 @@ degrees with a probability of 95 %.)";
 #include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
+#include "history/history_page.hpp"
+#include "report/plot.hpp"
 #include <nlohmann/json.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 
 using namespace cv::refract;
@@ -42,16 +54,29 @@ namespace {
 
 const size_t SCREEN = 80;               // columns
 const double CERTAIN = 0.95;            // probability with which --detect degrees must show
+const double OF_ONE_CHECK = 0.01, OF_CHARTS = 1./370.;          // false alarms
+const double SHARE_OF_CHECK = 0.05;     // of the false alarms of a history: the check by itself, which knows more causes than the charts
 
 struct Options
 {
     std::string calibration, imageSize, summary, unit;
     RigSources images;
     TargetOptions target;
-    double falseAlarm = 0.01, detect = 0.1, sigma = 0.;
+    double falseAlarm = 0., detect = 0.1, sigma = 0.;
     bool newPane = false;
     PaneStd pane = {0., 0.001, 0.};
     double wedgeMinutes = 1., placement = 0.;
+    ConditionsOptions conditions;
+    std::string history, page, time, serial;
+    double drift = 0.02;
+
+    bool hasHistory() const { return !history.empty(); }
+    //! Of the check by itself.
+    double falseAlarmOfCheck() const { return hasHistory() ? SHARE_OF_CHECK*falseAlarm : falseAlarm; }
+    std::string pageFile() const
+    {
+        return !page.empty() || !hasHistory() ? page : std::filesystem::path(history).replace_extension(".html").string();
+    }
 };
 
 void addOptions(CLI::App& app, Options& o)
@@ -62,8 +87,8 @@ void addOptions(CLI::App& app, Options& o)
         ->check(CLI::IsMember(unitNames()));
     o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none")->check(between(1e-9, 0.5))
-        ->capture_default_str();
+    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all charts "
+        "together)")->check(between(1e-9, 0.5));
     app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
     app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
         "residuals)")->check(moreThanZero());
@@ -75,7 +100,16 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--thickness-std", o.pane.thickness, "with --new-pane: how much panes differ in thickness, one standard deviation")
         ->check(notNegative())->capture_default_str()->needs(newPane);
     app.add_option("--index-std", o.pane.index, "the same of their index")->check(notNegative())->capture_default_str()->needs(newPane);
+    o.conditions.addTo(app);
     app.add_option("--summary", o.summary, "JSON file with the result");
+    CLI::Option* history = app.add_option("--history", o.history, "JSON file that keeps all checks of this calibration; begun if it is not "
+        "there")->excludes(newPane);
+    app.add_option("--history-page", o.page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
+        ->needs(history);
+    app.add_option("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)")->needs(history);
+    app.add_option("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
+    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found")->check(moreThanZero())
+        ->capture_default_str()->needs(history);
 }
 
 CheckInput inputOf(const Options& o, const Calibration& calibration)
@@ -142,7 +176,14 @@ void warnNotFound(const RigImages& sets, const Command& command)
             command.warn("the target was not found in '" + path + "'");
 }
 
-std::vector<View> readViews(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
+//! What the images are of, and their files.
+struct NewImages
+{
+    std::vector<View> views;
+    std::vector<std::string> files;
+};
+
+NewImages readViews(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
 {
     const int count = (int)calibration.cameras.size(), given = o.images.cameraCount();
     if (given > count)
@@ -154,11 +195,13 @@ std::vector<View> readViews(const Options& o, const Calibration& calibration, co
     nameSingles(sets);
     requirePairs(o, sets, command);
     warnNotFound(sets, command);
-    std::vector<View> views;
+    NewImages result;
+    for (const DetectedImages* set : sets.all())
+        result.files.insert(result.files.end(), set->files.begin(), set->files.end());
     for (const View& view : groupIntoViews(&target, sets, false).views)
         if (view.hasGlass())
-            views.push_back(view);
-    return views;
+            result.views.push_back(view);
+    return result;
 }
 
 //! How many times as many images would show the tilt, or 0 if no number would.
@@ -178,7 +221,7 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
     for (const WindowCheck& window : result.windows)
     {
         const double power = powerOf(window, result, o.detect);
-        if (power >= CERTAIN)
+        if (power >= CERTAIN || o.hasHistory())
             continue;
         const int times = imagesNeeded(window, result, o.detect);
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
@@ -195,7 +238,7 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
     return "";
 }
 
-const char* verdictOf(const CheckResult& result, const std::string& why)
+std::string verdictOf(const CheckResult& result, const std::string& why)
 {
     const bool windows = std::any_of(result.windows.begin(), result.windows.end(), [](const WindowCheck& w) { return w.moved; });
     return !why.empty() ? "cannot tell" : !result.changed ? "unchanged" : windows ? "moved" : "changed";
@@ -222,8 +265,8 @@ nlohmann::ordered_json jsonOf(const NamedChange& change)
     return json;
 }
 
-std::string jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict,
-                   const std::string& why)
+nlohmann::ordered_json jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict,
+                              const std::string& why)
 {
     nlohmann::ordered_json windows = nlohmann::ordered_json::array(), changes = nlohmann::ordered_json::array();
     for (const WindowCheck& w : result.windows)
@@ -233,10 +276,9 @@ std::string jsonOf(const CheckResult& result, const Options& o, const CheckInput
                            {"detection_probability", powerOf(w, result, o.detect)}});
     for (const NamedChange& change : result.changes)
         changes.push_back(jsonOf(change));
-    const nlohmann::ordered_json json = {
+    return {
         {"verdict", verdict}, {"why", why}, {"windows", windows}, {"changes", changes}, {"explained", result.explained},
         {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
-    return json.dump(1) + '\n';
 }
 
 void printLines(const std::string& text)
@@ -272,7 +314,93 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
         table.print(std::cout);
     std::cout << '\n';
     printLines(format("Noise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.", result.sigmaSeen,
-                      input.sigma, o.falseAlarm));
+                      input.sigma, o.falseAlarmOfCheck()));
+}
+
+//! A check among all others of its calibration.
+class KeptCheck
+{
+public:
+    //! @param calibration as it was read
+    KeptCheck(const Options& o, const Calibration& calibration) : o_(o), calibration_(calibration), history_(readHistory(o.history))
+    {
+        Plot::checkAvailable("--history");
+        requireSameRig(history_, o.history, calibration, o.calibration);
+        covariance_ = toEigen(withWedges(checkInputOf(calibration, o.calibration, o.sigma)).covariance);
+        time_ = o.time.empty() ? timeOfNow() : parseTime(o.time, "--time");
+    }
+
+    void requireNewImages(const std::vector<std::string>& files)
+    {
+        record_ = recordOf({{}, VectorXd(), MatrixXd(), MatrixXd()}, files, time_, history_);
+        requireNew(history_, o_.history, record_);
+    }
+
+    //! @param input of the check
+    void add(const CheckResult& check, const CheckInput& input, const std::vector<std::string>& files, const std::string& verdict)
+    {
+        record_ = recordOf(check.charted, files, time_, history_);
+        record_.verdict = verdict;
+        record_.sigma = check.sigma;
+        record_.dof = input.dof;
+        if (o_.conditions.isSaid())     // the day's index is no error of the calibration
+            for (int c = 0; c < (int)input.rig.cameras.size(); c++)
+                record_.byParameters.col(columnsOf(withWedges(input).rig, c).outerIndex).setZero();
+        history_.checks.push_back(record_);
+        result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*o_.falseAlarm, o_.drift);
+    }
+
+    bool isAlarm() const { return result_.isAlarm(); }
+
+    //! @param verdict of all
+    void write(const std::string& verdict, bool isGood) const
+    {
+        const std::string page = historyPage(history_, result_, covariance_, {o_.calibration, o_.falseAlarm, o_.drift, verdict, isGood});
+        writeText(o_.pageFile(), page);
+        writeHistory(o_.history, history_);
+    }
+
+    void print() const
+    {
+        const std::vector<std::string> beyond = result_.chartsBeyond(history_);
+        std::cout << format("\nHistory of %zu check%s since %s: ", history_.checks.size(), history_.checks.size() == 1 ? "" : "s",
+                            history_.checks[0].time.substr(0, 10).c_str())
+                  << (beyond.empty() ? "all charts are within their limits" : "beyond the limit: " + listed(beyond)) << '\n';
+        if (!result_.causes.empty())
+            std::cout << "What explains all checks best: " << causesIn(result_, history_) << '\n';
+        if (!result_.mainTrend(history_).empty())
+            std::cout << "Trend of " << result_.mainTrend(history_) << '\n';
+        for (const FoundDrift& found : result_.found)
+            std::cout << foundText(found, history_, o_.drift, result_.interval) << '\n';
+        std::cout << "Charts: " << o_.pageFile() << '\n';
+    }
+
+    nlohmann::ordered_json json() const
+    {
+        nlohmann::ordered_json found = nlohmann::ordered_json::array();
+        for (const FoundDrift& f : result_.found)
+            found.push_back({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"checks", f.checks}});
+        return {{"checks", history_.checks.size()}, {"alarm", isAlarm()}, {"beyond", result_.chartsBeyond(history_)},
+                {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
+                {"ewma_limit", result_.points.back().limit}, {"found", found}};
+    }
+
+private:
+    const Options& o_;
+    const Calibration& calibration_;
+    CheckHistory history_;
+    MatrixXd covariance_;
+    std::string time_;
+    CheckRecord record_;
+    HistoryResult result_;
+};
+
+void requireSerial(const Options& o, const Calibration& calibration)
+{
+    if (!o.serial.empty() && o.serial != calibration.label.serial)
+        throw Failure("--serial=" + o.serial + ": '" + o.calibration + "' is of "
+                      + (calibration.label.serial.empty() ? "a window without serial number" : "the window '" + calibration.label.serial + "'")
+                      + "; give the calibration of this one");
 }
 
 } // namespace
@@ -280,30 +408,65 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
 int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
-        const Options options = parsed(command, addOptions);
+        Options options = parsed(command, addOptions);
+        if (!(options.falseAlarm > 0.))
+            options.falseAlarm = options.hasHistory() ? OF_CHARTS : OF_ONE_CHECK;
         const Target target(options.target);
-        const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, false, "");
-        warnOfContradictions(calibration, options.calibration, command);
-        requireSameUnit(calibration, target.square(), options.unit);
+        const Calibration asCalibrated = readCalibration(options.calibration);
+        requireWindows(asCalibrated, options.calibration, false, "");
+        warnOfContradictions(asCalibrated, options.calibration, command);
+        requireSameUnit(asCalibrated, target.square(), options.unit);
+        requireSerial(options, asCalibrated);
+        const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
-        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
+        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}, {"--history", options.history, OUTPUT_TEXT},
+                      {"--history-page", options.pageFile(), OUTPUT_TEXT}}, inputs);
+        std::unique_ptr<KeptCheck> kept;
+        if (options.hasHistory())
+            kept = std::make_unique<KeptCheck>(options, asCalibrated);
         CheckInput input = inputOf(options, calibration);
-        const std::vector<View> views = readViews(options, calibration, target, command);
-        addPlacement(options, views, input);
-        const CheckResult result = checkRig(input, views, options.falseAlarm, calibration.unit);
-        const std::string why = whyNot(result, options, input), verdict = verdictOf(result, why);
+        const NewImages images = readViews(options, calibration, target, command);
+        if (kept)
+            kept->requireNewImages(images.files);
+        addPlacement(options, images.views, input);
+        const CheckResult result = checkRig(input, images.views, options.falseAlarmOfCheck(), calibration.unit);
+        const std::string why = whyNot(result, options, input);
+        std::string verdict = verdictOf(result, why);
+        bool isAlarm = result.changed;
+        if (kept && (result.isMixup || result.charted.changes.empty() || !why.empty()))
+        {
+            command.warn("this check is not kept in '" + options.history + "': " + (result.isMixup ? "its images are not what they are given for"
+                         : "its images do not tell where the rig is"));
+            kept.reset();
+        }
+        if (kept)
+        {
+            kept->add(result, input, images.files, verdict);
+            isAlarm |= kept->isAlarm();
+            if (isAlarm && !result.changed)
+                verdict = "drifted";
+            kept->write(verdict, !isAlarm);
+        }
         if (!options.summary.empty())
-            writeText(options.summary, jsonOf(result, options, input, verdict, why));
+        {
+            nlohmann::ordered_json json = jsonOf(result, options, input, verdict, why);
+            if (kept)
+                json["history"] = kept->json();
+            writeText(options.summary, json.dump(1) + '\n');
+        }
         if (!command.quiet())
         {
-            const Tone tone = !why.empty() ? Tone::DOUBTFUL : result.changed ? Tone::BAD : Tone::GOOD;
+            const Tone tone = !why.empty() ? Tone::DOUBTFUL : isAlarm ? Tone::BAD : Tone::GOOD;
             std::cout << toned(std::cout, verdict, tone) << "\n\n";
+            if (options.conditions.isSaid())
+                std::cout << options.conditions.notice(asCalibrated) << "\n\n";
             print(result, options, input);
+            if (kept)
+                kept->print();
         }
         if (!why.empty())
             throw Failure(why);
-        return result.changed ? LIMIT_NOT_MET : DONE;
+        return isAlarm ? LIMIT_NOT_MET : DONE;
     });
 }

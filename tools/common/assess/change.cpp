@@ -104,6 +104,14 @@ private:
         rows.push_back({name, camera, quantities, apply});
     }
 
+    //! The last row has a control chart.
+    void chart(const std::string& name, const std::vector<std::string>& axes, double sign = 1.)
+    {
+        rows.back().chart = name;
+        rows.back().axes = axes;
+        rows.back().chartFactor = sign*rows.back().quantities[0].factor;
+    }
+
     //! "window", or "window of camera 2", or "window of cameras 1, 2".
     std::string windowName(int c) const
     {
@@ -123,11 +131,13 @@ private:
         const std::string name = windowName(c);
         add(name + " tilted by", c, {angle(2)}, [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], 0.); });
         rows.back().isTilt = true;
+        chart(name + ": tilt", {"x", "y"}, -1.);        // moveWindow's axes point against the image's
         if (hasTwoMedia(rig_, c))
         {
             const ChangedQuantity nearer = length(1, WIDE*depth_);
             add("distance of the " + name + " changed by", c, {nearer},
                 [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, 0., 0., d[0]); });
+            chart(name + ": distance", {""});
             add(name + " tilted and shifted by", c, {angle(2), nearer},
                 [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], d[2]); });
         }
@@ -174,6 +184,7 @@ private:
                         for (int k = 0; k < count; k++)
                             if (isOutside(rig, k))
                                 changeWindow(rig, k, [&](GlassWindow& w) { w.outerIndex += d[0]; }); });
+                chart("index of the medium", {""});
                 return;
             }
     }
@@ -197,8 +208,10 @@ private:
         const ChangedQuantity pixels{"px", 1., 2, WIDE*f};
         add("focal length" + of + " changed by", c, {percent(WIDE)},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], 0., 0.)(rig); });
+        chart("focal length" + of, {""});
         add("principal point" + of + " (lens or sensor shifted) moved by", c, {pixels},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1., d[0], d[1])(rig); });
+        chart("principal point" + of, {"x", "y"});
         add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
     }
@@ -212,8 +225,10 @@ private:
         const double range = WIDE*depth_;
         add(c == 0 ? "camera 1 turned about its own centre by" : format("R of camera %d (turned about its own centre) changed by", c + 1),
             c, {angle(3)}, [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {rotationMatrix(first3(d)), Vec3d()}); });
+        chart(c == 0 ? "R of camera 1" : "R of " + camera, {"x", "y", "z"});
         add(c == 0 ? "camera 1 shifted by" : "T of " + camera + " changed by", c, {length(3, range)},
             [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {Matx33d::eye(), first3(d)}); });
+        chart(c == 0 ? "position of camera 1" : "T of " + camera, {"x", "y", "z"});
         add(c == 0 ? "camera 1 turned and shifted by" : "R and T of " + camera + " changed by", c, {angle(3), length(3, range)},
             [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, transformOf(first3(d), first3(d, 3))); });
         if (c == 0)
@@ -231,6 +246,7 @@ private:
     {
         add("square of the board (--square) other than given by", -1, {percent(WIDE)},
             [](RigModel& rig, const VectorXd& d) { rig.targetScale *= 1. + d[0]; });
+        chart("square of the board", {""});
         const Vec3d middle = middle_;
         const auto move = [middle](RigModel& rig, const Vec3d& turn, const Vec3d& shift) {
             const Matx33d R = rotationMatrix(turn);

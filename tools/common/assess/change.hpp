@@ -28,6 +28,10 @@ struct Change
     //! Changes the rig by these parameters; 0: not at all.
     std::function<void(RigModel& rig, const VectorXd& delta)> apply;
     bool isTilt = false;        //!< of the window of that camera
+    //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
+    std::string chart = "";
+    std::vector<std::string> axes = {};     //!< of its parameters in that chart
+    double chartFactor = 1.;                //!< from the parameter to the chart's unit
 
     int size() const;
     VectorXd ranges() const;

@@ -34,6 +34,13 @@ MatrixXd rootOf(const MatrixXd& C)
     return std.asDiagonal()*eigen.eigenvectors().rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
 }
 
+//! Of L, which has full column rank; its rows are of all sizes.
+MatrixXd leftInverseOf(const MatrixXd& L)
+{
+    const VectorXd inverse = L.rowwise().norm().unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
+    return MatrixXd(inverse.asDiagonal()*L).completeOrthogonalDecomposition().pseudoInverse()*inverse.asDiagonal();
+}
+
 void move(ViewObservations& observed, const VectorXd& pose)
 {
     for (int i = 0; i < 3; i++)
@@ -211,6 +218,15 @@ CheckFit CheckProblem::fitUnchanged() const
     return iterate(nullptr, MatrixXd(0, 0), start);
 }
 
+CheckFit CheckProblem::asCalibrated() const
+{
+    CheckProblem exact = *this;
+    exact.root_ = MatrixXd::Zero(root_.rows(), 1);
+    CheckFit fit = exact.fitUnchanged();
+    fit.q = VectorXd::Zero(root_.cols());
+    return fit;
+}
+
 CheckFit CheckProblem::fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const
 {
     try
@@ -257,6 +273,7 @@ CheckProblem::Information CheckProblem::information(const std::vector<Change>& c
     result.G = precision*rows.byDelta.transpose()*rows.byDelta - mixed.transpose()*inverse.solve(mixed);
     result.score = precision*(rows.byDelta.transpose()*r - rows.byDelta.transpose()*rows.byQ
                               * inverse.solve(precision*rows.byQ.transpose()*r));
+    result.byParameters = inverse.solve(mixed).transpose()*leftInverseOf(root_);       // B^T S^-1 A L = (H^-1 mixed)^T
     return result;
 }
 

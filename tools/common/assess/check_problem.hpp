@@ -43,13 +43,18 @@ public:
     CheckFit fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const;
 
     /** What the images tell about changes, to first order at a fit: G = B^T S^-1 B of all their parameters, which are in units of
-    their ranges, and B^T S^-1 r. With no change that is a vector with the covariance G. */
+    their ranges, and B^T S^-1 r. With no change that is a vector with the covariance G, of which D C D^T is due to the error dp of
+    the calibration, the same in all checks: D = B^T S^-1 A. */
     struct Information
     {
         MatrixXd G;
         VectorXd score;
+        MatrixXd byParameters;      //!< D
     };
     Information information(const std::vector<Change>& changes, const CheckFit& at) const;
+
+    //! The boards' poses at their best for the calibrated values.
+    CheckFit asCalibrated() const;
 
     //! The parameters that a change moves, in its ranges, a column each.
     MatrixXd directionsOf(const Change& change) const;

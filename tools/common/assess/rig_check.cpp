@@ -6,6 +6,7 @@
 #include "assess/check_problem.hpp"
 #include "assess/image_noise.hpp"
 #include "assess/swapped_images.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "measure/f_distribution.hpp"
 #include "diagnose/ranking.hpp"
 #include "console/failure.hpp"
@@ -122,7 +123,42 @@ private:
             tested_.back().fit.chiSquare = NO_FIT;
             all.push_back(at);
         }
+        addCharted();
         result_.critical = criticalProbability(all, information_.G, result_.dof, (1. - SHARE_OF_RESIDUALS)*falseAlarm_);
+    }
+
+    void addCharted()
+    {
+        std::vector<int> rows;
+        std::vector<double> ranges;
+        ChartedScore& charted = result_.charted;
+        // About the calibrated values: what a large change makes of the others is far from linear.
+        const CheckProblem::Information information = problem_->information(changes_, problem_->asCalibrated());
+        if (information.G.size() == 0)
+            return;
+        for (const Tested& tested : tested_)
+        {
+            const Change& change = *tested.change;
+            if (change.chart.empty() || tested.at.count() < change.size())
+                continue;
+            charted.changes.push_back(change);
+            for (int i = 0; i < change.size(); i++)
+            {
+                rows.push_back(tested.at.first + i);
+                ranges.push_back(change.ranges()[i]);
+            }
+        }
+        const int count = (int)rows.size(), parameters = columnCount(input_.rig);
+        charted.score.resize(count);
+        charted.information.resize(count, count);
+        charted.byParameters.resize(count, parameters);
+        for (int i = 0; i < count; i++)
+        {
+            charted.score[i] = information.score[rows[i]]/ranges[i];
+            charted.byParameters.row(i) = information.byParameters.row(rows[i]).head(parameters)/ranges[i];
+            for (int j = 0; j < count; j++)
+                charted.information(i, j) = information.G(rows[i], rows[j])/(ranges[i]*ranges[j]);
+        }
     }
 
     //! In units of the ranges: eigenvectors whose standard deviation is well within them.
@@ -242,6 +278,7 @@ private:
         for (const Hypothesis& h : ranked)
             named_.push_back(candidates_[std::stoul(h.sentence)]);
         const auto isExplained = [this](const Candidate& c) { return probabilityOfResiduals(c.chiSquare, c.parameters) > UNEXPLAINED; };
+        result_.isMixup = !named_.empty() && !named_[0].tested;
         result_.explained = !named_.empty() && isExplained(named_[0]);
         // Of a large contradiction a small share is much: where one explains it all, what the noise refutes is no other explanation.
         if (result_.explained)

@@ -34,6 +34,17 @@ struct NamedChange
     double probability;             //!< of so large a gain or a larger one if nothing changed
 };
 
+/** What the images tell about the changes that have a control chart, in the parameters of these:
+
+    score = information change + byParameters dp + noise,    cov(score) = information where nothing changed. */
+struct ChartedScore
+{
+    std::vector<Change> changes;    //!< all of whose parameters the images tell, in the table's order
+    VectorXd score;                 //!< of their parameters, one change after the other
+    MatrixXd information;
+    MatrixXd byParameters;          //!< by the error of the calibrated parameters, in the order of withWedges()
+};
+
 struct CheckResult
 {
     bool changed = false;
@@ -45,6 +56,8 @@ struct CheckResult
     double dof;                         //!< of sigma
     double critical;                    //!< probability below which one hypothesis is a change
     double noiseHere;                   //!< of the images by themselves; 0: too few points tell
+    ChartedScore charted;
+    bool isMixup = false;               //!< the best are images that are not what they are given for
 };
 
 //! Throws Failure if no view has an image through a window, or a target's pose cannot be found. @param unit of lengths, for the texts

@@ -98,11 +98,11 @@ std::string Plot::svg() const
     return text.substr(start);
 }
 
-void Plot::checkAvailable()
+void Plot::checkAvailable(const std::string& option)
 {
     // That it is there is not enough: what it lacks would be found at the end of a calibration.
     if (std::system("gnuplot -e 'set terminal svg' >/dev/null 2>&1") != 0)
-        throw Failure("--report needs gnuplot with its terminal 'svg' to draw its pictures: install gnuplot-nox");
+        throw Failure(option + " needs gnuplot with its terminal 'svg' to draw its pictures: install gnuplot-nox");
 }
 
 std::string Plot::quoted(const std::string& text)

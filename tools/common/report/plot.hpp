@@ -39,8 +39,8 @@ public:
     //! Runs gnuplot; throws Failure with its message if it fails.
     std::string svg() const;
 
-    //! Throws Failure that says what to install if there is no gnuplot.
-    static void checkAvailable();
+    //! Throws Failure that says what to install if there is no gnuplot. @param option that asks for pictures
+    static void checkAvailable(const std::string& option = "--report");
 
     //! A text as a gnuplot string constant.
     static std::string quoted(const std::string& text);

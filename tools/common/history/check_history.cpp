@@ -1,0 +1,274 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "history/check_history.hpp"
+#include "console/failure.hpp"
+#include "console/file_output.hpp"
+#include "console/sha256.hpp"
+#include <nlohmann/json.hpp>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+using cv::format;
+using Json = nlohmann::ordered_json;
+
+namespace tools {
+
+namespace {
+
+const char* const KIND = "refract_check history";
+
+Json jsonOf(const MatrixXd& matrix)
+{
+    Json rows = Json::array();
+    for (const auto& row : matrix.rowwise())
+        rows.push_back(std::vector<double>(row.begin(), row.end()));
+    return rows;
+}
+
+VectorXd vectorOf(const Json& json)
+{
+    const std::vector<double> values = json.get<std::vector<double>>();
+    return Eigen::Map<const VectorXd>(values.data(), (Eigen::Index)values.size());
+}
+
+//! @param columns of each row
+MatrixXd matrixOf(const Json& json, Eigen::Index rows, Eigen::Index columns)
+{
+    if ((Eigen::Index)json.size() != rows)
+        throw Failure("rows are missing");
+    MatrixXd matrix(rows, columns);
+    for (Eigen::Index i = 0; i < rows; i++)
+    {
+        const VectorXd row = vectorOf(json.at(i));
+        if (row.size() != columns)
+            throw Failure("numbers are missing");
+        matrix.row(i) = row;
+    }
+    return matrix;
+}
+
+//! What a reader wants to see: each change by itself, as if nothing else had changed.
+Json valuesOf(const CheckHistory& history, const CheckRecord& check)
+{
+    Json values = Json::array();
+    Eigen::Index first = 0;
+    for (int c : check.changes)
+    {
+        const ChartedChange& change = history.changes[c];
+        const int size = change.size();
+        const MatrixXd C = check.information.block(first, first, size, size).inverse();
+        const VectorXd value = change.factor*C*check.score.segment(first, size);
+        const VectorXd std = std::abs(change.factor)*C.diagonal().cwiseSqrt();
+        values.push_back({{"name", change.name}, {"value", std::vector<double>(value.begin(), value.end())},
+                          {"std", std::vector<double>(std.begin(), std.end())}, {"unit", change.unit}});
+        first += size;
+    }
+    return values;
+}
+
+Json jsonOf(const CheckHistory& history, const CheckRecord& check)
+{
+    Json images = Json::array();
+    for (const CheckedImage& image : check.images)
+        images.push_back({{"name", image.name}, {"sha256", image.sha256}});
+    return {{"time", check.time}, {"verdict", check.verdict}, {"images", images}, {"sigma_px", check.sigma}, {"dof", check.dof},
+            {"values", valuesOf(history, check)}, {"changes", check.changes},
+            {"score", std::vector<double>(check.score.begin(), check.score.end())}, {"information", jsonOf(check.information)},
+            {"by_parameters", jsonOf(check.byParameters)}};
+}
+
+CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
+{
+    CheckRecord check;
+    check.time = parseTime(json.at("time").get<std::string>(), "time");
+    check.verdict = json.at("verdict").get<std::string>();
+    for (const Json& image : json.at("images"))
+        check.images.push_back({image.at("name").get<std::string>(), image.at("sha256").get<std::string>()});
+    check.sigma = json.at("sigma_px").get<double>();
+    check.dof = json.at("dof").get<double>();
+    check.changes = json.at("changes").get<std::vector<int>>();
+    Eigen::Index count = 0;
+    for (int c : check.changes)
+        count += changes.at(c).size();
+    check.score = vectorOf(json.at("score"));
+    if (check.score.size() != count || !(check.dof > 0.))
+        throw Failure("numbers are missing");
+    check.information = matrixOf(json.at("information"), count, count);
+    const Json& byParameters = json.at("by_parameters");
+    check.byParameters = matrixOf(byParameters, count, count ? (Eigen::Index)byParameters.at(0).size() : 0);
+    return check;
+}
+
+CheckHistory historyOf(const Json& json)
+{
+    if (json.at("file").get<std::string>() != KIND)
+        throw Failure("it is another file");
+    CheckHistory history;
+    history.calibration = json.at("calibration_sha256").get<std::string>();
+    history.serial = json.at("window_serial").get<std::string>();
+    for (const Json& change : json.at("charts"))
+        history.changes.push_back({change.at("name").get<std::string>(), change.at("unit").get<std::string>(),
+                                   change.at("axes").get<std::vector<std::string>>(), change.at("factor").get<double>()});
+    for (const Json& check : json.at("checks"))
+    {
+        history.checks.push_back(checkOf(check, history.changes));
+        const size_t n = history.checks.size();
+        if (n > 1 && history.checks[n - 1].time < history.checks[n - 2].time)
+            throw Failure("its checks are not in the order of their times");
+    }
+    return history;
+}
+
+//! The one of that name, added if it is new.
+int indexOf(std::vector<ChartedChange>& changes, const Change& change)
+{
+    for (size_t i = 0; i < changes.size(); i++)
+        if (changes[i].name == change.chart)
+            return (int)i;
+    changes.push_back({change.chart, change.quantities[0].unit, change.axes, change.chartFactor});
+    return (int)changes.size() - 1;
+}
+
+} // namespace
+
+double secondsOf(const std::string& time)
+{
+    std::tm parts = {};
+    std::istringstream in(time);
+    in.imbue(std::locale::classic());
+    in >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
+    return (double)timegm(&parts);
+}
+
+std::string timeAt(double seconds)
+{
+    const std::time_t time = (std::time_t)seconds;
+    std::tm parts = {};
+    gmtime_r(&time, &parts);
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::put_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
+    return out.str();
+}
+
+std::string timeOfNow()
+{
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    return timeAt(epoch && *epoch ? (double)std::strtoll(epoch, nullptr, 10) : (double)std::time(nullptr));
+}
+
+std::string parseTime(const std::string& text, const std::string& option)
+{
+    int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, zoneHour = 0, zoneMinute = 0, end = 0, at = 0;
+    char sign[2] = "+";
+    bool isGood = std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) == 3;
+    if (isGood && text[end] == 'T')
+    {
+        isGood = std::sscanf(text.c_str() + end, "T%2d:%2d%n", &hour, &minute, &at) == 2;
+        end += at;
+        if (isGood && std::sscanf(text.c_str() + end, ":%2d%n", &second, &at) == 1)
+            end += at;
+        if (isGood && text[end] == 'Z')
+            end++;
+        else if (isGood && std::sscanf(text.c_str() + end, "%1[+-]%2d:%2d%n", sign, &zoneHour, &zoneMinute, &at) == 3)
+            end += at;
+    }
+    const std::string written = format("%04d-%02d-%02dT%02d:%02d:%02dZ", year, month, day, hour, minute, second);
+    // A day that there is comes back as it was.
+    if (!isGood || (size_t)end != text.size() || timeAt(secondsOf(written)) != written || zoneHour > 14 || zoneMinute > 59)
+        throw Failure(option + "=" + text + ": give a time as 2026-11-26, 2026-11-26T08:30:00Z or 2026-11-26T09:30+01:00");
+    const double east = 60.*(60.*zoneHour + zoneMinute);
+    return timeAt(secondsOf(written) - (sign[0] == '-' ? -east : east));
+}
+
+CheckHistory readHistory(const std::string& filename)
+{
+    if (!std::filesystem::exists(filename))
+        return {};
+    std::string why;
+    try
+    {
+        std::ifstream in(filename, std::ios::binary);
+        return historyOf(Json::parse(in));
+    }
+    catch (const nlohmann::json::exception&)
+    {
+        why = "it is cut short or another file";
+    }
+    catch (const std::out_of_range&)
+    {
+        why = "numbers are missing";
+    }
+    catch (const Failure& e)
+    {
+        why = e.what();
+    }
+    throw Failure("'" + filename + "' is no history of checks: " + why + ". It must be what refract_check --history wrote; to begin a new "
+                  "one, name a file that is not there");
+}
+
+void writeHistory(const std::string& filename, const CheckHistory& history)
+{
+    Json charts = Json::array(), checks = Json::array();
+    for (const ChartedChange& change : history.changes)
+        charts.push_back({{"name", change.name}, {"unit", change.unit}, {"axes", change.axes}, {"factor", change.factor}});
+    for (const CheckRecord& check : history.checks)
+        checks.push_back(jsonOf(history, check));
+    const Json json = {{"file", KIND}, {"calibration_sha256", history.calibration}, {"window_serial", history.serial}, {"charts", charts},
+                       {"checks", checks}};
+    writeText(filename, json.dump(1) + '\n');
+}
+
+CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history)
+{
+    CheckRecord check;
+    check.time = time;
+    for (const std::string& file : files)
+        check.images.push_back({std::filesystem::path(file).filename().string(), sha256OfFile(file)});
+    for (const Change& change : score.changes)
+        check.changes.push_back(indexOf(history.changes, change));
+    check.score = score.score;
+    check.information = score.information;
+    check.byParameters = score.byParameters;
+    return check;
+}
+
+void requireSameRig(CheckHistory& history, const std::string& filename, const Calibration& calibration, const std::string& calibrationFile)
+{
+    const std::string sha256 = sha256OfFile(calibrationFile), serial = calibration.label.serial;
+    if (history.checks.empty())
+    {
+        history.calibration = sha256;
+        history.serial = serial;
+    }
+    const auto named = [](const std::string& text) { return text.empty() ? "no serial number" : "the serial number '" + text + "'"; };
+    if (serial != history.serial)
+        throw Failure("the window of '" + calibrationFile + "' has " + named(serial) + ", that of '" + filename + "' "
+                      + named(history.serial) + ": it is the history of another rig; give the one of this rig, or a new file");
+    if (sha256 != history.calibration)
+        throw Failure("'" + filename + "' is the history of another calibration than '" + calibrationFile + "', or that file was edited: "
+                      "give the calibration that its checks were made with, or begin a new history, in a new file");
+}
+
+void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check)
+{
+    if (history.checks.empty())
+        return;
+    const std::string last = history.checks.back().time;
+    if (check.time < last)
+        throw Failure("the last check of '" + filename + "' is of " + last + ", this one of " + check.time + ": time does not run backwards; "
+                      "is the clock right? Give the time at which the images were taken (--time)");
+    for (const CheckRecord& before : history.checks)
+        for (const CheckedImage& old : before.images)
+            for (const CheckedImage& image : check.images)
+                if (image.sha256 == old.sha256)
+                    throw Failure("'" + image.name + "' is in '" + filename + "' already, as '" + old.name + "' of the check of " + before.time
+                                  + ": each check needs images of its own");
+}
+
+} // namespace tools

@@ -1,0 +1,73 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHECK_HISTORY_HPP
+#define REFRACT_TOOLS_CHECK_HISTORY_HPP
+
+#include "assess/rig_check.hpp"
+#include <string>
+#include <vector>
+
+/* All checks of one calibration, as refract_check --history keeps them: a JSON file, a record a check, in the order of their times. */
+namespace tools {
+
+//! Parameters that are charted together: the two of a window's tilt, the focal length.
+struct ChartedChange
+{
+    std::string name, unit;             //!< "window of camera 1: tilt", "degrees"
+    std::vector<std::string> axes;      //!< a name of each parameter
+    double factor;                      //!< from a parameter to the unit
+
+    int size() const { return (int)axes.size(); }
+};
+
+struct CheckedImage
+{
+    std::string name, sha256;
+};
+
+//! One check. What of the rig it tells, as ChartedScore has it.
+struct CheckRecord
+{
+    std::string time;                   //!< ISO 8601, UTC
+    std::vector<CheckedImage> images;   //!< or files of points
+    std::string verdict;
+    double sigma = 0., dof = 0.;        //!< of a pixel coordinate, and how well the calibration knows it
+    std::vector<int> changes;           //!< which of CheckHistory::changes its images tell, in their order
+    VectorXd score;
+    MatrixXd information, byParameters;
+};
+
+struct CheckHistory
+{
+    std::string calibration;            //!< SHA-256 of its file
+    std::string serial;                 //!< of the window; may be empty
+    std::vector<ChartedChange> changes;
+    std::vector<CheckRecord> checks;
+};
+
+//! 2026-11-26, 2026-11-26T08:30, 2026-11-26T08:30:00Z or ...+01:00 -> UTC as CheckRecord::time. Throws Failure for anything else.
+std::string parseTime(const std::string& text, const std::string& option);
+//! That of now, or of SOURCE_DATE_EPOCH if it is set.
+std::string timeOfNow();
+//! Seconds since 1970. @param time as CheckRecord::time
+double secondsOf(const std::string& time);
+std::string timeAt(double seconds);
+
+//! No file: an empty history. Throws Failure if the file is not one.
+CheckHistory readHistory(const std::string& filename);
+//! The complete file or none.
+void writeHistory(const std::string& filename, const CheckHistory& history);
+
+//! What a check adds. @param files that it read, which are known by their bytes
+CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history);
+
+/** Throws Failure unless the history is that of this calibration, and the check is a new and later one. An empty history becomes that of
+the calibration. */
+void requireSameRig(CheckHistory& history, const std::string& filename, const Calibration& calibration,
+                    const std::string& calibrationFile);
+void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHECK_HISTORY_HPP

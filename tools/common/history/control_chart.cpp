@@ -1,0 +1,204 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "history/control_chart.hpp"
+#include "measure/chi_squared.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tools {
+
+namespace {
+
+const int DRAWS = 60000;
+const double EXACT = 1e7;               // degrees of freedom of a noise that is known
+const double NOT_YET = std::numeric_limits<double>::quiet_NaN();
+
+double normalTail(double z) { return std::erfc(std::abs(z)/std::sqrt(2.)); }
+
+//! Where a falling function has a value.
+double whereFalling(const std::function<double(double)>& f, double value)
+{
+    double low = 0., high = 1.;
+    while (f(high) > value && high < 1e6)
+        high *= 2.;
+    const int BISECTIONS = 60;
+    for (int i = 0; i < BISECTIONS; i++)
+    {
+        const double middle = 0.5*(low + high);
+        (f(middle) > value ? low : high) = middle;
+    }
+    return 0.5*(low + high);
+}
+
+//! EWMAs and their variances; a column each history.
+struct Ewmas
+{
+    MatrixXd value;
+    VectorXd variance;
+
+    Ewmas(Eigen::Index count, Eigen::Index histories) : value(MatrixXd::Zero(count, histories)), variance(VectorXd::Zero(count)) {}
+
+    //! @param u standardised, of these parameters
+    void add(const std::vector<int>& parameters, const MatrixXd& u)
+    {
+        for (size_t i = 0; i < parameters.size(); i++)
+        {
+            const int p = parameters[i];
+            value.row(p) = (1. - EWMA_WEIGHT)*value.row(p) + EWMA_WEIGHT*u.row((Eigen::Index)i);
+            variance[p] = std::pow(EWMA_WEIGHT, 2) + std::pow(1. - EWMA_WEIGHT, 2)*variance[p];
+        }
+    }
+};
+
+/* Histories in which nothing changes and no chart has exceeded a limit yet. */
+class DrawnHistories
+{
+public:
+    DrawnHistories(Eigen::Index count, double dof) : ewmas_(count, DRAWS), noise_(VectorXd::Ones(DRAWS))
+    {
+        // Of the noise's variance over its estimate: Wilson and Hilferty's cube.
+        const double variance = 2./(9.*dof);
+        for (double& ratio : noise_)
+            ratio = dof < EXACT ? std::pow(std::max(1e-3, 1. - variance + random_.gaussian(std::sqrt(variance))), -1.5) : 1.;
+    }
+
+    //! The probability that the least one of all charts falls below with falseAlarm.
+    double add(const Innovation& innovation, const std::vector<int>& parameters, double falseAlarm)
+    {
+        MatrixXd w(innovation.rank(), DRAWS);
+        if (w.size())
+        {
+            cv::Mat all(DRAWS, innovation.rank(), CV_64F, w.data());
+            random_.fill(all, cv::RNG::NORMAL, 0., 1.);
+        }
+        w = w*noise_.asDiagonal();
+        ewmas_.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*innovation.rootAlone*w);
+        const Eigen::RowVectorXd t2 = w.colwise().squaredNorm();
+        const std::vector<double> least = leastProbabilities(t2, parameters, innovation.rank());
+        std::vector<double> sorted = least;
+        const size_t at = (size_t)(falseAlarm*DRAWS);
+        std::nth_element(sorted.begin(), sorted.begin() + (long)at, sorted.end());
+        const double critical = sorted[at];
+        replaceAlarms(least, critical);
+        return critical;
+    }
+
+private:
+    std::vector<double> leastProbabilities(const Eigen::RowVectorXd& t2, const std::vector<int>& parameters, int rank) const
+    {
+        Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(DRAWS);
+        for (int p : parameters)
+            largest = largest.cwiseMax(ewmas_.value.row(p).cwiseAbs()/std::sqrt(ewmas_.variance[p]));
+        std::vector<double> least(DRAWS);
+        for (int i = 0; i < DRAWS; i++)
+            least[i] = std::min(normalTail(largest[i]), t2[i] > rank ? upperTailChiSquared(rank, t2[i]) : 1.);
+        return least;
+    }
+
+    //! By others that have none.
+    void replaceAlarms(const std::vector<double>& least, double critical)
+    {
+        for (int i = 0; i < DRAWS; i++)
+        {
+            if (!(least[i] < critical))
+                continue;
+            int other = i;
+            while (least[other] < critical)
+                other = random_.uniform(0, DRAWS);
+            ewmas_.value.col(i) = ewmas_.value.col(other);
+            noise_[i] = noise_[other];
+        }
+    }
+
+    cv::RNG random_ = cv::RNG(0x5eed);
+    Ewmas ewmas_;
+    VectorXd noise_;            // over its estimate
+};
+
+} // namespace
+
+double ChartPoint::probabilityOf(int parameter) const { return seen[parameter] ? normalTail(ewma[parameter]) : 1.; }
+
+double ChartPoint::probabilityOfT2() const { return upperTailChiSquared(dof, t2); }
+
+bool ChartPoint::isAlarm() const
+{
+    for (int i = 0; i < (int)seen.size(); i++)
+        if (isBeyond(i))
+            return true;
+    return isBeyondT2();
+}
+
+std::vector<int> firstParameters(const std::vector<ChartedChange>& changes)
+{
+    std::vector<int> first = {0};
+    for (const ChartedChange& change : changes)
+        first.push_back(first.back() + change.size());
+    return first;
+}
+
+std::vector<int> parametersOf(const CheckRecord& check, const std::vector<ChartedChange>& changes)
+{
+    const std::vector<int> first = firstParameters(changes);
+    std::vector<int> parameters;
+    for (int c : check.changes)
+        for (int i = first[c]; i < first[c + 1]; i++)
+            parameters.push_back(i);
+    return parameters;
+}
+
+std::vector<ChartLimit> chartLimits(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm)
+{
+    std::vector<ChartLimit> limits;
+    if (history.checks.empty())
+        return limits;
+    InnovationFilter filter(covariance);
+    DrawnHistories drawn(firstParameters(history.changes).back(), history.checks[0].dof);
+    for (const CheckRecord& check : history.checks)
+    {
+        const Innovation innovation = filter.add(check, history.changes, check.score);
+        ChartLimit limit;
+        limit.critical = drawn.add(innovation, parametersOf(check, history.changes), falseAlarm);
+        limit.limit = whereFalling(normalTail, limit.critical);
+        limit.limitT2 = whereFalling([&](double x) { return upperTailChiSquared(innovation.rank(), x); }, limit.critical);
+        limits.push_back(limit);
+    }
+    return limits;
+}
+
+std::vector<ChartPoint> controlCharts(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartLimit>& limits)
+{
+    const int count = firstParameters(history.changes).back();
+    InnovationFilter filter(covariance);
+    Ewmas ewmas(count, 1);
+    std::vector<ChartPoint> points;
+    for (size_t t = 0; t < history.checks.size(); t++)
+    {
+        const CheckRecord& check = history.checks[t];
+        const Innovation innovation = filter.add(check, history.changes, check.score);
+        const std::vector<int> parameters = parametersOf(check, history.changes);
+        ewmas.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*innovation.alone);
+        ChartPoint point;
+        point.ewma = point.std = VectorXd::Constant(count, NOT_YET);
+        point.seen.assign((size_t)count, false);
+        for (int i = 0; i < count; i++)
+            if (ewmas.variance[i] > 0.)
+                point.ewma[i] = ewmas.value(i, 0)/std::sqrt(ewmas.variance[i]);
+        for (size_t i = 0; i < parameters.size(); i++)
+        {
+            point.seen[parameters[i]] = true;
+            point.std[parameters[i]] = innovation.stdAlone[(Eigen::Index)i];
+        }
+        point.t2 = innovation.value.col(0).dot(innovation.inverse*innovation.value.col(0));
+        point.dof = innovation.rank();
+        point.critical = limits[t].critical;
+        point.limit = limits[t].limit;
+        point.limitT2 = limits[t].limitT2;
+        points.push_back(point);
+    }
+    return points;
+}
+
+} // namespace tools

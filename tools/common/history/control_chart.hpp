@@ -1,0 +1,57 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CONTROL_CHART_HPP
+#define REFRACT_TOOLS_CONTROL_CHART_HPP
+
+#include "history/innovations.hpp"
+
+/* Control charts of a history of checks: for each parameter an EWMA of its innovations, each over its standard deviation (Roberts 1959),
+
+    z_t = lambda u_t + (1 - lambda) z_(t-1),     var z_t = lambda^2 + (1 - lambda)^2 var z_(t-1),    var z_0 = 0,
+
+and of all of them Hotelling's T^2, which is chi^2. Charts overlap, so their limits are those of one probability: at each check the
+largest excursion of all charts exceeds it with the stated probability, if nothing changed and no chart exceeded its limit before. Then
+the number of checks to a false alarm is geometric, as that of a single chart of independent values (dynamic probability limits, Zhang
+and Woodall, Quality and Reliability Engineering International 31, 2015). They come from draws of the innovations through the same
+charts, always the same ones; each draw has a noise of its own, as far as the calibration's residuals leave it open. */
+namespace tools {
+
+const double EWMA_WEIGHT = 0.2;         // lambda
+
+//! All charts after one check.
+struct ChartPoint
+{
+    VectorXd ewma;              //!< of each parameter of the history, over its standard deviation; NaN: not yet seen
+    VectorXd std;               //!< of its innovation; NaN where this check does not tell
+    std::vector<bool> seen;     //!< whether it does
+    double t2 = 0.;
+    int dof = 0;                //!< of T^2
+    double critical = 0.;       //!< probability of a chart's limit, two-sided
+    double limit = 0., limitT2 = 0.;
+
+    double probabilityOf(int parameter) const;
+    double probabilityOfT2() const;
+    bool isBeyond(int parameter) const { return probabilityOf(parameter) < critical; }
+    bool isBeyondT2() const { return probabilityOfT2() < critical; }
+    bool isAlarm() const;
+};
+
+//! The limits of all checks; they depend on what checks tell, not on what they found.
+struct ChartLimit
+{
+    double critical, limit, limitT2;
+};
+std::vector<ChartLimit> chartLimits(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm);
+
+//! @param limits of chartLimits. @param covariance of the calibrated parameters, in the order of withWedges()
+std::vector<ChartPoint> controlCharts(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartLimit>& limits);
+
+//! Where the parameters of each change begin; one more at the end.
+std::vector<int> firstParameters(const std::vector<ChartedChange>& changes);
+//! The parameters of a check, in its order.
+std::vector<int> parametersOf(const CheckRecord& check, const std::vector<ChartedChange>& changes);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CONTROL_CHART_HPP

@@ -1,0 +1,372 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "history/drift.hpp"
+#include "console/table.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tools {
+
+namespace {
+
+const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
+const double SIGNIFICANT = 2.;          // standard deviations of a slope
+const double LAST_YEAR = 4102444800.*2.;    // of a forecast, seconds since 1970
+const double VERY_STRONG = 10.;         // difference of two chi^2
+const double ALMOST_SURE = 1.645;       // 95 %
+
+//! Where a change's parameters are in a check; -1: its images do not tell.
+int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change)
+{
+    int row = 0;
+    for (int c : check.changes)
+    {
+        if (c == change)
+            return row;
+        row += changes[c].size();
+    }
+    return -1;
+}
+
+//! A change's own estimate: to multiply the rows of its score with.
+MatrixXd inverseOf(const CheckRecord& check, int row, int size)
+{
+    return check.information.block(row, row, size, size).inverse();
+}
+
+//! One parameter, of all checks that tell of it.
+struct Series
+{
+    std::vector<double> months;         //!< since the first check of the history
+    VectorXd value;
+    MatrixXd covariance;
+};
+
+Series seriesOf(const CheckHistory& history, const MatrixXd& C, int change, int axis)
+{
+    Series series;
+    const int size = history.changes[change].size();
+    const double factor = history.changes[change].factor, start = secondsOf(history.checks[0].time);
+    std::vector<double> values, variances;
+    std::vector<VectorXd> byParameters;
+    for (const CheckRecord& check : history.checks)
+    {
+        const int row = rowOf(check, history.changes, change);
+        if (row < 0)
+            continue;
+        const Eigen::RowVectorXd of = factor*inverseOf(check, row, size).row(axis);
+        const VectorXd d = (of*check.byParameters.middleRows(row, size)).transpose();
+        series.months.push_back((secondsOf(check.time) - start)/MONTH);
+        values.push_back(of.dot(check.score.segment(row, size)));
+        variances.push_back(of*check.information.block(row, row, size, size)*of.transpose());
+        byParameters.push_back(d);
+    }
+    const Eigen::Index n = (Eigen::Index)values.size();
+    series.value = Eigen::Map<VectorXd>(values.data(), n);
+    series.covariance.resize(n, n);
+    for (Eigen::Index i = 0; i < n; i++)
+        for (Eigen::Index j = 0; j < n; j++)
+            series.covariance(i, j) = i == j ? variances[i] : byParameters[i].dot(C*byParameters[j]);
+    return series;
+}
+
+//! Generalised least squares; the line's height at the first check is free.
+Trend lineThrough(const Series& series)
+{
+    Trend trend{NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN};
+    const size_t FEWEST = 3;
+    std::vector<double> times = series.months;
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    if (times.size() < FEWEST)
+        return trend;
+    MatrixXd J(series.value.size(), 2);
+    for (Eigen::Index i = 0; i < J.rows(); i++)
+        J.row(i) << 1., series.months[i];
+    const Eigen::LDLT<MatrixXd> S(series.covariance);
+    const MatrixXd C = (J.transpose()*S.solve(J)).inverse();
+    const VectorXd line = C*(J.transpose()*S.solve(series.value));
+    trend.perMonth = line[1];
+    trend.std = std::sqrt(C(1, 1));
+    return trend;
+}
+
+void forecast(Trend& trend, double start)
+{
+    const double slope = std::abs(trend.perMonth);
+    if (!trend.isSignificant())
+        return;
+    const auto timeAtSlope = [&](double s) { return start + trend.limit/s*MONTH; };
+    if (timeAtSlope(slope) > LAST_YEAR)
+        return;
+    trend.reached = timeAtSlope(slope);
+    trend.earliest = timeAtSlope(slope + trend.std);
+    trend.latest = timeAtSlope(slope - trend.std);
+}
+
+//! A step or a ramp, as a share of what it is at the last check.
+double profileAt(const CheckHistory& history, size_t check, size_t since, bool steady)
+{
+    if (check <= since)
+        return 0.;
+    const double t0 = secondsOf(history.checks[since].time), t1 = secondsOf(history.checks.back().time);
+    return !steady ? 1. : t1 > t0 ? (secondsOf(history.checks[check].time) - t0)/(t1 - t0) : 1.;
+}
+
+//! What the innovations would be if one change were there and no noise, and what they are; the filter runs over all at once.
+class CauseSearch
+{
+public:
+    CauseSearch(const CheckHistory& history, const MatrixXd& covariance) : history_(history)
+    {
+        const size_t checks = history.checks.size();
+        for (size_t since = 0; since + 1 < checks; since++)
+            for (bool steady : {false, true})
+                if (!steady || since + 2 < checks)
+                    addProfile(since, steady);
+        addFromTheStart();
+        run(covariance);
+    }
+
+    //! The best profile of a change.
+    DriftCause best(int change) const
+    {
+        DriftCause best{change, false, 0, false, -1., {}, {}};
+        for (const Column& c : columns_)
+            if (c.change == change && c.axis == 0)
+                take(c, best);
+        return best;
+    }
+
+private:
+    struct Column
+    {
+        int change, axis;
+        size_t since;
+        bool steady, fromStart;
+        Eigen::Index at;
+    };
+
+    void add(size_t since, bool steady, bool fromStart)
+    {
+        for (int c = 0; c < (int)history_.changes.size(); c++)
+            for (int axis = 0; axis < history_.changes[c].size(); axis++)
+                columns_.push_back({c, axis, since, steady, fromStart, (Eigen::Index)columns_.size() + 1});
+    }
+
+    void addProfile(size_t since, bool steady) { add(since, steady, false); }
+    void addFromTheStart() { add(0, false, true); }         // between the calibration and the first check
+
+    void run(const MatrixXd& covariance)
+    {
+        const Eigen::Index count = (Eigen::Index)columns_.size() + 1;
+        InnovationFilter filter(covariance, count);
+        A_ = MatrixXd::Zero(count, MOST_AXES);
+        b_ = VectorXd::Zero(count);
+        for (size_t t = 0; t < history_.checks.size(); t++)
+        {
+            const CheckRecord& check = history_.checks[t];
+            MatrixXd scores = MatrixXd::Zero(check.score.size(), count);
+            scores.col(0) = check.score;
+            for (const Column& c : columns_)
+            {
+                const int row = rowOf(check, history_.changes, c.change);
+                if (row >= 0)
+                    scores.col(c.at) = (c.fromStart ? 1. : profileAt(history_, t, c.since, c.steady))*check.information.col(row + c.axis);
+            }
+            addSums(filter.add(check, history_.changes, scores));
+        }
+    }
+
+    //! Normal equations of each change: X^T V^-1 X, of whose columns the axes are neighbours, and X^T V^-1 e.
+    void addSums(const Innovation& innovation)
+    {
+        const MatrixXd& X = innovation.value;
+        const MatrixXd WX = innovation.inverse*X;
+        b_ += WX.transpose()*X.col(0);
+        for (const Column& c : columns_)
+            for (int other = 0; other < history_.changes[c.change].size(); other++)
+                A_(c.at, other) += WX.col(c.at).dot(X.col(c.at - c.axis + other));
+    }
+
+    void take(const Column& first, DriftCause& best) const
+    {
+        const int size = history_.changes[first.change].size();
+        const MatrixXd A = A_.block(first.at, 0, size, size);
+        const Eigen::FullPivLU<MatrixXd> inverse(A);
+        if (!inverse.isInvertible())
+            return;
+        const VectorXd b = b_.segment(first.at, size), value = inverse.solve(b);
+        if (!(b.dot(value) > best.gain))
+            return;
+        const double factor = history_.changes[first.change].factor;
+        best = {first.change, first.fromStart, first.since, first.steady, b.dot(value), factor*value, factor*factor*inverse.inverse()};
+    }
+
+    static const int MOST_AXES = 3;
+    const CheckHistory& history_;
+    std::vector<Column> columns_;
+    MatrixXd A_;
+    VectorXd b_;
+};
+
+//! The expected EWMAs of checks like the last one while one thing drifts, over their standard deviations: the largest of any parameter.
+class DriftRun
+{
+public:
+    DriftRun(const CheckHistory& history, const MatrixXd& covariance, int change, double perCheck)
+        : history_(history), filter_(covariance, DIRECTIONS), count_(firstParameters(history.changes).back()),
+          ewma_(MatrixXd::Zero(count_, DIRECTIONS)), variance_(VectorXd::Zero(count_))
+    {
+        const CheckRecord& last = history.checks.back();
+        const int row = rowOf(last, history.changes, change), size = history.changes[change].size();
+        unit_ = MatrixXd::Zero(last.score.size(), DIRECTIONS);
+        for (int i = 0; i < DIRECTIONS && row >= 0; i++)
+            unit_.col(i) = last.information.middleCols(row, size)*direction(i, size)*perCheck/history.changes[change].factor;
+        for (const CheckRecord& check : history.checks)
+            step(check, MatrixXd::Zero(check.score.size(), DIRECTIONS));
+    }
+
+    //! Of the direction in which it shows least.
+    double next(int n)
+    {
+        step(history_.checks.back(), n*unit_);
+        const MatrixXd z = variance_.cwiseSqrt().cwiseInverse().asDiagonal()*ewma_;
+        return z.array().isNaN().select(0., z.array().abs()).colwise().maxCoeff().minCoeff();
+    }
+
+private:
+    static const int DIRECTIONS = 26;
+
+    //! Of one, two or three parameters.
+    static VectorXd direction(int i, int size)
+    {
+        VectorXd d = VectorXd::Zero(size);
+        if (size == 1)
+            d[0] = 1.;
+        else if (size == 2)
+            d << std::cos(CV_PI*i/DIRECTIONS), std::sin(CV_PI*i/DIRECTIONS);
+        else                            // a spiral over half a sphere
+        {
+            const double z = (i + 0.5)/DIRECTIONS, r = std::sqrt(1. - z*z), turn = i*CV_PI*(3. - std::sqrt(5.));
+            d << r*std::cos(turn), r*std::sin(turn), z;
+        }
+        return d;
+    }
+
+    void step(const CheckRecord& check, const MatrixXd& scores)
+    {
+        const Innovation innovation = filter_.add(check, history_.changes, scores);
+        const MatrixXd u = innovation.stdAlone.cwiseInverse().asDiagonal()*innovation.alone;
+        const std::vector<int> parameters = parametersOf(check, history_.changes);
+        for (size_t i = 0; i < parameters.size(); i++)
+        {
+            const int p = parameters[i];
+            ewma_.row(p) = (1. - EWMA_WEIGHT)*ewma_.row(p) + EWMA_WEIGHT*u.row((Eigen::Index)i);
+            variance_[p] = std::pow(EWMA_WEIGHT, 2) + std::pow(1. - EWMA_WEIGHT, 2)*variance_[p];
+        }
+    }
+
+    const CheckHistory& history_;
+    InnovationFilter filter_;
+    int count_;
+    MatrixXd ewma_, unit_;
+    VectorXd variance_;
+};
+
+} // namespace
+
+bool Trend::isSignificant() const { return std::abs(perMonth) > SIGNIFICANT*std; }
+
+std::vector<Trend> trendsOf(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartPoint>& points)
+{
+    std::vector<Trend> trends;
+    const double lambda = EWMA_WEIGHT;
+    for (int c = 0; c < (int)history.changes.size(); c++)
+        for (int axis = 0; axis < history.changes[c].size(); axis++)
+        {
+            const Series series = seriesOf(history, covariance, c, axis);
+            Trend trend = lineThrough(series);
+            if (!points.empty())
+                trend.limit = points.back().limit*std::sqrt(lambda/(2. - lambda))*std::abs(history.changes[c].factor)
+                              * points.back().std[(Eigen::Index)trends.size()];
+            forecast(trend, secondsOf(history.checks[0].time));
+            trends.push_back(trend);
+        }
+    return trends;
+}
+
+Estimates estimatesOf(const CheckHistory& history, const CheckRecord& check, const MatrixXd& covariance)
+{
+    const std::vector<int> first = firstParameters(history.changes);
+    Estimates result{VectorXd::Constant(first.back(), NOT_KNOWN), VectorXd::Constant(first.back(), NOT_KNOWN)};
+    for (int c : check.changes)
+    {
+        const int row = rowOf(check, history.changes, c), size = history.changes[c].size();
+        const double factor = history.changes[c].factor;
+        const MatrixXd M = factor*inverseOf(check, row, size), D = check.byParameters.middleRows(row, size);
+        const MatrixXd noise = check.information.block(row, row, size, size) - D*covariance*D.transpose();
+        result.value.segment(first[c], size) = M*check.score.segment(row, size);
+        result.std.segment(first[c], size) = (M*noise*M.transpose()).diagonal().cwiseMax(0.).cwiseSqrt();
+    }
+    return result;
+}
+
+std::vector<DriftCause> driftCauses(const CheckHistory& history, const MatrixXd& covariance)
+{
+    if (history.checks.empty())
+        return {};
+    const CauseSearch search(history, covariance);
+    const auto penalised = [&](const DriftCause& c) {
+        return c.gain - history.changes[c.change].size()*std::log(10.*(double)history.checks.size()); };
+    std::vector<DriftCause> causes;
+    for (int c = 0; c < (int)history.changes.size(); c++)
+    {
+        const DriftCause cause = search.best(c);
+        if (cause.gain > 0.)
+            causes.push_back(cause);
+    }
+    std::stable_sort(causes.begin(), causes.end(), [&](const DriftCause& a, const DriftCause& b) { return penalised(a) > penalised(b); });
+    while (causes.size() > 1 && penalised(causes.back()) < penalised(causes[0]) - VERY_STRONG)
+        causes.pop_back();
+    return causes;
+}
+
+std::string sentenceOf(const DriftCause& cause, const CheckHistory& history)
+{
+    const ChartedChange& change = history.changes[cause.change];
+    const double length = cause.value.size() == 1 ? cause.value[0] : cause.value.norm();
+    const VectorXd along = cause.value.size() == 1 || !(length > 0.) ? VectorXd(VectorXd::Unit(cause.value.size(), 0))
+                                                                     : VectorXd(cause.value/length);
+    const double std = std::sqrt(along.dot(cause.covariance*along));
+    return change.name + (cause.steady ? " has drifted by " : " has changed by ") + plusMinus(length, std)
+        + (change.unit.empty() ? "" : " " + change.unit)
+        + (cause.sinceCalibration ? " since the calibration" : " since " + history.checks[cause.since].time.substr(0, 10));
+}
+
+int checksUntilFound(const CheckHistory& history, const MatrixXd& covariance, const ChartLimit& last, int change, double perMonth,
+                     double interval)
+{
+    DriftRun run(history, covariance, change, perMonth*interval/MONTH);
+    for (int n = 1; n <= LONGEST; n++)
+        if (run.next(n) >= last.limit + ALMOST_SURE)
+            return n;
+    return 0;
+}
+
+double intervalOf(const CheckHistory& history)
+{
+    std::vector<double> intervals;
+    for (size_t i = 1; i < history.checks.size(); i++)
+        intervals.push_back(secondsOf(history.checks[i].time) - secondsOf(history.checks[i - 1].time));
+    if (intervals.empty())
+        return MONTH;
+    std::nth_element(intervals.begin(), intervals.begin() + (long)intervals.size()/2, intervals.end());
+    const double median = intervals[intervals.size()/2];
+    return median > 0. ? median : MONTH;
+}
+
+} // namespace tools

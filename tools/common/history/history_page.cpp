@@ -1,0 +1,186 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "history/history_page.hpp"
+#include "history/history_template.hpp"
+#include "console/table.hpp"
+#include "report/plot.hpp"
+#include <kainjow/mustache.hpp>
+#include <cmath>
+
+using namespace kainjow::mustache;
+
+namespace tools {
+
+namespace {
+
+const double DAY = 86400.;
+const char* const COLOURS[] = {"#0284c7", "#d97706", "#7c3aed"};
+
+//! A time axis with room to both sides.
+void setTimes(Plot& plot, const CheckHistory& history)
+{
+    const double first = secondsOf(history.checks.front().time), last = secondsOf(history.checks.back().time);
+    const double room = std::max(DAY, 0.04*(last - first));
+    plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -20 autofreq\nset xrange [" << cv::format("%.0f", first - room)
+         << ':' << cv::format("%.0f", last + room) << "]\n";
+}
+
+std::string nameOfAxis(const ChartedChange& change, int axis) { return change.axes[axis].empty() ? change.name : change.axes[axis]; }
+
+//! The EWMA over its standard deviation, and under it the estimates.
+std::string changeFigure(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance, int c)
+{
+    const ChartedChange& change = history.changes[c];
+    const int first = firstParameters(history.changes)[c];
+    Plot plot(620, 430);
+    std::vector<std::vector<double>> limits;
+    for (size_t t = 0; t < history.checks.size(); t++)
+        limits.push_back({secondsOf(history.checks[t].time), result.points[t].limit});
+    plot.data("limits", limits);
+    std::string ewma, values;
+    for (int axis = 0; axis < change.size(); axis++)
+    {
+        std::vector<std::vector<double>> rows, beyond;
+        for (size_t t = 0; t < history.checks.size(); t++)
+        {
+            const ChartPoint& point = result.points[t];
+            if (!point.seen[first + axis])
+                continue;
+            const Estimates e = estimatesOf(history, history.checks[t], covariance);
+            rows.push_back({secondsOf(history.checks[t].time), point.ewma[first + axis], e.value[first + axis], e.std[first + axis]});
+            if (point.isBeyond(first + axis))
+                beyond.push_back(rows.back());
+        }
+        const std::string name = "axis" + std::to_string(axis), style = cv::format(" linecolor rgb '%s'", COLOURS[axis]);
+        plot.data(name, rows);
+        ewma += ", $" + name + " using 1:2 with linespoints pointtype 7 pointsize 0.5" + style + " title "
+            + Plot::quoted(nameOfAxis(change, axis));
+        values += (axis ? ", $" : "$") + name + " using 1:3:4 with yerrorbars pointtype 7 pointsize 0.4" + style + " notitle";
+        if (beyond.empty())
+            continue;
+        plot.data(name + "beyond", beyond);
+        ewma += ", $" + name + "beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb '#dc2626' notitle";
+    }
+    setTimes(plot, history);
+    plot << "set multiplot layout 2,1\nset lmargin 10\nset rmargin 3\nset xzeroaxis linecolor rgb '#94a3b8'\nset format x ''\n"
+         << "set ylabel 'EWMA / sigma'\nset key top left horizontal\n"
+         << "plot $limits using 1:2 with lines linecolor rgb '#dc2626' dashtype 2 title 'limit', $limits using 1:(-$2) with lines "
+            "linecolor rgb '#dc2626' dashtype 2 notitle" << ewma << "\n"
+         << "set format x '%Y-%m-%d' timedate\nset ylabel " << Plot::quoted(change.unit.empty() ? "estimate" : change.unit)
+         << "\nplot " << values << "\nunset multiplot\n";
+    return plot.svg();
+}
+
+//! T^2 has other degrees of freedom where a check tells of other things: over its limit.
+std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
+{
+    Plot plot(1240, 260);
+    std::vector<std::vector<double>> rows, beyond;
+    for (size_t t = 0; t < history.checks.size(); t++)
+    {
+        const ChartPoint& p = result.points[t];
+        rows.push_back({secondsOf(history.checks[t].time), p.t2/p.limitT2});
+        if (p.isBeyondT2())
+            beyond.push_back(rows.back());
+    }
+    plot.data("all", rows);
+    plot.data("beyond", beyond);
+    setTimes(plot, history);
+    plot << "set yrange [0:*]\nset ylabel 'T^2 / limit'\nset lmargin 10\nset rmargin 3\nset bmargin 3\nunset key\n"
+         << "plot 1 with lines linecolor rgb '#dc2626' dashtype 2, $all using 1:2 with linespoints pointtype 7 pointsize 0.5 linecolor rgb '"
+         << COLOURS[0] << "'" << (beyond.empty() ? "" : ", $beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb "
+                                                        "'#dc2626'");
+    plot << '\n';
+    return plot.svg();
+}
+
+data trendRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+{
+    const std::vector<int> first = firstParameters(history.changes);
+    const Estimates last = estimatesOf(history, history.checks.back(), covariance);
+    data list{data::type::list};
+    for (size_t c = 0; c < history.changes.size(); c++)
+        for (int i = first[c]; i < first[c + 1]; i++)
+        {
+            const ChartedChange& change = history.changes[c];
+            const ChartPoint& point = result.points.back();
+            const std::string axis = change.axes[i - first[c]];
+            data row;
+            row.set("name", change.name + (axis.empty() ? "" : ", " + axis));
+            row.set("ewma", std::isnan(point.ewma[i]) ? "-" : cv::format("%+.2f", point.ewma[i]));
+            row.set("class", point.isBeyond(i) ? "missed" : "");
+            row.set("value", std::isnan(last.value[i]) ? "-" : plusMinus(last.value[i], last.std[i])
+                    + (change.unit.empty() ? "" : " " + change.unit));
+            row.set("trend", trendText(result.trends[i], history, change.unit));
+            list << row;
+        }
+    return list;
+}
+
+data checkRows(const CheckHistory& history, const HistoryResult& result)
+{
+    data list{data::type::list};
+    for (size_t t = 0; t < history.checks.size(); t++)
+    {
+        const CheckRecord& check = history.checks[t];
+        const ChartPoint& p = result.points[t];
+        std::string images;
+        for (const CheckedImage& image : check.images)
+            images += (images.empty() ? "" : ", ") + image.name;
+        data row;
+        row.set("time", check.time);
+        row.set("verdict", check.verdict);
+        row.set("images", images);
+        row.set("sigma", cv::format("%.4f", check.sigma));
+        row.set("t2", cv::format("%.1f of %.1f (%d)", p.t2, p.limitT2, p.dof));
+        row.set("limit", cv::format("%.2f", p.limit));
+        row.set("alarm", p.isAlarm() ? "beyond a limit" : "");
+        list << row;
+    }
+    return list;
+}
+
+data figures(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+{
+    data list{data::type::list};
+    for (int c = 0; c < (int)history.changes.size(); c++)
+    {
+        data figure;
+        figure.set("title", history.changes[c].name);
+        figure.set("svg", changeFigure(history, result, covariance, c));
+        list << figure;
+    }
+    return list;
+}
+
+} // namespace
+
+std::string historyPage(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance, const HistoryFacts& facts)
+{
+    data page;
+    page.set("verdict", facts.verdict);
+    page.set("verdict_class", facts.isGood ? "good" : "bad");
+    page.set("has_serial", !history.serial.empty());
+    page.set("serial", history.serial);
+    page.set("calibration", facts.calibration);
+    page.set("sha256", history.calibration);
+    page.set("first", history.checks.front().time.substr(0, 10));
+    page.set("last", history.checks.back().time.substr(0, 10));
+    page.set("count", std::to_string(history.checks.size()));
+    page.set("false_alarms", cv::format("%.0f", 1./facts.falseAlarm));
+    page.set("weight", cv::format("%g", EWMA_WEIGHT));
+    page.set("has_causes", !result.causes.empty());
+    page.set("causes", causesIn(result, history));
+    data found{data::type::list};
+    for (const FoundDrift& f : result.found)
+        found << data{"text", foundText(f, history, facts.driftDeg, result.interval)};
+    page.set("found", found);
+    page.set("t2", t2Figure(history, result));
+    page.set("figures", figures(history, result, covariance));
+    page.set("trends", trendRows(history, result, covariance));
+    page.set("checks", checkRows(history, result));
+    return mustache(HISTORY_TEMPLATE).render(page);
+}
+
+} // namespace tools

@@ -1,0 +1,104 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "history/rig_history.hpp"
+#include "console/table.hpp"
+#include <cmath>
+
+namespace tools {
+
+namespace {
+
+std::string monthAt(double seconds) { return timeAt(seconds).substr(0, 7); }
+
+//! Of a window, as only these are named by what a user can say in advance.
+bool isTilt(const ChartedChange& change) { return change.name.find(": tilt") != std::string::npos; }
+
+} // namespace
+
+std::vector<std::string> HistoryResult::chartsBeyond(const CheckHistory& history) const
+{
+    const ChartPoint& last = points.back();
+    const std::vector<int> first = firstParameters(history.changes);
+    std::vector<std::string> names;
+    for (size_t c = 0; c < history.changes.size(); c++)
+        for (int i = first[c]; i < first[c + 1]; i++)
+            if (last.isBeyond(i))
+            {
+                const std::string axis = history.changes[c].axes[i - first[c]];
+                names.push_back(history.changes[c].name + (axis.empty() ? "" : " " + axis));
+            }
+    if (last.isBeyondT2())
+        names.push_back("T^2 of all");
+    return names;
+}
+
+std::string HistoryResult::mainTrend(const CheckHistory& history) const
+{
+    const std::vector<int> first = firstParameters(history.changes);
+    std::string text;
+    double clearest = 0.;
+    for (size_t c = 0; c < history.changes.size(); c++)
+        for (int i = first[c]; i < first[c + 1]; i++)
+        {
+            const double ratio = std::abs(trends[i].perMonth)/trends[i].std;
+            if (!trends[i].isSignificant() || !(ratio > clearest) || (!causes.empty() && causes[0].change != (int)c))
+                continue;
+            clearest = ratio;
+            const ChartedChange& change = history.changes[c];
+            const std::string axis = change.axes[i - first[c]];
+            text = change.name + (axis.empty() ? "" : " " + axis) + ": " + trendText(trends[i], history, change.unit);
+        }
+    return text;
+}
+
+HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm, double driftDeg)
+{
+    HistoryResult result;
+    const std::vector<ChartLimit> limits = chartLimits(history, covariance, falseAlarm);
+    result.points = controlCharts(history, covariance, limits);
+    result.trends = trendsOf(history, covariance, result.points);
+    result.interval = intervalOf(history);
+    if (result.isAlarm())
+        result.causes = driftCauses(history, covariance);
+    for (int c : history.checks.back().changes)
+        if (isTilt(history.changes[c]))
+            result.found.push_back({c, checksUntilFound(history, covariance, limits.back(), c, driftDeg, result.interval)});
+    return result;
+}
+
+std::string causesIn(const HistoryResult& result, const CheckHistory& history)
+{
+    const size_t MOST = 3;
+    std::string text;
+    for (size_t i = 0; i < std::min(MOST, result.causes.size()); i++)
+        text += (i ? "; or " : "") + sentenceOf(result.causes[i], history);
+    if (result.causes.size() > MOST)
+        text += cv::format("; or one of %zu others", result.causes.size() - MOST);
+    return text;
+}
+
+std::string foundText(const FoundDrift& found, const CheckHistory& history, double driftDeg, double interval)
+{
+    const std::string drift = history.changes[found.change].name + cv::format(": a drift of %g degrees a month that begins now is ", driftDeg);
+    const std::string every = cv::format(", one every %.3g days", interval/86400.);
+    return found.checks ? drift + cv::format("found within %d check%s", found.checks, found.checks == 1 ? "" : "s") + every + ", with a probability of 95 %"
+                        : drift + cv::format("not sure to be found within %d checks", LONGEST) + every + ": take more pairs at each";
+}
+
+std::string trendText(const Trend& trend, const CheckHistory& history, const std::string& unit)
+{
+    if (std::isnan(trend.perMonth))
+        return "three checks at different times show one";
+    const std::string value = plusMinus(trend.perMonth, trend.std) + (unit.empty() ? "" : " " + unit) + " a month";
+    if (!trend.isSignificant())
+        return value + ": none";
+    if (std::isnan(trend.reached))
+        return value;
+    if (trend.latest < secondsOf(history.checks.back().time))
+        return value + ", beyond the limit of " + cv::format("%.2g", trend.limit) + " since " + monthAt(trend.reached);
+    return value + ", at the limit of " + cv::format("%.2g", trend.limit) + " in " + monthAt(trend.reached) + " (" + monthAt(trend.earliest)
+        + " to " + monthAt(trend.latest) + ")";
+}
+
+} // namespace tools
