@@ -87,8 +87,8 @@ void addOptions(CLI::App& app, Options& o)
         ->check(CLI::IsMember(unitNames()));
     o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all charts "
-        "together)")->check(between(1e-9, 0.5));
+    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all "
+        "charts together)")->check(between(1e-9, 0.5));
     app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
     app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
         "residuals)")->check(moreThanZero());
@@ -108,8 +108,8 @@ void addOptions(CLI::App& app, Options& o)
         ->needs(history);
     app.add_option("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)")->needs(history);
     app.add_option("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
-    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found")->check(moreThanZero())
-        ->capture_default_str()->needs(history);
+    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found")
+        ->check(moreThanZero())->capture_default_str()->needs(history);
 }
 
 CheckInput inputOf(const Options& o, const Calibration& calibration)
@@ -322,7 +322,7 @@ class KeptCheck
 {
 public:
     //! @param calibration as it was read
-    KeptCheck(const Options& o, const Calibration& calibration) : o_(o), calibration_(calibration), history_(readHistory(o.history))
+    KeptCheck(const Options& o, const Calibration& calibration) : o_(o), history_(readHistory(o.history))
     {
         Plot::checkAvailable("--history");
         requireSameRig(history_, o.history, calibration, o.calibration);
@@ -387,7 +387,6 @@ public:
 
 private:
     const Options& o_;
-    const Calibration& calibration_;
     CheckHistory history_;
     MatrixXd covariance_;
     std::string time_;
@@ -399,7 +398,8 @@ void requireSerial(const Options& o, const Calibration& calibration)
 {
     if (!o.serial.empty() && o.serial != calibration.label.serial)
         throw Failure("--serial=" + o.serial + ": '" + o.calibration + "' is of "
-                      + (calibration.label.serial.empty() ? "a window without serial number" : "the window '" + calibration.label.serial + "'")
+                      + (calibration.label.serial.empty() ? "a window without serial number"
+                                                          : "the window '" + calibration.label.serial + "'")
                       + "; give the calibration of this one");
 }
 
@@ -436,8 +436,8 @@ int main(int argc, char** argv)
         bool isAlarm = result.changed;
         if (kept && (result.isMixup || result.charted.changes.empty() || !why.empty()))
         {
-            command.warn("this check is not kept in '" + options.history + "': " + (result.isMixup ? "its images are not what they are given for"
-                         : "its images do not tell where the rig is"));
+            command.warn("this check is not kept in '" + options.history + "': its images "
+                         + (result.isMixup ? "are not what they are given for" : "do not tell where the rig is"));
             kept.reset();
         }
         if (kept)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A sheet of light from boards with the line on them: its error against its covariance, and what does not determine one.
+#include "calibrate/conditions.hpp"
 #include "laser/scan_line.hpp"
 #include "laser/sheet_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -228,6 +229,14 @@ TEST_CASE("A sheet's file comes back, and belongs to its camera", "[laser][sheet
     other.cameras[0].camera = copyWithWindow(other.cameras[0].camera, window);
     CHECK_THROWS_WITH(readSheet(path, other), Catch::Contains("another camera calibration"));
     CHECK_THROWS_WITH(readSheet(folder / "none.yml", calibration), Catch::Contains("cannot read"));
+
+    // In another medium it is another sheet; within what is known of its index it is the same.
+    Medium medium;
+    medium.index.value = 1.3335;
+    medium.std = Std(0.001);
+    CHECK(readSheet(path, inMedium(calibration, medium, "calib.yml")).plane == sheet.plane);
+    medium.std = Std(0.0002);
+    CHECK_THROWS_WITH(readSheet(path, inMedium(calibration, medium, "calib.yml")), Catch::Contains("index 1.33300, not 1.33350"));
 }
 
 TEST_CASE("A ray in the sheet has no point", "[laser][sheet]")

@@ -238,7 +238,8 @@ CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& 
     return check;
 }
 
-void requireSameRig(CheckHistory& history, const std::string& filename, const Calibration& calibration, const std::string& calibrationFile)
+void requireSameRig(CheckHistory& history, const std::string& filename, const Calibration& calibration,
+                    const std::string& calibrationFile)
 {
     const std::string sha256 = sha256OfFile(calibrationFile), serial = calibration.label.serial;
     if (history.checks.empty())
@@ -261,14 +262,14 @@ void requireNew(const CheckHistory& history, const std::string& filename, const 
         return;
     const std::string last = history.checks.back().time;
     if (check.time < last)
-        throw Failure("the last check of '" + filename + "' is of " + last + ", this one of " + check.time + ": time does not run backwards; "
-                      "is the clock right? Give the time at which the images were taken (--time)");
+        throw Failure("the last check of '" + filename + "' is of " + last + ", this one of " + check.time + ": time does not run "
+                      "backwards; is the clock right? Give the time at which the images were taken (--time)");
     for (const CheckRecord& before : history.checks)
         for (const CheckedImage& old : before.images)
             for (const CheckedImage& image : check.images)
                 if (image.sha256 == old.sha256)
-                    throw Failure("'" + image.name + "' is in '" + filename + "' already, as '" + old.name + "' of the check of " + before.time
-                                  + ": each check needs images of its own");
+                    throw Failure("'" + image.name + "' is in '" + filename + "' already, as '" + old.name + "' of the check of "
+                                  + before.time + ": each check needs images of its own");
 }
 
 } // namespace tools

@@ -117,6 +117,15 @@ private:
     VectorXd noise_;            // over its estimate
 };
 
+//! Of each parameter, whether its chart has the other sign.
+VectorXd signsOf(const std::vector<ChartedChange>& changes)
+{
+    std::vector<double> signs;
+    for (const ChartedChange& change : changes)
+        signs.insert(signs.end(), change.axes.size(), change.factor < 0. ? -1. : 1.);
+    return Eigen::Map<VectorXd>(signs.data(), (Eigen::Index)signs.size());
+}
+
 } // namespace
 
 double ChartPoint::probabilityOf(int parameter) const { return seen[parameter] ? normalTail(ewma[parameter]) : 1.; }
@@ -171,6 +180,7 @@ std::vector<ChartLimit> chartLimits(const CheckHistory& history, const MatrixXd&
 std::vector<ChartPoint> controlCharts(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartLimit>& limits)
 {
     const int count = firstParameters(history.changes).back();
+    const VectorXd signs = signsOf(history.changes);
     InnovationFilter filter(covariance);
     Ewmas ewmas(count, 1);
     std::vector<ChartPoint> points;
@@ -185,7 +195,7 @@ std::vector<ChartPoint> controlCharts(const CheckHistory& history, const MatrixX
         point.seen.assign((size_t)count, false);
         for (int i = 0; i < count; i++)
             if (ewmas.variance[i] > 0.)
-                point.ewma[i] = ewmas.value(i, 0)/std::sqrt(ewmas.variance[i]);
+                point.ewma[i] = signs[i]*ewmas.value(i, 0)/std::sqrt(ewmas.variance[i]);
         for (size_t i = 0; i < parameters.size(); i++)
         {
             point.seen[parameters[i]] = true;

@@ -22,7 +22,7 @@ const double EWMA_WEIGHT = 0.2;         // lambda
 //! All charts after one check.
 struct ChartPoint
 {
-    VectorXd ewma;              //!< of each parameter of the history, over its standard deviation; NaN: not yet seen
+    VectorXd ewma;              //!< of each parameter, in its chart's direction, over its standard deviation; NaN: not yet seen
     VectorXd std;               //!< of its innovation; NaN where this check does not tell
     std::vector<bool> seen;     //!< whether it does
     double t2 = 0.;

@@ -22,11 +22,9 @@ void setTimes(Plot& plot, const CheckHistory& history)
 {
     const double first = secondsOf(history.checks.front().time), last = secondsOf(history.checks.back().time);
     const double room = std::max(DAY, 0.04*(last - first));
-    plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -20 autofreq\nset xrange [" << cv::format("%.0f", first - room)
-         << ':' << cv::format("%.0f", last + room) << "]\n";
+    plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -20 autofreq\n"
+         << "set xrange [" << cv::format("%.0f", first - room) << ':' << cv::format("%.0f", last + room) << "]\n";
 }
-
-std::string nameOfAxis(const ChartedChange& change, int axis) { return change.axes[axis].empty() ? change.name : change.axes[axis]; }
 
 //! The EWMA over its standard deviation, and under it the estimates.
 std::string changeFigure(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance, int c)
@@ -54,8 +52,8 @@ std::string changeFigure(const CheckHistory& history, const HistoryResult& resul
         }
         const std::string name = "axis" + std::to_string(axis), style = cv::format(" linecolor rgb '%s'", COLOURS[axis]);
         plot.data(name, rows);
-        ewma += ", $" + name + " using 1:2 with linespoints pointtype 7 pointsize 0.5" + style + " title "
-            + Plot::quoted(nameOfAxis(change, axis));
+        ewma += ", $" + name + " using 1:2 with linespoints pointtype 7 pointsize 0.5" + style
+            + (change.axes[axis].empty() ? " notitle" : " title " + Plot::quoted(change.axes[axis]));
         values += (axis ? ", $" : "$") + name + " using 1:3:4 with yerrorbars pointtype 7 pointsize 0.4" + style + " notitle";
         if (beyond.empty())
             continue;
@@ -63,7 +61,7 @@ std::string changeFigure(const CheckHistory& history, const HistoryResult& resul
         ewma += ", $" + name + "beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb '#dc2626' notitle";
     }
     setTimes(plot, history);
-    plot << "set multiplot layout 2,1\nset lmargin 10\nset rmargin 3\nset xzeroaxis linecolor rgb '#94a3b8'\nset format x ''\n"
+    plot << "set multiplot layout 2,1\nset lmargin 10\nset rmargin 6\nset xzeroaxis linecolor rgb '#94a3b8'\nset format x ''\n"
          << "set ylabel 'EWMA / sigma'\nset key top left horizontal\n"
          << "plot $limits using 1:2 with lines linecolor rgb '#dc2626' dashtype 2 title 'limit', $limits using 1:(-$2) with lines "
             "linecolor rgb '#dc2626' dashtype 2 notitle" << ewma << "\n"
@@ -87,10 +85,11 @@ std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
     plot.data("all", rows);
     plot.data("beyond", beyond);
     setTimes(plot, history);
-    plot << "set yrange [0:*]\nset ylabel 'T^2 / limit'\nset lmargin 10\nset rmargin 3\nset bmargin 3\nunset key\n"
-         << "plot 1 with lines linecolor rgb '#dc2626' dashtype 2, $all using 1:2 with linespoints pointtype 7 pointsize 0.5 linecolor rgb '"
-         << COLOURS[0] << "'" << (beyond.empty() ? "" : ", $beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb "
-                                                        "'#dc2626'");
+    plot << "set yrange [0:*]\nset ylabel 'T^2 / limit'\nset lmargin 10\nset rmargin 6\nset bmargin 3\nunset key\n"
+         << "plot 1 with lines linecolor rgb '#dc2626' dashtype 2, $all using 1:2 with linespoints pointtype 7 pointsize 0.5 "
+         << "linecolor rgb '" << COLOURS[0] << "'";
+    if (!beyond.empty())
+        plot << ", $beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb '#dc2626'";
     plot << '\n';
     return plot.svg();
 }

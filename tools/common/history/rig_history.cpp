@@ -80,9 +80,10 @@ std::string causesIn(const HistoryResult& result, const CheckHistory& history)
 
 std::string foundText(const FoundDrift& found, const CheckHistory& history, double driftDeg, double interval)
 {
-    const std::string drift = history.changes[found.change].name + cv::format(": a drift of %g degrees a month that begins now is ", driftDeg);
-    const std::string every = cv::format(", one every %.3g days", interval/86400.);
-    return found.checks ? drift + cv::format("found within %d check%s", found.checks, found.checks == 1 ? "" : "s") + every + ", with a probability of 95 %"
+    const std::string drift = history.changes[found.change].name
+        + cv::format(": a drift of %g degrees a month that begins now is ", driftDeg);
+    const std::string every = cv::format(", one every %.3g days", interval/86400.), plural = found.checks == 1 ? "" : "s";
+    return found.checks ? drift + cv::format("found within %d check", found.checks) + plural + every + ", with a probability of 95 %"
                         : drift + cv::format("not sure to be found within %d checks", LONGEST) + every + ": take more pairs at each";
 }
 
