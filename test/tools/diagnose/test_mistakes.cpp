@@ -49,7 +49,7 @@ bool isNamed(Mistake mistake, const std::string& text)
 //! A rig that takes the mistake for a tilt or a distance, which are estimated, shows nothing.
 bool mayHide(Mistake mistake, RigKind kind)
 {
-    return mistake == MOTION || mistake == NUDGE || (mistake == WEDGE && kind == STEREO_IN_WATER) || (mistake == SQUARE && kind == STEREO_IN_WATER);
+    return mistake == MOTION || mistake == NUDGE || (kind == STEREO_IN_WATER && (mistake == WEDGE || mistake == SQUARE));
 }
 
 struct Score

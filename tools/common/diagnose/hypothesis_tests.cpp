@@ -35,6 +35,20 @@ struct Tested
     int parameters;
 };
 
+//! Whether the layers of all windows are of something that is transparent and solid; or were given otherwise.
+bool canBe(const Relaxed& found, const Relaxed& given)
+{
+    const auto isUsual = [](double index) { return index > 1.2 && index < 2.5; };
+    for (size_t c = 0; c < found.glass.cameras.size(); c++)
+    {
+        const std::vector<double> &now = found.glass.cameras[c]->window().index, &before = given.glass.cameras[c]->window().index;
+        for (size_t i = 0; i < now.size(); i++)
+            if (!isUsual(now[i]) && isUsual(before[i]))
+                return false;
+    }
+    return true;
+}
+
 //! All that promise to explain something, fitted, for one assumption of the noise.
 struct Trial
 {
@@ -66,6 +80,8 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
             continue;
         const Relaxed found = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
                                                  : relaxed.fit(trial.given, causes[i].freed);
+        if (!canBe(found, trial.given))
+            continue;
         const int parameters = causes[i].posesToo ? 6*(int)found.views.size() : (int)causes[i].freed.size();
         trial.tested.push_back({&causes[i], found, found.chiSquare, parameters});
     }

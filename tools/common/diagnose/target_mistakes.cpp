@@ -77,8 +77,10 @@ std::string partOfBoard(const CalibrationInput& input)
                 shifted += pair.shift != Point();
             }
     // Pairs of different moments are apart by anything, now and then by whole squares.
-    return shifted == 0 || shifted < MOST*apart ? "" : format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is "
-                                      "smaller than the board: count the inner corners (dots)", shifted, pairs);
+    if (shifted == 0 || shifted < MOST*apart)
+        return "";
+    return format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is smaller than the board: "
+                  "count the inner corners (dots)", shifted, pairs);
 }
 
 std::string badCorners(const CalibrationInput& input)
