@@ -29,7 +29,8 @@ without a window.
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
-  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it.
+  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it. Behind a dome
+  the axis is the one through the dome's centre.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
@@ -62,6 +63,10 @@ in all layers. With \f$q_i = \sqrt{n_i^2 - p^2}\f$ the outgoing ray meets the ax
 Faces that are not parallel (GlassWindow::wedge) have unit normals m_i of their own. With the optical vector
 \f$p_i = n_i w_i\f$ of each medium, light goes out by \f$p_{i+1} = p_i + \gamma_i m_i\f$ (Snell's law in vector form);
 the path from a point to the camera is the one of least optical length.
+
+A dome's faces are spheres about one point S (GlassWindow::dome). From there, the moment \f$L = r \times p\f$ is the same in all
+media, so a face of radius r_k turns the ray about L by
+\f[ \arcsin\frac{|L|}{n_{k+1} r_k} - \arcsin\frac{|L|}{n_k r_k} \f]
 
 @{
     @defgroup refract_camera Windows and cameras
@@ -208,9 +213,20 @@ public:
 //! @addtogroup refract_camera
 //! @{
 
-/** @brief A flat window: parallel layers that share one normal.
+//! What a window's faces are.
+enum WindowShape {
+    WINDOW_FLAT = 0,            //!< planes
+    WINDOW_DOME = 1             //!< spheres about one point
+};
+
+/** @brief A window: layers between planes that share one normal, or between spheres that share one centre.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
+
+A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place. The camera
+may be anywhere inside the dome. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor
+its indices can be found from images. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only
+and refuse a dome with the code Error::StsNotImplemented; all other calls take both.
 
 Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
 tempered glass. At range z a wedge d looks like a tilt of the pane by index z d/thickness.
@@ -242,14 +258,26 @@ public:
     CV_WRAP GlassWindow(const Vec3d& normal, double thickness, double index,
                         double distance = 0., double outerIndex = 1.);
 
-    CV_PROP_RW Vec3d normal;                   //!< unit, camera coordinates, normal[2] > 0
-    CV_PROP_RW double distance;                //!< centre of projection to the first surface, along the normal
+    /** @brief A dome of one layer, the camera in air.
+    @param center of the spheres, camera coordinates; nearer to the camera than the radius.
+    @param radius of the inner face.
+    @param thickness of the dome, >= 0.
+    @param index of the dome, >= 1.
+    @param outerIndex index of the scene's medium, >= 1 (1.33 water).
+    */
+    CV_WRAP static GlassWindow dome(const Vec3d& center, double radius, double thickness, double index, double outerIndex = 1.);
+
+    CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
+    CV_PROP_RW Vec3d normal;                   //!< flat: unit, camera coordinates, normal[2] > 0
+    CV_PROP_RW double distance;                //!< flat: centre of projection to the first surface, along the normal
+    CV_PROP_RW Vec3d center;                   //!< dome: of the spheres, camera coordinates
+    CV_PROP_RW double radius;                  //!< dome: of the inner face; layers add to it
     CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
     /** Of each layer: the angle between its outer and its inner face, radians along e1 and e2, about 0; see above.
-    Empty: all faces are parallel. */
+    Empty: all faces are parallel, as a dome's are. */
     CV_PROP_RW std::vector<Vec2d> wedge;
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
     /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex

@@ -248,8 +248,11 @@ void EpipolarDistance::differentiate(Matches& block, const Search& search, int n
         if (search.nearest[NEAREST_AT_END*BLOCK + i] == 0)
             continue;
         const bool isWindow = t == search.curve[CURVE_NEAR*BLOCK + i] && !(frame_.isLimited && z[i] < frame_.near*(1 + 1e-6));
+        double normal[3] = { 0, 0, 1 };
+        if (isWindow)
+            gradientAt(frame_.lastSurface, x[i], y[i], z[i], normal);
         for (int c = 0; c < 3; c++)
-            m[c*BLOCK + i] = isWindow ? frame_.lastSurface.normal[c] : c == 2;
+            m[c*BLOCK + i] = normal[c];
     }
     const Columns byPoint1 = { byPoint, 3, BLOCK }, none = { nullptr, 0, 0 }, out = { block.jacobian, 10, BLOCK };
     const Columns byPoint2 = { const_cast<double*>(search.byPoint), 3, BLOCK };

@@ -42,15 +42,10 @@ void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n)
     {
         const Layers& layers = cameras[c].camera->layers();
         const RigidTransform& place = cameras[c].place;
-        // The last surface in the frame of camera 1.
-        const Vec3d last(layers.lastSurface().normal), normal = place.R.t()*last;
-        const double distance = layers.lastSurface().distance - last.dot(place.t);
-        for (int i = 0; i < n && layers.stack().refracts; i++)
-        {
-            const bool isBeyond = normal[0]*block.x[i] + normal[1]*block.y[i] + normal[2]*block.z[i] > distance;
-            if (!isBeyond && block.status[i] == REFRACT_OK && block.isSeen(c, i))
+        const Surface last = inFrame(layers.lastSurface(), place.R.val, place.t.val);       // the frame of camera 1
+        for (int i = 0; i < n && layers.refracts(); i++)
+            if (!isBeyond(last, block.x[i], block.y[i], block.z[i], 1.) && block.status[i] == REFRACT_OK && block.isSeen(c, i))
                 block.status[i] = REFRACT_BEHIND_WINDOW;
-        }
     }
 }
 

@@ -42,7 +42,8 @@ void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* plan
     const bool allMeet = rays.hasOffset ?
         pointKernels().meetPlaneOffAxis(layers.stack(), layers.lastSurface(), rays.offsets(), abc.val, planeD, n, rays.tau, rays.dx,
                                         rays.dy, rays.dz, x, y, z, mu) :
-        pointKernels().meetPlane(layers.stack(), abc.val, planeD, n, rays.tau, rays.dx, rays.dy, rays.dz, x, y, z, mu);
+        pointKernels().meetPlane(layers.stack(), layers.lastSurface(), abc.val, planeD, n, rays.tau, rays.dx, rays.dy, rays.dz, x, y,
+                                 z, mu);
     if (allMeet)
         return;
     answerMissing(n, x, status, [&](int i)

@@ -5,8 +5,8 @@
 #ifndef OPENCV_REFRACT_POINT_KERNELS_HPP
 #define OPENCV_REFRACT_POINT_KERNELS_HPP
 
-#include "window/faces.hpp"
 #include "window/layer_kernels.hpp"
+#include "window/surface.hpp"
 
 /* Transforms, planes, curves, maps and triangulation of many points at once. No OpenCV in here, see dispatch/kernels.hpp. */
 
@@ -63,7 +63,7 @@ struct CurveFrame
 {
     double R[9], T[3];
     double normal[3];           //!< of the first camera's window, in its frame: a ray is tau normal + offset + s d
-    Plane lastSurface;          //!< of that window, in the same frame; distance 0 without window
+    Surface lastSurface;        //!< of that window, in the same frame; distance 0 without window
     bool isLimited;             //!< to depths, z from near to far
     double near, far;
 };
@@ -92,10 +92,11 @@ struct PointKernels
     bool (*pinhole)(const double* H, const double* axis, int n, const double* x, const double* y, const double* z,
                     double* u, double* v);
     //! See meetPlane; plane (a, b, c) and d of each lane.
-    bool (*meetPlane)(const Stack& stack, const double* abc, const double* planeD, int n, const double* tau,
-                      const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu);
+    bool (*meetPlane)(const Stack& stack, const Surface& lastSurface, const double* abc, const double* planeD, int n,
+                      const double* tau, const double* dx, const double* dy, const double* dz, double* x, double* y, double* z,
+                      double* mu);
     //! The same for rays tau n + offset + s d.
-    bool (*meetPlaneOffAxis)(const Stack& stack, const Plane& lastSurface, const Columns& offset, const double* abc,
+    bool (*meetPlaneOffAxis)(const Stack& stack, const Surface& lastSurface, const Columns& offset, const double* abc,
                              const double* planeD, int n, const double* tau, const double* dx, const double* dy, const double* dz,
                              double* x, double* y, double* z, double* mu);
 

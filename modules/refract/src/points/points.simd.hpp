@@ -139,7 +139,7 @@ void interpolateSurface(const SurfaceTile& tile, const double* row, const double
 }
 
 //! Where rays are off the axis: by how much, and the last face, which leans.
-struct OffAxis { Columns offset; Plane lastSurface; };
+struct OffAxis { Columns offset; Surface lastSurface; };
 struct OnAxis {};
 
 template<typename At>
@@ -151,10 +151,11 @@ inline Vector originOf(const OffAxis& off, const double* axis, Lanes tau, At at)
     return { tau*axis[0] + offset.x, tau*axis[1] + offset.y, tau*axis[2] + offset.z };
 }
 
-bool meetPlane(const Stack& stack, const double* plane, const double* planeD, int n, const double* tau,
+bool meetPlane(const Stack& stack, const Surface& lastSurface, const double* plane, const double* planeD, int n, const double* tau,
                const double* dx, const double* dy, const double* dz, double* x, double* y, double* z, double* mu)
 {
     const Stack s = stack;
+    const Surface last = lastSurface;
     const Constants<3> normal(s.normal), abc(plane);
     const double axis = abc[0]*normal[0] + abc[1]*normal[1] + abc[2]*normal[2];
     Answers answers;
@@ -165,7 +166,7 @@ bool meetPlane(const Stack& stack, const double* plane, const double* planeD, in
         const Lanes shift = m*t, X = a + shift*normal[0], Y = b + shift*normal[1], Z = c + shift*normal[2];
         Mask good = (along*ahead > 0) & (m - m == 0);
         if (s.refracts)
-            good &= normal[0]*X + normal[1]*Y + normal[2]*Z > m*s.total;
+            good &= isBeyond(last, X, Y, Z, m);
         store(answers.where(good, X), x, at);
         store(Y, y, at);
         store(Z, z, at);
@@ -175,7 +176,7 @@ bool meetPlane(const Stack& stack, const double* plane, const double* planeD, in
     return answers.complete();
 }
 
-bool meetPlaneOffAxis(const Stack& stack, const Plane& lastSurface, const Columns& offset, const double* plane, const double* planeD,
+bool meetPlaneOffAxis(const Stack& stack, const Surface& lastSurface, const Columns& offset, const double* plane, const double* planeD,
                       int n, const double* tau, const double* dx, const double* dy, const double* dz, double* x, double* y, double* z,
                       double* mu)
 {
@@ -187,7 +188,7 @@ bool meetPlaneOffAxis(const Stack& stack, const Plane& lastSurface, const Column
         const Vector o = originOf(off, normal.value, load(tau, at), at), d = { load(dx, at), load(dy, at), load(dz, at) };
         const Lanes along = dot(abc.value, d), ahead = load(planeD, at) - dot(abc.value, o), m = along/ahead;
         const Vector X = { d.x + m*o.x, d.y + m*o.y, d.z + m*o.z };
-        const Mask good = (along*ahead > 0) & (m - m == 0) & (dot(off.lastSurface.normal, X) > m*off.lastSurface.distance);
+        const Mask good = (along*ahead > 0) & (m - m == 0) & isBeyond(off.lastSurface, X.x, X.y, X.z, m);
         store(answers.where(good, X.x), x, at);
         store(X.y, y, at);
         store(X.z, z, at);
@@ -545,10 +546,13 @@ void pointCovariance(int n, int cameras, const PixelsByPoint* pixels, double var
 const double CURVE_END = 1e-10;     // of t, from infinity and from the ray's origin
 
 //! How far along its ray the last surface is.
-inline Lanes lengthToSurface(const OnAxis&, const CurveFrame& frame, Lanes tau, const Vector&, const Vector& d)
-{ return (frame.lastSurface.distance - tau)/dot(frame.normal, d); }
+inline Lanes lengthToSurface(const OnAxis&, const CurveFrame& frame, Lanes tau, const Vector& origin, const Vector& d)
+{
+    return frame.lastSurface.curvature > 0 ? lengthTo(frame.lastSurface, origin.x, origin.y, origin.z, d.x, d.y, d.z)
+                                           : (frame.lastSurface.distance - tau)/dot(frame.normal, d);
+}
 inline Lanes lengthToSurface(const OffAxis&, const CurveFrame& frame, Lanes, const Vector& origin, const Vector& d)
-{ return (frame.lastSurface.distance - dot(frame.lastSurface.normal, origin))/dot(frame.lastSurface.normal, d); }
+{ return lengthTo(frame.lastSurface, origin.x, origin.y, origin.z, d.x, d.y, d.z); }
 
 template<typename Off>
 inline bool curvesOfRays(const CurveFrame& given, const Off& off, int n, const double* pTau, const double* pdx, const double* pdy,
@@ -629,7 +633,7 @@ void nearestToRay(const Columns& curves, const double* axis, int n, const double
                   const double* dy, const double* dz, double* t)
 {
     if (offset.data)
-        nearestTo(curves, axis, OffAxis{ offset, Plane() }, n, tau, dx, dy, dz, t);
+        nearestTo(curves, axis, OffAxis{ offset, Surface() }, n, tau, dx, dy, dz, t);
     else
         nearestTo(curves, axis, OnAxis(), n, tau, dx, dy, dz, t);
 }

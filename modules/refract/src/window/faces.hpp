@@ -11,12 +11,6 @@
 
 namespace cv { namespace refract {
 
-//! Points X of a plane: normal.X = distance.
-struct Plane
-{
-    double normal[3], distance;
-};
-
 /** One face, in the window's frame: axes e1, e2 and the normal n of the first face, origin at the centre of projection. Its unit
 normal is m, the plane m.X = distance. */
 struct Face

@@ -4,6 +4,7 @@
 
 #include "window/layers.hpp"
 #include "math/missing.hpp"
+#include "window/dome.hpp"
 #include "window/parameters.hpp"
 #include "window/path.hpp"
 #include "window/wedge.hpp"
@@ -48,11 +49,14 @@ Layers::Layers(const GlassWindow& window)
     const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
     stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
                NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout(window) };
-    last_ = { { normal_[0], normal_[1], normal_[2] }, total };
-    isTilted_ = false;
+    last_ = { { normal_[0], normal_[1], normal_[2] }, total, 0. };
+    isTilted_ = isDome_ = false;
     tilted_ = TiltedFaces();
+    dome_ = Dome();
     if (!window.wedge.empty())
         setWedge(window);
+    if (refracts && window.shape == WINDOW_DOME)
+        setDome(window);
     pointIntoVectors();
 }
 
@@ -69,7 +73,28 @@ void Layers::setWedge(const GlassWindow& window)
     if (!isTilted_)
         return;
     const Vec3d last = axes.t()*Vec3d(faces_.back().normal);
-    last_ = { { last[0], last[1], last[2] }, faces_.back().distance };
+    last_ = { { last[0], last[1], last[2] }, faces_.back().distance, 0. };
+}
+
+void Layers::setDome(const GlassWindow& window)
+{
+    isDome_ = true;
+    spheres_ = spheresOf(window);
+    std::copy_n(window.center.val, 3, dome_.center);
+    dome_.count = (int)spheres_.size();
+    dome_.inner = stack_.inner;
+    dome_.outer = stack_.outer;
+    dome_.at = stack_.at;
+    const double radius = spheres_.back().radius, offset = cv::norm(window.center);
+    // Towards the nearest point of the dome or away from it: where the camera looks.
+    normal_ = offset > 0 ? window.center/offset : Vec3d(0, 0, 1);
+    if (normal_[2] < 0)
+        normal_ = -normal_;
+    std::copy_n(normal_.val, 3, stack_.normal);
+    dome_.along = normal_.dot(window.center);
+    stack_.total = radius - offset;         // to the nearest point of the last surface
+    const Vec3d outwards = -window.center/radius;
+    last_ = { { outwards[0], outwards[1], outwards[2] }, 0.5*(radius - offset)*(1 + offset/radius), 1/radius };
 }
 
 Layers& Layers::operator=(const Layers& other)
@@ -83,6 +108,9 @@ Layers& Layers::operator=(const Layers& other)
     isTilted_ = other.isTilted_;
     faces_ = other.faces_;
     tilted_ = other.tilted_;
+    isDome_ = other.isDome_;
+    spheres_ = other.spheres_;
+    dome_ = other.dome_;
     pointIntoVectors();
     return *this;
 }
@@ -93,6 +121,7 @@ void Layers::pointIntoVectors()
     stack_.heights = height_.data();
     stack_.indices = index_.data();
     tilted_.faces = faces_.data();
+    dome_.faces = spheres_.data();
 }
 
 void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
@@ -100,6 +129,8 @@ void Layers::traceOut(int n, const double* wx, const double* wy, const double* w
     rays.hasOffset = isTilted_;
     if (isTilted_)
         return traceOutTilted(n, wx, wy, wz, rays, status);
+    if (isDome_)
+        return traceOutDome(n, wx, wy, wz, rays, status);
     if (!stack_.refracts)
     {
         std::fill(rays.tau, rays.tau + n, 0.);
@@ -118,16 +149,22 @@ void Layers::traceOutTilted(int n, const double* wx, const double* wy, const dou
                       { return statusOfDirection(tilted_, Matx33d(tilted_.axes)*Vec3d(wx[i], wy[i], wz[i])); });
 }
 
+void Layers::traceOutDome(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
+{
+    if (!domeKernels().traceOut(dome_, n, wx, wy, wz, rays.tau, rays.dx, rays.dy, rays.dz))
+        answerMissing(n, rays.tau, status, [](int) { return REFRACT_TOTAL_REFLECTION; });
+}
+
 double Layers::leavingMu(const Rays& rays, int i) const
 {
     const double infinity = std::numeric_limits<double>::infinity();
     if (!stack_.refracts)
         return infinity;
-    if (!isTilted_)
+    if (!isTilted_ && !isDome_)
         return stack_.total > rays.tau[i] ? normal_.dot(rays.direction(i))/(stack_.total - rays.tau[i]) : infinity;
-    const Vec3d last(last_.normal);
-    const double height = last_.distance - last.dot(rays.origin(i, normal_));
-    return height > 0 ? last.dot(rays.direction(i))/height : infinity;
+    const Vec3d o = rays.origin(i, normal_), d = rays.direction(i);
+    const double length = lengthTo(last_, o[0], o[1], o[2], d[0], d[1], d[2]);
+    return length > 0 ? 1/length : infinity;
 }
 
 void Layers::solveIn(int n, const double* x, const double* y, const double* z, const double* w,
@@ -140,6 +177,8 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
     }
     if (isTilted_)
         return solveInTilted(n, x, y, z, w, dx, dy, dz, status);
+    if (isDome_)
+        return solveInDome(n, x, y, z, w, dx, dy, dz, status);
     if (layerKernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, ratio))
         return;
     answerMissing(n, dx, status, [=](int i)
@@ -164,6 +203,20 @@ void Layers::solveInTilted(int n, const double* x, const double* y, const double
         Vec3d d;
         const uchar found = findWedgePath(tilted_, axes*Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d);
         d = axes.t()*d;
+        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
+        return found;
+    });
+}
+
+void Layers::solveInDome(int n, const double* x, const double* y, const double* z, const double* w,
+                         double* dx, double* dy, double* dz, uchar* status) const
+{
+    if (domeKernels().solveIn(dome_, n, x, y, z, w, dx, dy, dz))
+        return;
+    answerMissing(n, dx, status, [=](int i)
+    {
+        Vec3d d;
+        const uchar found = findDomePath(dome_, Vec3d(x[i], y[i], z[i]), w ? w[i] : 1., d);
         dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
         return found;
     });
@@ -202,6 +255,8 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
                    const double* dz, const double* ratio, const Columns& byDirection, const Columns& byPoint,
                    const Columns& byWindow) const
 {
+    if (isDome_)
+        return domeKernels().chain(dome_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
     if (isTilted_ || (!faces_.empty() && byWindow.data))
         wedgeKernels().chain(tilted_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
     if (isTilted_)

@@ -6,9 +6,11 @@
 #define OPENCV_REFRACT_LAYERS_HPP
 
 #include "precomp.hpp"
+#include "window/dome_kernels.hpp"
 #include "window/faces.hpp"
 #include "window/layer_kernels.hpp"
 #include "window/rays.hpp"
+#include "window/surface.hpp"
 
 namespace cv { namespace refract {
 
@@ -21,7 +23,8 @@ is where the outgoing line meets the axis O + tau n. (A gap whose medium is the 
 the others, what cancels is the rounding of h_i.) The way back is in path.hpp.
 For one pane in air: equations (12) and (16) of Plate2024.
 
-Faces that are not parallel (GlassWindow::wedge) have kernels of their own, chosen once per call: wedge.simd.hpp.
+Faces that are not parallel (GlassWindow::wedge) and domes have kernels of their own, chosen once per call: wedge.simd.hpp,
+dome.simd.hpp.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
 results are not meaningful. */
@@ -56,15 +59,16 @@ public:
 
     //! True where the homogeneous point lies beyond the last surface (always true without window).
     bool isBeyond(double x, double y, double z, double w = 1.) const
-    { return !stack_.refracts || last_.normal[0]*x + last_.normal[1]*y + last_.normal[2]*z > w*last_.distance; }
+    { return !stack_.refracts || refract::isBeyond(last_, x, y, z, w); }
 
     //! 1/s at which a ray leaves the last surface (infinity without window): it exists for smaller 1/s.
     double leavingMu(const Rays& rays, int i) const;
 
+    //! Along the axis that all rays meet: of a dome, that through its centre.
     const Vec3d& normal() const { return normal_; }
     //! The last surface, camera frame; without window it means nothing.
-    const Plane& lastSurface() const { return last_; }
-    //! The faces are not parallel: origins of rays are off the axis.
+    const Surface& lastSurface() const { return last_; }
+    //! The faces are planes that are not parallel: origins of rays are off the axis.
     bool isTilted() const { return isTilted_; }
     const TiltedFaces& tilted() const { return tilted_; }
 
@@ -73,12 +77,16 @@ public:
 
 private:
     void setWedge(const GlassWindow& window);
+    void setDome(const GlassWindow& window);
     void pointIntoVectors();    //!< where stack_ has pointers
     //! One lane that the kernel left without an answer: the answer, or why there is none.
     uchar solveOne(const Vec3d& X, double w, double* d, double& ratio) const;
     void traceOutTilted(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
     void solveInTilted(int n, const double* x, const double* y, const double* z, const double* w,
                        double* dx, double* dy, double* dz, uchar* status) const;
+    void traceOutDome(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
+    void solveInDome(int n, const double* x, const double* y, const double* z, const double* w,
+                     double* dx, double* dy, double* dz, uchar* status) const;
 
     Vec3d normal_;
     std::vector<double> height_;    //!< inner gap, then the layers
@@ -87,10 +95,12 @@ private:
     /* Not made anew for every call of a kernel: to read, as a whole, what was just written in parts, a processor waits until
     everything written before has reached memory. */
     Stack stack_;
-    Plane last_;
-    bool isTilted_;
+    Surface last_;
+    bool isTilted_, isDome_;
     std::vector<Face> faces_;       //!< empty where the window's wedge is
     TiltedFaces tilted_;            //!< they as the kernels see them
+    std::vector<Sphere> spheres_;   //!< of a dome that refracts
+    Dome dome_;                     //!< they as the kernels see them
 };
 
 }} // namespace

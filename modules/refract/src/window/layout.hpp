@@ -11,10 +11,11 @@ namespace cv { namespace refract {
 covariance. Made by windowLayout(), which alone decides on the order; read by kernels, so without OpenCV and functions. */
 struct WindowLayout
 {
+    int shape;                  //!< a WindowShape
     int layers;
-    int normal;                 //!< three; the distance follows, so that the first surface's plane is in one piece
+    int normal;                 //!< three; the distance follows, so that the first surface is in one piece; a dome's center
     int media;                  //!< all others
-    int distance;
+    int distance;               //!< a dome's radius
     int thickness, index;       //!< one per layer
     int innerIndex, outerIndex;
     int wedge;                  //!< two per layer, if the window has a wedge; they follow all others

@@ -8,9 +8,10 @@ namespace cv { namespace refract {
 
 static const double LEAST_THICKNESS = 1e-6;      // of its start
 
-WindowLayout windowLayout(int layers, bool hasWedge)
+WindowLayout windowLayout(int layers, bool hasWedge, int shape)
 {
     WindowLayout at;
+    at.shape = shape;
     at.layers = layers;
     at.normal = 0;
     at.media = at.distance = 3;
@@ -25,14 +26,15 @@ WindowLayout windowLayout(int layers, bool hasWedge)
 
 WindowLayout windowLayout(const GlassWindow& window)
 {
-    return windowLayout((int)window.thickness.size(), !window.wedge.empty());
+    return windowLayout((int)window.thickness.size(), !window.wedge.empty(), window.shape);
 }
 
 WindowParameter kindOf(const WindowLayout& at, int parameter)
 {
     CV_DbgAssert(parameter >= 0 && parameter < at.count);
-    return parameter < at.distance ? WindowParameter::NORMAL :
-           parameter < at.thickness ? WindowParameter::DISTANCE :
+    const bool isDome = at.shape == WINDOW_DOME;
+    return parameter < at.distance ? (isDome ? WindowParameter::CENTER : WindowParameter::NORMAL) :
+           parameter < at.thickness ? (isDome ? WindowParameter::RADIUS : WindowParameter::DISTANCE) :
            parameter < at.index ? WindowParameter::THICKNESS :
            parameter < at.innerIndex ? WindowParameter::INDEX :
            parameter < at.outerIndex ? WindowParameter::INNER_INDEX :
@@ -43,8 +45,8 @@ std::vector<String> windowParameterNames(const WindowLayout& at)
 {
     std::vector<String> names(at.count);
     for (int i = 0; i < 3; i++)
-        names[at.normal + i] = format("normal[%d]", i);
-    names[at.distance] = "distance";
+        names[at.normal + i] = format(at.shape == WINDOW_DOME ? "center[%d]" : "normal[%d]", i);
+    names[at.distance] = at.shape == WINDOW_DOME ? "radius" : "distance";
     for (int i = 0; i < at.layers; i++)
     {
         names[at.thickness + i] = format("thickness[%d]", i);
@@ -61,8 +63,10 @@ std::vector<double> windowParameters(const GlassWindow& window)
 {
     const WindowLayout at = windowLayout(window);
     std::vector<double> p(at.count);
-    std::copy(window.normal.val, window.normal.val + 3, p.begin() + at.normal);
-    p[at.distance] = window.distance;
+    const bool isDome = window.shape == WINDOW_DOME;
+    const Vec3d& where = isDome ? window.center : window.normal;
+    std::copy(where.val, where.val + 3, p.begin() + at.normal);
+    p[at.distance] = isDome ? window.radius : window.distance;
     std::copy(window.thickness.begin(), window.thickness.end(), p.begin() + at.thickness);
     std::copy(window.index.begin(), window.index.end(), p.begin() + at.index);
     p[at.innerIndex] = window.innerIndex;
@@ -76,8 +80,16 @@ GlassWindow withParameters(GlassWindow window, const double* p)
 {
     const WindowLayout at = windowLayout(window);
     const int layers = at.layers;
-    window.normal = normalize(Vec3d(p + at.normal));
-    window.distance = p[at.distance];
+    if (window.shape == WINDOW_DOME)
+    {
+        window.center = Vec3d(p + at.normal);
+        window.radius = p[at.distance];
+    }
+    else
+    {
+        window.normal = normalize(Vec3d(p + at.normal));
+        window.distance = p[at.distance];
+    }
     window.thickness.assign(p + at.thickness, p + at.thickness + layers);
     window.index.assign(p + at.index, p + at.index + layers);
     window.innerIndex = p[at.innerIndex];
@@ -93,11 +105,11 @@ std::vector<bool> freeWindowParameters(const WindowLayout& at, int flags)
     for (int i = 0; i < at.count; i++)
         switch (kindOf(at, i))
         {
-        case WindowParameter::NORMAL: isFree[i] = true; break;
+        case WindowParameter::NORMAL: case WindowParameter::CENTER: isFree[i] = true; break;
         case WindowParameter::DISTANCE: isFree[i] = (flags & GLASS_FREE_DISTANCE) != 0; break;
         case WindowParameter::THICKNESS: isFree[i] = (flags & GLASS_FREE_THICKNESS) != 0; break;
         case WindowParameter::INDEX: isFree[i] = (flags & GLASS_FREE_INDEX) != 0; break;
-        case WindowParameter::INNER_INDEX: break;
+        case WindowParameter::INNER_INDEX: case WindowParameter::RADIUS: break;
         case WindowParameter::OUTER_INDEX: isFree[i] = (flags & GLASS_FREE_OUTER_INDEX) != 0; break;
         case WindowParameter::WEDGE: isFree[i] = (flags & GLASS_FREE_WEDGE) != 0; break;
         }
@@ -108,17 +120,18 @@ double lowerBound(WindowParameter kind, double start)
 {
     switch (kind)
     {
-    case WindowParameter::NORMAL: case WindowParameter::WEDGE: return -std::numeric_limits<double>::infinity();
+    case WindowParameter::NORMAL: case WindowParameter::CENTER: case WindowParameter::WEDGE:
+        return -std::numeric_limits<double>::infinity();
     case WindowParameter::DISTANCE: return 0.;
-    case WindowParameter::THICKNESS: return LEAST_THICKNESS*start;
+    case WindowParameter::THICKNESS: case WindowParameter::RADIUS: return LEAST_THICKNESS*start;
     default: return 1.;         // an index
     }
 }
 
 double upperBound(WindowParameter kind)
 {
-    const bool isLength = kind == WindowParameter::DISTANCE || kind == WindowParameter::THICKNESS;
-    if (kind == WindowParameter::NORMAL || kind == WindowParameter::WEDGE)
+    const bool isLength = kind == WindowParameter::DISTANCE || kind == WindowParameter::RADIUS || kind == WindowParameter::THICKNESS;
+    if (kind == WindowParameter::NORMAL || kind == WindowParameter::CENTER || kind == WindowParameter::WEDGE)
         return std::numeric_limits<double>::infinity();
     return isLength ? MAX_LENGTH : MAX_INDEX;
 }

@@ -15,13 +15,14 @@ namespace cv { namespace refract {
 // Beyond what there is, and small enough that no product of them overflows.
 const double MAX_LENGTH = 1e100, MAX_INDEX = 1e6;
 
-enum class WindowParameter { NORMAL, DISTANCE, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX, WEDGE };
+enum class WindowParameter { NORMAL, DISTANCE, CENTER, RADIUS, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX, WEDGE };
 
-WindowLayout windowLayout(int layers, bool hasWedge = false);
+WindowLayout windowLayout(int layers, bool hasWedge = false, int shape = WINDOW_FLAT);
 WindowLayout windowLayout(const GlassWindow& window);
 WindowParameter kindOf(const WindowLayout& at, int parameter);
 
-//! normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex, wedge[0][0], wedge[0][1], ...
+/** normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex, wedge[0][0], wedge[0][1], ...
+A dome's begin center[0], center[1], center[2], radius. */
 std::vector<String> windowParameterNames(const WindowLayout& at);
 std::vector<double> windowParameters(const GlassWindow& window);
 /** The window with other parameters; it keeps what is none of them.

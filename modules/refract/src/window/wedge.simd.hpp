@@ -5,8 +5,8 @@
 #ifndef OPENCV_REFRACT_WEDGE_SIMD_HPP
 #define OPENCV_REFRACT_WEDGE_SIMD_HPP
 
-#include "simd/vectors.hpp"
 #include "window/layers.simd.hpp"
+#include "window/rays_beside.simd.hpp"
 #include "window/wedge_kernels.hpp"
 
 /* Light through faces that are not parallel, in the window's frame. With the optical vector p = index * direction, of which a face
@@ -17,10 +17,6 @@ of normal m changes m.p = c alone (Snell's law),
 and P' = P + s p from one face to the next, s = (distance - m.P)/(m.p) there. */
 
 namespace cv { namespace refract { namespace {
-
-//! a + k b
-inline Vector plus(const Vector& a, Lanes k, const Vector& b) { return { a.x + k*b.x, a.y + k*b.y, a.z + k*b.z }; }
-inline Vector plus(const Vector& a, Lanes k, const double* b) { return { a.x + k*b[0], a.y + k*b[1], a.z + k*b[2] }; }
 
 inline Vector intoFrame(const double* axes, const Vector& a) { return { dot(axes, a), dot(axes + 3, a), dot(axes + 6, a) }; }
 inline Vector outOfFrame(const double* axes, const Vector& a)
@@ -299,21 +295,6 @@ bool solveInWedge(const Stack& stack, const TiltedFaces& window, int n, const do
     return answers.complete();
 }
 
-/* How the direction moves with all that there is. V is the optical length of the path from O to X: p = -dV/dO at the camera, and what
-moves a face or an index moves V as if the path stayed where it is,
-
-    dV = sum over the media of s n dn + sum over the faces of gamma (dm.P - d distance)
-
-So D.dp = -(D.d/dO) dV, the change of these terms and, by X, of the vector p there, when O moves by D and X stays. Two rays through X
-beside the ray's own say how: they are followed back to the camera, which tells by how much of each of them O moves by D. */
-struct RaysBeside
-{
-    Vector Q, p;                //!< where the ray is, and its optical vector
-    Vector dQ[2], dp[2];        //!< of the two beside it
-    Lanes gamma, dGamma[2];     //!< at the last face passed
-    Lanes ds[2];                //!< of the way back to it
-};
-
 //! From where they are back to a face and through it.
 inline void passBack(const Face& face, RaysBeside& rays)
 {
@@ -387,17 +368,12 @@ inline void followBack(const TiltedFaces& window, const Columns& byWindow, At at
                 put(column.wedge + 2*(k - 1) + a, lean[a].by[0], lean[a].by[1]);
         }
     }
-    const Vector& p = rays.p;
-    const Lanes s = rays.Q.z/p.z;
-    Vector byNormal[2];
-    for (int j = 0; j < 2; j++)
-    {
-        rays.ds[j] = dot(p, rays.dQ[j])*(1/(window.inner*window.inner));
-        dO[j] = plus(plus(rays.dQ[j], -s, rays.dp[j]), -rays.ds[j], p);
-        byNormal[j] = outOfFrame(window.axes, { turn[0].by[j], turn[1].by[j], all(0) });
-    }
+    arriveAt(rays.Q.z/rays.p.z, window.inner, rays, dO);
     if (!isWanted)
         return;
+    Vector byNormal[2];
+    for (int j = 0; j < 2; j++)
+        byNormal[j] = outOfFrame(window.axes, { turn[0].by[j], turn[1].by[j], all(0) });
     put(column.innerIndex, window.inner*rays.ds[0], window.inner*rays.ds[1]);
     put(column.normal, byNormal[0].x, byNormal[1].x);
     put(column.normal + 1, byNormal[0].y, byNormal[1].y);
@@ -412,15 +388,11 @@ void chainWedge(const TiltedFaces& window, int rows, int n, const double* px, co
     const Constants<9> axes(window.axes);
     eachRegister(n, [&](auto at)
     {
-        const Lanes zero = all(0);
         const Vector d = intoFrame(axes.value, { load(pdx, at), load(pdy, at), load(pdz, at) });
         const Lanes scale = window.inner*inverseSqrt(dot(d, d));
         RaysBeside rays;
-        rays.Q = intoFrame(axes.value, { load(px, at), load(py, at), load(pz, at) });
-        rays.p = behindWindow(window, { scale*d.x, scale*d.y, scale*d.z });
-        const Lanes inverse = all(1/window.outer);
-        vectorsAcross({ inverse*rays.p.x, inverse*rays.p.y, inverse*rays.p.z }, rays.dp[0], rays.dp[1]);
-        rays.dQ[0] = rays.dQ[1] = { zero, zero, zero };
+        beginAt(intoFrame(axes.value, { load(px, at), load(py, at), load(pz, at) }),
+                behindWindow(window, { scale*d.x, scale*d.y, scale*d.z }), window.outer, rays);
         const Vector atPoint[2] = { outOfFrame(axes.value, rays.dp[0]), outOfFrame(axes.value, rays.dp[1]) };
         Vector dO[2];
         followBack(window, byWindow, at, rays, dO);
@@ -437,12 +409,7 @@ void chainWedge(const TiltedFaces& window, int rows, int n, const double* px, co
             storeAt(a*atPoint[0].y + b*atPoint[1].y, byPoint, row, 1, at);
             storeAt(a*atPoint[0].z + b*atPoint[1].z, byPoint, row, 2, at);
         }
-        for (int column = 0; byWindow.data && column < window.at.count; column++)
-        {
-            const Lanes first = load(byWindow.at(0, column), at), second = load(byWindow.at(1, column), at);
-            for (int row = 0; row < rows; row++)
-                storeAt(share[row][0]*first + share[row][1]*second, byWindow, row, column, at);
-        }
+        shareOut(rows, byWindow.data ? window.at.count : 0, share, byWindow, at);
     });
 }
 

@@ -7,7 +7,8 @@
 
 namespace cv { namespace refract {
 
-GlassWindow::GlassWindow() : normal(0, 0, 1), distance(0), innerIndex(1), outerIndex(1), wavelength(0) {}
+GlassWindow::GlassWindow()
+    : shape(WINDOW_FLAT), normal(0, 0, 1), distance(0), center(0, 0, 0), radius(0), innerIndex(1), outerIndex(1), wavelength(0) {}
 
 //! The unit normal, after a check of everything.
 static Vec3d checkedNormal(const Vec3d& normal, double thickness, double index, double distance, double outerIndex)
@@ -29,8 +30,21 @@ static Vec3d checkedNormal(const Vec3d& normal, double thickness, double index, 
 // What is wrong is found before any member is made: OpenCV's bindings destroy an object whose constructor threw once more.
 // A window that a function returns would not do: it may be made, and destroyed, in this one's place.
 GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
-    : normal(checkedNormal(normal_, thickness_, index_, distance_, outerIndex_)), distance(distance_), thickness(1, thickness_),
-      index(1, index_), innerIndex(1), outerIndex(outerIndex_), wavelength(0) {}
+    : shape(WINDOW_FLAT), normal(checkedNormal(normal_, thickness_, index_, distance_, outerIndex_)), distance(distance_),
+      center(0, 0, 0), radius(0), thickness(1, thickness_), index(1, index_), innerIndex(1), outerIndex(outerIndex_), wavelength(0) {}
+
+GlassWindow GlassWindow::dome(const Vec3d& center, double radius, double thickness, double index, double outerIndex)
+{
+    GlassWindow window;
+    window.shape = WINDOW_DOME;
+    window.center = center;
+    window.radius = radius;
+    window.thickness.assign(1, thickness);
+    window.index.assign(1, index);
+    window.outerIndex = outerIndex;
+    window.check();
+    return window;
+}
 
 //! layer >= 0: the name's element. Nothing is formatted unless it is wrong: cameras may be made by the call.
 static void checkBetween(const char* name, double value, double least, double most, int layer = -1)
@@ -68,8 +82,16 @@ static void checkWedge(const GlassWindow& window)
                                              window.thickness[i]));
 }
 
-void GlassWindow::check() const
+//! What the other shape has is not silently ignored.
+static void checkUnused(const char* name, bool isInitial, const char* text, const char* shape)
 {
+    if (!isInitial)
+        CV_Error_(Error::StsBadArg, ("window.%s is set, but the window is %s: it must stay %s", name, shape, text));
+}
+
+static void checkFlat(const GlassWindow& window)
+{
+    const Vec3d& normal = window.normal;
     const double length = cv::norm(normal);
     // Room for a normal that was stored as float or printed with six digits; the kernels normalise once more.
     if (!(std::abs(length - 1) < 1e-5))
@@ -78,7 +100,34 @@ void GlassWindow::check() const
     if (!(normal[2] > 0))
         CV_Error_(Error::StsBadArg, ("window.normal is (%g, %g, %g); it must point from the camera to the scene, "
                                      "normal[2] > 0", normal[0], normal[1], normal[2]));
-    checkBetween("window.distance", distance, 0, MAX_LENGTH);
+    checkBetween("window.distance", window.distance, 0, MAX_LENGTH);
+    checkUnused("center", window.center == Vec3d(), "(0, 0, 0)", "flat (window.shape)");
+    checkUnused("radius", window.radius == 0, "0", "flat (window.shape)");
+}
+
+static void checkDome(const GlassWindow& window)
+{
+    const Vec3d& center = window.center;
+    const double offset = cv::norm(center);
+    if (!(window.radius > 0 && window.radius <= MAX_LENGTH))
+        CV_Error_(Error::StsOutOfRange, ("window.radius is %g; it must be positive and finite", window.radius));
+    if (!std::isfinite(offset))
+        CV_Error_(Error::StsBadArg, ("window.center is (%g, %g, %g); it must be finite", center[0], center[1], center[2]));
+    if (!(offset < window.radius))
+        CV_Error_(Error::StsOutOfRange, ("window.center is (%g, %g, %g), %g from the camera; the camera must be inside the dome, whose "
+                                         "window.radius is %g: that of its inner face, in the same unit", center[0], center[1],
+                                         center[2], offset, window.radius));
+    checkUnused("normal", window.normal == Vec3d(0, 0, 1), "(0, 0, 1)", "a dome");
+    checkUnused("distance", window.distance == 0, "0", "a dome");
+    checkUnused("wedge", window.wedge.empty(), "empty", "a dome");
+}
+
+void GlassWindow::check() const
+{
+    if (shape != WINDOW_FLAT && shape != WINDOW_DOME)
+        CV_Error_(Error::StsOutOfRange, ("window.shape is %d; it must be WINDOW_FLAT (%d) or WINDOW_DOME (%d)", shape,
+                                         (int)WINDOW_FLAT, (int)WINDOW_DOME));
+    (shape == WINDOW_DOME ? checkDome : checkFlat)(*this);
     checkBetween("window.innerIndex", innerIndex, 1, MAX_INDEX);
     checkBetween("window.outerIndex", outerIndex, 1, MAX_INDEX);
     if (thickness.size() != index.size())
@@ -122,8 +171,11 @@ GlassWindow GlassWindow::atWavelength(double wavelengthNm) const
 void GlassWindow::write(FileStorage& fs) const
 {
     // Vectors as plain sequences: readable by hand and by any YAML parser.
-    fs << "{" << "normal" << "[:" << normal[0] << normal[1] << normal[2] << "]"
-       << "distance" << distance << "thickness" << "[:";
+    if (shape == WINDOW_DOME)
+        fs << "{" << "shape" << "dome" << "center" << "[:" << center[0] << center[1] << center[2] << "]" << "radius" << radius;
+    else
+        fs << "{" << "normal" << "[:" << normal[0] << normal[1] << normal[2] << "]" << "distance" << distance;
+    fs << "thickness" << "[:";
     for (double t : thickness) fs << t;
     fs << "]" << "index" << "[:";
     for (double n : index) fs << n;
@@ -165,6 +217,28 @@ static std::vector<double> readSequence(const FileNode& map, const char* key)
         values.push_back((double)item);
     }
     return values;
+}
+
+static Vec3d readVector(const FileNode& map, const char* key)
+{
+    const std::vector<double> v = readSequence(map, key);
+    if (v.size() != 3)
+        CV_Error_(Error::StsParseError, ("glass_window.%s has %d numbers; it must have 3", key, (int)v.size()));
+    return Vec3d(v[0], v[1], v[2]);
+}
+
+//! Keys of another shape are refused: a file that says a radius and no shape is not a flat window.
+static int readShape(const FileNode& map)
+{
+    const FileNode node = map["shape"];
+    const String name = node.empty() ? "flat" : node.isString() ? (String)node : String("not a text");
+    if (name != "flat" && name != "dome")
+        CV_Error_(Error::StsParseError, ("glass_window.shape is '%s'; it must be flat or dome", name.c_str()));
+    const bool isDome = name == "dome";
+    for (const char* other : { isDome ? "normal" : "center", isDome ? "distance" : "radius" })
+        if (!map[other].empty())
+            CV_Error_(Error::StsParseError, ("glass_window has '%s', but its shape is %s", other, name.c_str()));
+    return isDome ? WINDOW_DOME : WINDOW_FLAT;
 }
 
 static std::vector<Vec2d> readPairs(const FileNode& map, const char* key)
@@ -217,8 +291,8 @@ static void readMaterials(const FileNode& node, GlassWindow& window)
 //! A slip in a name would leave what it names at its default: air.
 static void checkKeys(const FileNode& map)
 {
-    const std::vector<std::string> known = { "normal", "distance", "thickness", "index", "inner_index", "outer_index", "wedge",
-                                             "materials", "wavelength" };
+    const std::vector<std::string> known = { "shape", "normal", "distance", "center", "radius", "thickness", "index", "inner_index",
+                                             "outer_index", "wedge", "materials", "wavelength" };
     std::string names;
     for (const std::string& name : known)
         names += (names.empty() ? "" : ", ") + name;
@@ -232,15 +306,19 @@ void GlassWindow::read(const FileNode& node)
     if (!node.isMap())
         CV_Error(Error::StsParseError, "glass_window is not a map of normal, distance, thickness, index");
     checkKeys(node);
-    const std::vector<double> n = readSequence(node, "normal");
-    if (n.size() != 3)
-        CV_Error_(Error::StsParseError, ("glass_window.normal has %d numbers; it must have 3", (int)n.size()));
     GlassWindow window;
-    window.normal = Vec3d(n[0], n[1], n[2]);
-    const double length = cv::norm(window.normal);
-    if (length > 0)
-        window.normal /= length;
+    window.shape = readShape(node);
+    if (window.shape == WINDOW_DOME)
+        window.center = readVector(node, "center");
+    else
+    {
+        window.normal = readVector(node, "normal");
+        const double length = cv::norm(window.normal);
+        if (length > 0)
+            window.normal /= length;
+    }
     window.distance = readNumber(node, "distance", 0);
+    window.radius = readNumber(node, "radius", 0);
     window.thickness = readSequence(node, "thickness");
     window.index = readSequence(node, "index");
     window.innerIndex = readNumber(node, "inner_index", 1);
