@@ -53,12 +53,13 @@ private:
 // ---- windows
 
 enum WindowKind { NO_WINDOW, PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS, WATER_GLASS_AIR,
-                  DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER, WINDOW_KINDS };
+                  DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER, DOME_IN_AIR, DOME_IN_WATER, WINDOW_KINDS };
 
 inline const char* name(WindowKind kind)
 {
     static const char* names[] = { "no window", "pane in air", "laminate", "air-glass-water", "bare water",
-                                   "glass on the lens", "water-glass-air", "double glazing in water", "wedge in air", "wedges in water" };
+                                   "glass on the lens", "water-glass-air", "double glazing in water", "wedge in air", "wedges in water",
+                                   "dome in air", "domes in water" };
     return names[kind];
 }
 
@@ -74,6 +75,17 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
     GlassWindow w;
     if (kind == NO_WINDOW)
         return w;
+    if (kind == DOME_IN_AIR || kind == DOME_IN_WATER)
+    {
+        w.shape = WINDOW_DOME;
+        w.radius = random.uniform(30, 120);
+        const cv::Vec3d towards = random.vector(1);
+        w.center = random.uniform(0, 0.6)*w.radius/cv::norm(towards)*towards;
+        w.thickness = kind == DOME_IN_AIR ? std::vector<double>{ random.uniform(2, 20) } : std::vector<double>{ 8, 5 };
+        w.index = kind == DOME_IN_AIR ? std::vector<double>{ 1.5168 } : std::vector<double>{ 1.49, 1.4 };
+        w.outerIndex = kind == DOME_IN_AIR ? 1 : 1.333;
+        return w;
+    }
     w.normal = randomNormal(random, maxTiltDegrees);
     w.distance = kind == GLASS_ON_LENS ? 0 : random.uniform(5, 150);
     const auto layer = [&](double thickness, double index)

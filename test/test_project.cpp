@@ -276,7 +276,8 @@ TEST_CASE("The jacobian against central differences of several steps", "[project
         window.outerIndex *= 1.01;
         for (double& n : window.index)
             n *= 1.01;
-        window.distance += kind == NO_WINDOW ? 0 : 1;
+        const bool isDome = window.shape == WINDOW_DOME;
+        window.distance += kind == NO_WINDOW || isDome ? 0 : 1;
         const Ptr<RefractiveCamera> camera = makeCamera(lens, window);
         const Vec3d rvec = random.vector(0.5), tvec = random.vector(30);
         Matx33d R;
@@ -302,8 +303,8 @@ TEST_CASE("The jacobian against central differences of several steps", "[project
             if (column < 3) r[column] += step;
             else if (column < 6) t[column - 3] += step;
             else if (c < 0) p.at<double>(column - 6) += step;
-            else if (c < 3) w.normal[c] += step;
-            else if (c < 4) w.distance += step;
+            else if (c < 3) (isDome ? w.center : w.normal)[c] += step;
+            else if (c < 4) (isDome ? w.radius : w.distance) += step;
             else if (c < 4 + layers) w.thickness[c - 4] += step;
             else if (c < 4 + 2*layers) w.index[c - 4 - layers] += step;
             else if (c < 6 + 2*layers) (c == 4 + 2*layers ? w.innerIndex : w.outerIndex) += step;
@@ -326,7 +327,7 @@ TEST_CASE("The jacobian against central differences of several steps", "[project
             REQUIRE(best < 2e-6*(1 + 1e-2*norm(analytic)));
         }
         // The normal's three columns have no part along it: its length means nothing.
-        if (kind != NO_WINDOW)
+        if (kind != NO_WINDOW && !isDome)
             for (int r = 0; r < 2; r++)
             {
                 const Vec3d row(J.ptr<double>(r) + 6 + lensCount);

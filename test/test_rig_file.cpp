@@ -73,6 +73,9 @@ void checkSame(const Rig& a, const Rig& b)
         CHECK(a.cameras[c]->imageSize() == b.cameras[c]->imageSize());
         CHECK(largestDifference(a.cameras[c]->lensParameters(), b.cameras[c]->lensParameters()) == 0);
         CHECK(norm(a.cameras[c]->window().normal - b.cameras[c]->window().normal) < 1e-15);     // it is normalised
+        CHECK(a.cameras[c]->window().shape == b.cameras[c]->window().shape);
+        CHECK(a.cameras[c]->window().center == b.cameras[c]->window().center);
+        CHECK(a.cameras[c]->window().radius == b.cameras[c]->window().radius);
         CHECK(a.cameras[c]->window().thickness == b.cameras[c]->window().thickness);
         CHECK(norm(a.Rs[c], b.Rs[c]) < 1e-15);     // the nearest rotation is taken
         CHECK(norm(a.Ts[c] - b.Ts[c]) == 0);

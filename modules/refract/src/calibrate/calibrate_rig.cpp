@@ -36,6 +36,14 @@ void checkFlags(int flags, int allowed)
         CV_Error_(Error::StsBadFlag, ("flags is %d; %d has no meaning here", flags, flags & ~allowed));
 }
 
+void checkShapes(const std::vector<Camera>& cameras)
+{
+    for (const Camera& camera : cameras)
+        if (camera.window().shape != WINDOW_FLAT)
+            CV_Error(Error::StsNotImplemented, "window is a dome (window.shape): calibration and bundle adjustment take flat windows "
+                                               "only. Give a camera whose dome is known, from its drawing, to the other calls");
+}
+
 void addWedges(std::vector<Camera>& cameras, int flags)
 {
     for (Camera& camera : cameras)
@@ -128,6 +136,7 @@ std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles
                 CV_Error_(Error::StsBadArg, ("%s and %s are one object; each holds its own result",
                                              names[earlier].c_str(), names[c].c_str()));
     }
+    checkShapes(cameras);
     return cameras;
 }
 

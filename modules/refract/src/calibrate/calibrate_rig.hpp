@@ -21,6 +21,9 @@ const int MONO_FLAGS = GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DIST
 
 void checkFlags(int flags, int allowed);
 
+//! Only flat windows can be estimated.
+void checkShapes(const std::vector<Camera>& cameras);
+
 //! With GLASS_FREE_WEDGE: windows without a wedge get one of 0, so that it is among their parameters.
 void addWedges(std::vector<Camera>& cameras, int flags);
 
