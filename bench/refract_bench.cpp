@@ -92,6 +92,7 @@ int main(int argc, char** argv)
     std::vector<Row> rows;
     addPointRows(rows, count);
     addWedgeRows(rows, count);
+    addDomeRows(rows, count);
     addSplinedRows(rows, count);
     addPairRows(rows, count);
     addRobustRows(rows);

@@ -13,19 +13,22 @@ static bool numberOrList(PyObject* o, std::vector<double>& v, const char* name)
 static bool fillWindow(refract::GlassWindow& window, PyObject* args, PyObject* keywords)
 {
     static const char* const NAMES[] = { "normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge",
-                                         "wavelength", "materials", NULL };
+                                         "wavelength", "materials", "shape", "center", "radius", NULL };
     PyObject *normal = NULL, *thickness = NULL, *index = NULL, *distance = NULL, *outerIndex = NULL, *innerIndex = NULL, *wedge = NULL,
-             *wavelength = NULL, *materials = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|OOOOO$OOOO:GlassWindow", (char**)NAMES, &normal, &thickness, &index, &distance,
-                                     &outerIndex, &innerIndex, &wedge, &wavelength, &materials))
+             *wavelength = NULL, *materials = NULL, *shape = NULL, *center = NULL, *radius = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|OOOOO$OOOOOOO:GlassWindow", (char**)NAMES, &normal, &thickness, &index, &distance,
+                                     &outerIndex, &innerIndex, &wedge, &wavelength, &materials, &shape, &center, &radius))
         return false;
-    if (!normal != !thickness || !thickness != !index)
+    if (!pyopencv_to(shape, window.shape, ArgInfo("shape", 0)))
+        return false;
+    if (!thickness != !index || (window.shape == refract::WINDOW_FLAT && !normal != !thickness))
         return failmsg("normal, thickness and index belong together; for a surface without a pane both are empty lists");
     Vec3d n;
-    if (normal && !(pyopencv_to(normal, n, ArgInfo("normal", 0)) && numberOrList(thickness, window.thickness, "thickness")
-                    && numberOrList(index, window.index, "index")))
+    if ((normal && !pyopencv_to(normal, n, ArgInfo("normal", 0)))
+        || (thickness && !(numberOrList(thickness, window.thickness, "thickness") && numberOrList(index, window.index, "index"))))
         return false;
-    if (!pyopencv_to(distance, window.distance, ArgInfo("distance", 0))
+    if (!pyopencv_to(center, window.center, ArgInfo("center", 0)) || !pyopencv_to(radius, window.radius, ArgInfo("radius", 0))
+        || !pyopencv_to(distance, window.distance, ArgInfo("distance", 0))
         || !pyopencv_to(outerIndex, window.outerIndex, ArgInfo("outerIndex", 0))
         || !pyopencv_to(innerIndex, window.innerIndex, ArgInfo("innerIndex", 0))
         || !pyopencv_to_safe(wedge, window.wedge, ArgInfo("wedge", 0))

@@ -77,7 +77,7 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
         return w;
     if (kind == DOME_IN_AIR || kind == DOME_IN_WATER)
     {
-        w.shape = WINDOW_DOME;
+        w.shape = cv::refract::WINDOW_DOME;
         w.radius = random.uniform(30, 120);
         const cv::Vec3d towards = random.vector(1);
         w.center = random.uniform(0, 0.6)*w.radius/cv::norm(towards)*towards;

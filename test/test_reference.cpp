@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// Our results against 60-digit ones, see reference/make_reference.py and make_wedge_reference.py.
+// Our results against 60-digit ones, see reference/make_reference.py, make_wedge_reference.py and make_dome_reference.py.
 #include "scenes.hpp"
 #include "paths.hpp"
 
@@ -36,6 +36,12 @@ const json& wedgeReference()
     return cases;
 }
 
+const json& domeReference()
+{
+    static const json cases = read("dome.json");
+    return cases;
+}
+
 Vec3d vec3(const json& j) { return Vec3d(j[0], j[1], j[2]); }
 Vec2d vec2(const json& j) { return Vec2d(j[0], j[1]); }
 
@@ -43,8 +49,17 @@ Ptr<RefractiveCamera> cameraOfCase(const json& c)
 {
     const json& w = c["window"];
     GlassWindow window;
-    window.normal = vec3(w["normal"]);
-    window.distance = w["distance"];
+    if (w.contains("shape"))
+    {
+        window.shape = WINDOW_DOME;
+        window.center = vec3(w["center"]);
+        window.radius = w["radius"];
+    }
+    else
+    {
+        window.normal = vec3(w["normal"]);
+        window.distance = w["distance"];
+    }
     window.thickness = w["thickness"].get<std::vector<double>>();
     window.index = w["index"].get<std::vector<double>>();
     window.innerIndex = w["inner_index"];
@@ -130,10 +145,19 @@ TEST_CASE("Projection through a wedge equals the 60-digit references", "[referen
     compareProjection(wedgeReference(), "projection through wedges", 1e-10, 150);
 }
 
-TEST_CASE("Rays through a wedge equal the 60-digit references", "[reference][wedge]")
+TEST_CASE("Projection through a dome equals the 60-digit references", "[reference][dome]")
+{
+    compareProjection(domeReference(), "projection through domes", 1e-10, 150);
+}
+
+/** A point of the ray, not its origin, is held against the reference.
+@param tolerance of the direction
+@param last of a window and a direction: the cosine behind the last face, by which roundings of the pixel are larger there */
+template<typename Cosine>
+static void compareRays(const json& cases, const std::string& name, double tolerance, const Cosine& last)
 {
     double worstDirection = 0, worstOrigin = 0;
-    for (const json& c : wedgeReference())
+    for (const json& c : cases)
     {
         CAPTURE(nameOfCase(c));
         const Ptr<RefractiveCamera> camera = cameraOfCase(c);
@@ -143,18 +167,30 @@ TEST_CASE("Rays through a wedge equal the 60-digit references", "[reference][wed
             const PixelRay ray = rayOf(camera, vec2(p["pixel"]));
             REQUIRE(ray.status == REFRACT_OK);
             // At a grazing angle behind the last face a rounding of the pixel is 1/cos times larger there.
-            const double cosine = camera->window().normal.dot(vec3(p["direction"]));
+            const double cosine = last(camera->window(), vec3(p["point"]), vec3(p["direction"]));
             const double directionError = norm(ray.direction - vec3(p["direction"]))*std::abs(cosine);
             const Vec3d off = (ray.origin - vec3(p["point"])).cross(vec3(p["direction"]));
             const double originError = norm(off)/(1 + norm(vec3(p["point"])))*cosine*cosine;
-            CHECK(directionError < 2e-15);
+            CHECK(directionError < tolerance);
             CHECK(originError < 1e-14);
             worstDirection = std::max(worstDirection, directionError);
             worstOrigin = std::max(worstOrigin, originError);
         }
     }
-    printNumber("ray direction through wedges against references, worst * cos(incidence)", worstDirection, "");
-    printNumber("ray through wedges against references, relative distance, worst * cos(incidence)^2", worstOrigin, "");
+    printNumber("ray direction through " + name + " against references, worst * cos(incidence)", worstDirection, "");
+    printNumber("ray through " + name + " against references, relative distance, worst * cos(incidence)^2", worstOrigin, "");
+}
+
+TEST_CASE("Rays through a wedge equal the 60-digit references", "[reference][wedge]")
+{
+    compareRays(wedgeReference(), "wedges", 2e-15, [](const GlassWindow& w, const Vec3d&, const Vec3d& d) { return w.normal.dot(d); });
+}
+
+TEST_CASE("Rays through a dome equal the 60-digit references", "[reference][dome]")
+{
+    // Of the direction at the camera, which the lens finds, as much comes out: the dome's faces are nearly across it.
+    compareRays(domeReference(), "domes", 5e-15, [](const GlassWindow& w, const Vec3d& point, const Vec3d& d)
+                { return normalize(point - w.center).dot(d)/std::max(1., w.radius/1e3); });
 }
 
 TEST_CASE("Rays equal the 60-digit references", "[reference]")
@@ -185,10 +221,10 @@ TEST_CASE("Rays equal the 60-digit references", "[reference]")
     printNumber("ray origin against references, relative, worst * cos(grazing angle)^2", worstTau, "");
 }
 
-TEST_CASE("What no light connects has the status of total reflection", "[reference]")
+static void compareTotalReflection(const json& cases, int least)
 {
     int unseen = 0, unseeing = 0;
-    for (const json& c : reference())
+    for (const json& c : cases)
     {
         CAPTURE(nameOfCase(c));
         const Ptr<RefractiveCamera> camera = cameraOfCase(c);
@@ -208,8 +244,18 @@ TEST_CASE("What no light connects has the status of total reflection", "[referen
             unseeing++;
         }
     }
-    CHECK(unseen > 10);
-    CHECK(unseeing > 10);
+    CHECK(unseen > least);
+    CHECK(unseeing > least);
+}
+
+TEST_CASE("What no light connects has the status of total reflection", "[reference]")
+{
+    compareTotalReflection(reference(), 10);
+}
+
+TEST_CASE("What no light connects through a dome has the status of total reflection", "[reference][dome]")
+{
+    compareTotalReflection(domeReference(), 8);
 }
 
 static void compareJacobians(const json& cases, const std::string& name)
@@ -251,6 +297,11 @@ static void compareJacobians(const json& cases, const std::string& name)
 TEST_CASE("Jacobians equal the 60-digit references", "[reference]")
 {
     compareJacobians(reference(), "");
+}
+
+TEST_CASE("Jacobians through a dome equal the 60-digit references", "[reference][dome]")
+{
+    compareJacobians(domeReference(), " through domes");
 }
 
 TEST_CASE("Jacobians through a wedge equal the 60-digit references", "[reference][wedge]")

@@ -8,8 +8,9 @@ import inspect
 from . import _native
 from ._values import Values
 
-WINDOW_FIELDS = ("normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge", "wavelength", "materials")
-SEQUENCES = ("normal", "thickness", "index", "wedge", "materials")
+WINDOW_FIELDS = ("normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge", "wavelength", "materials",
+                 "shape", "center", "radius")
+SEQUENCES = ("normal", "center", "thickness", "index", "wedge", "materials")
 
 
 def as_values(read):
@@ -48,8 +49,9 @@ def window_text(window):
     """As it is made; fields with the values of no window are left out."""
     none = _native.GlassWindow()
     given = [(name, getattr(window, name)) for name in WINDOW_FIELDS]
-    parts = [f"{name}={tuple(value) if name == 'normal' else value!r}" for name, value in given
-             if value != getattr(none, name) or (name in ("normal", "thickness", "index") and window != none)]
+    always = ("normal", "thickness", "index") if window.shape == none.shape else ("thickness", "index")
+    parts = [f"{name}={tuple(value) if name in ('normal', 'center') else value!r}" for name, value in given
+             if value != getattr(none, name) or (name in always and window != none)]
     return f"GlassWindow({', '.join(parts)})"
 
 

@@ -54,6 +54,27 @@ def test_a_wrong_field_is_named(field, value):
         refract.RefractiveCamera.create(K, None, window)
 
 
+def test_a_dome():
+    dome = refract.GlassWindow.dome((1, -2, 3.), 50, 7, 1.5, 1.33)
+    assert dome.shape == refract.WINDOW_DOME and dome.center == (1., -2., 3.) and dome.radius == 50. and dome.thickness == [7]
+    same = refract.GlassWindow(shape=refract.WINDOW_DOME, center=[1, -2, 3], radius=50, thickness=7, index=1.5, outerIndex=1.33)
+    assert same == dome and eval(repr(dome), {"GlassWindow": refract.GlassWindow}) == dome
+    assert pickle.loads(pickle.dumps(dome)) == dome and copy.deepcopy(dome) == dome
+    camera = refract.RefractiveCamera.create(K, None, dome)
+    assert camera.window() == dome and camera.parameterNames()[4:8] == ("center[0]", "center[1]", "center[2]", "radius")
+    X = np.array([[80., -60., 700.], [0., 0., 600.]])
+    pixels, status = refract.refractiveProjectPoints(X, np.zeros(3), np.zeros(3), camera)
+    origins, directions, status = refract.refractiveUnprojectPoints(pixels, camera)
+    offset = X - np.asarray(origins).reshape(-1, 3)
+    assert np.abs(np.cross(offset, np.asarray(directions).reshape(-1, 3))).max() < 1e-9
+    with pytest.raises(refract.error, match="inside the dome"):
+        refract.GlassWindow.dome((0, 0, 60.), 50, 7, 1.5)
+    with pytest.raises(refract.error, match="radius"):
+        refract.GlassWindow((0, 0, 1), 7, 1.5, radius=50)
+    with pytest.raises(refract.error, match="dome"):
+        refract.calibrateGlass([np.zeros((6, 3), np.float32)], [np.zeros((6, 2), np.float32)], [np.zeros((6, 2), np.float32)], camera)
+
+
 def test_faces_that_are_not_parallel():
     window = refract.GlassWindow((0., 0., 1.), 20., 1.5, distance=50.)
     assert len(window.wedge) == 0

@@ -122,14 +122,14 @@ def make_point(rng, window, lens, parameters, half_field, degrees):
     return None
 
 
-def make_posed(rng, lens, parameters, window_parameters, x, w):
+def make_posed(rng, lens, parameters, window_parameters, x, w, shape=Window):
     rvec, tvec = exact(rng.uniform(-0.6, 0.6) for _ in range(3)), exact(rng.uniform(-50, 50) for _ in range(3))
     object_point = exact(rotate(tuple(-r for r in rvec), tuple(a - t for a, t in zip(x, tvec))))
     values, of_lens = list(rvec + tvec) + list(parameters) + list(window_parameters), 6 + len(parameters)
 
     def project(v):
         at = tuple(a + b for a, b in zip(rotate(v[:3], object_point), v[3:6]))
-        return project_lens(lens, v[6:of_lens], Window(v[of_lens:]).solve_in(at, w))
+        return project_lens(lens, v[6:of_lens], shape(v[of_lens:]).solve_in(at, w))
     step = mpf(10)**-22
     columns = []
     for i in range(len(values)):

@@ -8,6 +8,21 @@ namespace opencv_test { namespace {
 
 using namespace scene;
 
+TEST(Refract_GlassWindow, may_be_a_dome)
+{
+    const GlassWindow dome = GlassWindow::dome(Vec3d(3, -2, 12), 50, 7, 1.5, 1.33);
+    EXPECT_EQ((int)WINDOW_DOME, dome.shape);
+    EXPECT_REFUSED(GlassWindow::dome(Vec3d(0, 0, 60), 50, 7, 1.5), "the camera must be inside the dome");
+    const Matx33d K(1000, 0, 640, 0, 1000, 480, 0, 0, 1);
+    const std::vector<Point3d> X = { Point3d(100, -50, 700), Point3d(-20, 80, 300) };
+    std::vector<Point2d> pixels;
+    std::vector<Point3d> origins, directions;
+    refractiveProjectPoints(X, Vec3d(), Vec3d(), K, noArray(), dome, pixels);
+    refractiveUnprojectPoints(pixels, origins, directions, K, noArray(), dome);
+    for (size_t i = 0; i < X.size(); i++)
+        EXPECT_NEAR(0, cv::norm((X[i] - origins[i]).cross(directions[i])), 1e-10);
+}
+
 TEST(Refract_GlassWindow, is_checked)
 {
     EXPECT_NO_THROW(GlassWindow().check());

@@ -138,7 +138,7 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
     const double ratio = row == 1 ? (double)size.height/options.imageSize.height : (double)size.width/options.imageSize.width;
     NewCameras result = { 0, { Point2d(), Point2d() } };
     for (const Camera* camera : { &pair.camera1, &pair.camera2 })   // straight ahead as large as in the raw images
-        result.focal += 0.5*ratio*camera->cameraMatrix().at<double>(row, row)*camera->window().outerIndex/camera->window().innerIndex;
+        result.focal += 0.5*ratio*camera->cameraMatrix().at<double>(row, row)*paraxialMagnification(*camera);
     Point2d* p = result.principal;
     for (int c = 0; c < 2; c++)
         p[c] = Point2d((size.width - 1)/2., (size.height - 1)/2.) - result.focal*borders.middle[c];     // stays in the middle

@@ -18,6 +18,17 @@ double paraxialTau(const Camera& camera)
     return rays.tau[0];
 }
 
+double paraxialMagnification(const Camera& camera)
+{
+    const double SMALL = 1e-4;
+    const Vec3d n = camera.layers().normal(), across = normalize(n.cross(std::abs(n[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
+    const Vec3d w = normalize(n + SMALL*across);
+    Rays rays;
+    uchar status = REFRACT_OK;
+    camera.layers().traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+    return norm(w.cross(n))/norm(rays.direction(0).cross(n));
+}
+
 Vec2d virtualCentreRange(const Camera& camera)
 {
     const int STEPS = 32;

@@ -42,6 +42,9 @@ private:
 //! Tau of a ray along the window's normal.
 double paraxialTau(const Camera& camera);
 
+//! By which the image grows, straight through the window: a flat one in water, by the index.
+double paraxialMagnification(const Camera& camera);
+
 /** Least and largest tau of a virtual centre: where four in five rays of the image meet the axis of the window, and as far again.
 The image is taken to be twice as large as the principal point is far from the first pixel. */
 Vec2d virtualCentreRange(const Camera& camera);

@@ -96,6 +96,14 @@ class refract_test(NewOpenCVTests):
         with self.assertRaisesRegex(cv.error, r'window\.index\[0\] is 0\.9'):
             window.check()
 
+    def test_dome(self):
+        dome = cv.refract.GlassWindow.dome((1, -2, 3), 50, 7, 1.5, 1.33)
+        self.assertEqual((cv.refract.WINDOW_DOME, (1, -2, 3), 50), (dome.shape, dome.center, dome.radius))
+        camera = cv.refract.RefractiveCamera.create(np.diag([1000., 1000, 1]), None, dome)
+        self.assertEqual(('center[2]', 'radius'), tuple(camera.parameterNames()[6:8]))
+        with self.assertRaisesRegex(cv.error, 'inside the dome'):
+            cv.refract.GlassWindow.dome((0, 0, 60), 50, 7, 1.5)
+
     def test_window_defaults(self):
         window = cv.refract.GlassWindow(normal=(0, 0, 2), thickness=10, index=1.5)
         self.assertEqual(((0, 0, 1), 0, 1), (window.normal, window.distance, window.outerIndex))

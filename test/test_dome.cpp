@@ -1,0 +1,417 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Domes; against 60-digit references in test_reference.cpp, in every call as two of allWindows().
+#include "quick_require.hpp"
+#include "scenes.hpp"
+#include "dispatch/kernels.hpp"
+#include "window/dome.hpp"
+#include "window/dome_kernels.hpp"
+#include "window/layers.hpp"
+#include "window/parameters.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
+
+/** One to three layers; the centre up to 0.6 radii off.
+@param anyMedia round the camera, too, and the centre up to 0.95 radii off: there may be total reflection and caustics */
+GlassWindow randomDome(Random& random, bool anyMedia)
+{
+    const double radius = random.logUniform(5, 500);
+    const Vec3d towards = random.vector(1);
+    const double media[] = { 1, 1.333, 1.5 };
+    GlassWindow window = GlassWindow::dome(random.uniform(0, anyMedia ? 0.95 : 0.6)*radius/norm(towards)*towards, radius,
+                                           radius*random.uniform(0.01, 0.5), random.uniform(1.45, 1.8), media[random.below(2)]);
+    for (int layer = random.below(3); layer > 0; layer--)
+    {
+        window.thickness.push_back(radius*random.uniform(0.01, 0.2));
+        window.index.push_back(random.uniform(1.3, 1.7));
+    }
+    if (anyMedia)
+        window.innerIndex = media[random.below(3)];
+    return window;
+}
+
+//! Vector Snell, sphere by sphere. @return false: total reflection
+bool trace(const GlassWindow& w, Vec3d& point, Vec3d& direction, double* leastCosine = nullptr)
+{
+    double medium = w.innerIndex, radius = w.radius;
+    point = Vec3d();
+    for (size_t k = 0; k <= w.index.size(); k++)
+    {
+        const double next = k < w.index.size() ? w.index[k] : w.outerIndex, ratio = medium/next;
+        const Vec3d off = point - w.center;
+        const double ahead = off.dot(direction);
+        point += (-ahead + std::sqrt(ahead*ahead - off.dot(off) + radius*radius))*direction;
+        const Vec3d m = (point - w.center)/radius;
+        const double c = m.dot(direction), square = 1 - ratio*ratio*(1 - c*c);
+        if (!(square > 0))
+            return false;
+        direction = ratio*direction + (std::sqrt(square) - ratio*c)*m;
+        if (leastCosine)
+            *leastCosine = std::min(*leastCosine, std::min(c, std::sqrt(square)));
+        medium = next;
+        radius += k < w.index.size() ? w.thickness[k] : 0;
+    }
+    return true;
+}
+
+uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction)
+{
+    uchar status = REFRACT_OK;
+    layers.solveIn(1, &X[0], &X[1], &X[2], &w, &direction[0], &direction[1], &direction[2], &status);
+    return status;
+}
+
+Vec3d unit(const Vec3d& v) { return v/norm(v); }
+
+Dome domeOf(const GlassWindow& window, const std::vector<Sphere>& faces)
+{
+    const WindowLayout at = windowLayout(window);
+    return { { window.center[0], window.center[1], window.center[2] }, 0, faces.data(), (int)faces.size(), window.innerIndex,
+             window.outerIndex, at };
+}
+
+std::vector<const Kernels*> levelsOfThisMachine()
+{
+    std::vector<const Kernels*> levels(1, kernelsBaseline());
+    if (checkHardwareSupport(CV_CPU_AVX2) && checkHardwareSupport(CV_CPU_FMA3) && kernelsAvx2())
+        levels.push_back(kernelsAvx2());
+    if (checkHardwareSupport(CV_CPU_AVX512_SKX) && kernelsAvx512())
+        levels.push_back(kernelsAvx512());
+    return levels;
+}
+
+std::string refusal(const std::function<void()>& call, int code)
+{
+    try
+    {
+        call();
+    }
+    catch (const cv::Exception& e)
+    {
+        CHECK(e.code == code);
+        return e.err;
+    }
+    return "no refusal";
+}
+
+GlassWindow changed(const std::function<void(GlassWindow&)>& change)
+{
+    GlassWindow window = GlassWindow::dome(Vec3d(1, 2, 3), 50, 5, 1.5);
+    change(window);
+    return window;
+}
+
+} // namespace
+
+TEST_CASE("Round trips through domes, to all sides, of any media", "[dome]")
+{
+    CAPTURE(seed());
+    Random random;
+    double worst = 0;
+    int trips = 0, reflected = 0, several = 0, left = 0;
+    for (int i = 0; i < 40000; i++)
+    {
+        const GlassWindow window = randomDome(random, i % 2 == 1);
+        const Layers layers(window);
+        const Vec3d w = unit(random.vector(1));
+        Vec3d point, direction = w, back;
+        double grazing = 1;
+        const bool gets = trace(window, point, direction, &grazing);
+        Rays rays;
+        uchar status = REFRACT_OK;
+        layers.traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+        QUICK_REQUIRE(status == (gets ? REFRACT_OK : REFRACT_TOTAL_REFLECTION), i, w, grazing);
+        reflected += !gets;
+        if (!gets || grazing < 1e-2)
+            continue;
+        const double size = window.radius;
+        QUICK_REQUIRE(norm(rays.direction(0) - direction) < 1e-14/grazing, i, w);
+        const Vec3d off = (rays.origin(0, layers.normal()) - point).cross(direction);
+        QUICK_REQUIRE(norm(off) < 1e-13*(size + std::abs(rays.tau[0]))/grazing, i, w);
+        const double mu = layers.leavingMu(rays, 0);
+        QUICK_REQUIRE(norm(rays.origin(0, layers.normal()) + rays.direction(0)/mu - point) < 1e-12*(size + std::abs(rays.tau[0]))/grazing,
+                      i, w);
+        const Vec3d X = point + size*random.logUniform(1e-2, 1e4)*direction;
+        QUICK_REQUIRE(layers.isBeyond(X[0], X[1], X[2]), i, w);
+        QUICK_REQUIRE(!layers.isBeyond(0.999*point[0], 0.999*point[1], 0.999*point[2]), i, w);
+        const std::vector<Sphere> faces = spheresOf(window);
+        const Dome dome = domeOf(window, faces);
+        double none;
+        left += !domeKernels().solveIn(dome, 1, &X[0], &X[1], &X[2], NULL, &back[0], &back[1], &none);
+        QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w, X);
+        // Behind a caustic a point has several images: any of them is one.
+        Vec3d again, leaving = unit(back);
+        double grazingBack = 1;
+        QUICK_REQUIRE(trace(window, again, leaving, &grazingBack), i, w, X);
+        if (norm(unit(back) - w) > 1e-6 && grazingBack > 1e-2)
+        {
+            QUICK_REQUIRE(window.innerIndex > std::min(window.outerIndex, *std::min_element(window.index.begin(), window.index.end())),
+                          i, w, X);
+            QUICK_REQUIRE(norm((X - again).cross(leaving)) < 1e-10*norm(X), i, w, X);
+            several++;
+            continue;
+        }
+        const double error = norm(unit(back) - w)*grazing*grazing;
+        QUICK_REQUIRE(error < 1e-13, i, w, X, error);
+        worst = std::max(worst, error);
+        // The scalar code and the kernel are two ways to one answer; and homogeneous points.
+        Vec3d scalar;
+        QUICK_REQUIRE(findDomePath(dome, X, 1, scalar) == REFRACT_OK, i, w, X);
+        const bool isOne = window.innerIndex == 1;
+        QUICK_REQUIRE((!isOne || norm(unit(scalar) - w)*grazing*grazing < 1e-13), i, w, X);
+        QUICK_REQUIRE(solveIn(layers, X*1e-4, 1e-4, back) == REFRACT_OK, i, w, X);
+        QUICK_REQUIRE((!isOne || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w, X);
+        QUICK_REQUIRE(solveIn(layers, direction, 0, back) == REFRACT_OK, i, w);
+        QUICK_REQUIRE((!isOne || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w);
+        trips++;
+    }
+    CHECK(trips > 30000);
+    CHECK(reflected > 100);
+    CHECK(left < trips/100);
+    printNumber("round trips through domes", trips, "");
+    printNumber("round trips through domes, worst angle * cos(grazing angle)^2", worst, "rad");
+    printNumber("points that the kernel leaves to scalar code", left, "");
+    printNumber("points with another image than the one they were made from", several, "");
+}
+
+TEST_CASE("A dome with its centre at the camera does not refract", "[dome]")
+{
+    CAPTURE(seed());
+    Random random;
+    const Ptr<RefractiveCamera> dome = RefractiveCamera::create(K, noArray(), GlassWindow::dome(Vec3d(), 50, 6, 1.52, 1.333));
+    const Ptr<RefractiveCamera> none = RefractiveCamera::create(K, noArray());
+    std::vector<Point3d> points;
+    for (int i = 0; i < 500; i++)
+        points.push_back(Point3d(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(100, 1e4)));
+    std::vector<Point2d> behind, plain;
+    std::vector<Point3d> origins, directions;
+    Mat J;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), dome, behind, noArray(), J);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), none, plain);
+    refractiveUnprojectPoints(behind, origins, directions, dome);
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        REQUIRE(norm(behind[i] - plain[i]) < 1e-11);
+        REQUIRE(norm(origins[i]) == 0);
+        REQUIRE(norm(directions[i].cross(points[i])) < 1e-14*norm(points[i]));
+    }
+    // Radius, thickness and indices have no effect, as said; the centre has.
+    for (int row = 0; row < J.rows; row++)
+        for (int c = 6 + 4 + 3; c < J.cols; c++)
+            REQUIRE(std::abs(J.at<double>(row, c)) < 1e-10);
+    CHECK(norm(J.col(6 + 4)) > 1);
+}
+
+TEST_CASE("A dome becomes a flat window as its radius grows", "[dome]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (double outerIndex : { 1., 1.333 })
+    {
+        const GlassWindow flat(Vec3d(0.1, -0.05, 1), 20, 1.5, 30, outerIndex);
+        std::vector<Point3d> points;
+        for (int i = 0; i < 200; i++)
+            points.push_back(Point3d(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(600, 1000)));
+        std::vector<Point2d> expected;
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), flat, expected);
+        const auto difference = [&](double radius)
+        {
+            const GlassWindow dome = GlassWindow::dome(-(radius - flat.distance)*flat.normal, radius, 20, 1.5, outerIndex);
+            std::vector<Point2d> pixels;
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), dome, pixels);
+            return norm(pixels, expected, NORM_INF);
+        };
+        // What is left is the curvature's own: half of it at twice the radius.
+        for (double radius : { 1e5, 1e6, 1e7 })
+            CHECK(difference(radius)/difference(2*radius) == Approx(2).epsilon(1e-2));
+        printNumber(format("radius 1e6 against the flat window, outside %g", outerIndex), difference(1e6), "px");
+    }
+}
+
+TEST_CASE("Points before and inside a dome are behind the window", "[dome]")
+{
+    CAPTURE(seed());
+    Random random;
+    const GlassWindow window = GlassWindow::dome(Vec3d(5, -4, 12), 50, 7, 1.5, 1.333);
+    std::vector<Point3d> points;
+    std::vector<uchar> expected, status;
+    for (int i = 0; i < 1000; i++)
+    {
+        const Vec3d at = unit(random.vector(1));
+        const double radius = i % 3 == 0 ? 57*(1 + 1e-9) : i % 3 == 1 ? 57*(1 - 1e-9) : random.uniform(0, 57);
+        const Vec3d X = window.center + radius*at;
+        if (X[2] < 5)
+            continue;
+        points.push_back(X);
+        expected.push_back(i % 3 == 0 ? REFRACT_OK : REFRACT_BEHIND_WINDOW);
+    }
+    points.push_back(Point3d(NAN, 0, 100));
+    expected.push_back(REFRACT_NOT_FINITE);
+    std::vector<Point2f> pixels;
+    Mat strided(3*(int)points.size(), 2, CV_64FC3);         // every third row of the second column, as float32
+    for (size_t i = 0; i < points.size(); i++)
+        strided.at<Point3d>(3*(int)i, 1) = points[i];
+    std::vector<Point2d> exact;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), window, exact, status);
+    CHECK(status == expected);
+    const Mat view(Mat((int)points.size(), 1, CV_64FC3, strided.ptr(0) + strided.elemSize(), 3*strided.step[0]));
+    Mat fromView;
+    refractiveProjectPoints(view, Vec3d(), Vec3d(), K, noArray(), window, fromView);
+    Mat single;
+    Mat(points).convertTo(single, CV_32F);
+    refractiveProjectPoints(single, Vec3d(), Vec3d(), K, noArray(), window, pixels);
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        REQUIRE(std::isnan(exact[i].x) == (expected[i] != REFRACT_OK));
+        if (expected[i] != REFRACT_OK)
+            continue;
+        REQUIRE(fromView.at<Point2d>((int)i) == exact[i]);
+    }
+    std::vector<Point2d> none;
+    refractiveProjectPoints(std::vector<Point3d>(), Vec3d(), Vec3d(), K, noArray(), window, none, status);
+    CHECK(none.empty());
+    CHECK(status.empty());
+}
+
+TEST_CASE("Every instruction set gives the same answer behind a dome", "[dome][kernels]")
+{
+    CAPTURE(seed());
+    Random random;
+    const int n = 301;
+    for (int i = 0; i < 20; i++)
+    {
+        const GlassWindow window = randomDome(random, false);
+        const std::vector<Sphere> faces = spheresOf(window);
+        const Dome dome = domeOf(window, faces);
+        std::vector<double> x(n), y(n), z(n), d[3], expected[3];
+        for (int k = 0; k < n; k++)
+        {
+            const Vec3d X = window.center + 2.5*window.radius*random.logUniform(1, 100)*unit(random.vector(1));
+            x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+        }
+        for (const Kernels* level : levelsOfThisMachine())
+        {
+            for (std::vector<double>& values : d)
+                values.assign(n, 0);
+            CHECK(level->dome.solveIn(dome, n, x.data(), y.data(), z.data(), NULL, d[0].data(), d[1].data(), d[2].data()));
+            if (expected[0].empty())
+                std::copy(d, d + 3, expected);
+            for (int k = 0; k < n; k++)
+            {
+                const Vec3d one = unit(Vec3d(d[0][k], d[1][k], d[2][k])), other(expected[0][k], expected[1][k], expected[2][k]);
+                REQUIRE(norm(one - unit(other)) < 1e-14);
+            }
+        }
+    }
+}
+
+TEST_CASE("What is no dome is refused, and the text says why", "[dome]")
+{
+    const auto text = [](const std::function<void(GlassWindow&)>& change, int code)
+    { return refusal([&] { changed(change).check(); }, code); };
+    const int range = Error::StsOutOfRange, bad = Error::StsBadArg;
+    CHECK_THAT(text([](GlassWindow& w) { w.center = Vec3d(0, 0, 50); }, range), Contains("the camera must be inside the dome"));
+    CHECK_THAT(text([](GlassWindow& w) { w.radius = 0; }, range), Contains("window.radius is 0; it must be positive"));
+    CHECK_THAT(text([](GlassWindow& w) { w.radius = INF; }, range), Contains("window.radius is inf"));
+    CHECK_THAT(text([](GlassWindow& w) { w.radius = NAN; }, range), Contains("window.radius is nan"));
+    CHECK_THAT(text([](GlassWindow& w) { w.center[1] = NAN; }, bad), Contains("window.center is (1, nan, 3); it must be finite"));
+    CHECK_THAT(text([](GlassWindow& w) { w.normal = Vec3d(0, 1, 0); }, bad), Contains("window.normal is set, but the window is a dome"));
+    CHECK_THAT(text([](GlassWindow& w) { w.distance = 5; }, bad), Contains("window.distance is set, but the window is a dome"));
+    CHECK_THAT(text([](GlassWindow& w) { w.wedge.push_back(Vec2d()); }, bad), Contains("window.wedge is set, but the window is a dome"));
+    CHECK_THAT(text([](GlassWindow& w) { w.shape = 7; }, range), Contains("window.shape is 7"));
+    CHECK_THAT(text([](GlassWindow& w) { w.shape = WINDOW_FLAT; }, bad), Contains("window.center is set, but the window is flat"));
+    CHECK_THAT(text([](GlassWindow& w) { w.thickness[0] = -1; }, range), Contains("window.thickness[0] is -1"));
+    CHECK_THAT(text([](GlassWindow& w) { w.outerIndex = 0.9; }, range), Contains("window.outerIndex is 0.9"));
+    CHECK_THAT(refusal([] { GlassWindow::dome(Vec3d(60, 0, 0), 50, 5, 1.5); }, range), Contains("60 from the camera"));
+}
+
+TEST_CASE("A dome is the same after its file, and a flat window's file has no word of it", "[dome][file]")
+{
+    GlassWindow dome = GlassWindow::dome(Vec3d(1.25, -2.5, 3.0625), 50.1, 7.3, 1.5168, 1.333);
+    FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    out << "glass_window" << dome << "flat" << GlassWindow(Vec3d(0, 0, 1), 5, 1.5);
+    const String text = out.releaseAndGetString();
+    CHECK_THAT(text, Contains("shape: dome"));
+    CHECK(text.find("radius", text.find("flat:")) == String::npos);
+    FileStorage in(text, FileStorage::READ | FileStorage::MEMORY);
+    GlassWindow back;
+    in["glass_window"] >> back;
+    CHECK(back.shape == WINDOW_DOME);
+    CHECK(back.center == dome.center);
+    CHECK(back.radius == dome.radius);
+    CHECK(back.thickness == dome.thickness);
+    CHECK(back.index == dome.index);
+    CHECK(back.outerIndex == dome.outerIndex);
+    const auto parse = [](const String& map)
+    {
+        return refusal([&]
+        {
+            GlassWindow window;
+            FileStorage fs("%YAML:1.0\nglass_window: {" + map + "}\n", FileStorage::READ | FileStorage::MEMORY);
+            fs["glass_window"] >> window;
+        }, Error::StsParseError);
+    };
+    CHECK_THAT(parse("shape: tube, radius: 5"), Contains("glass_window.shape is 'tube'; it must be flat or dome"));
+    CHECK_THAT(parse("radius: 50, center: [0, 0, 1], thickness: 5, index: 1.5"), Contains("its shape is flat"));
+    CHECK_THAT(parse("shape: dome, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is dome"));
+    CHECK_THAT(parse("shape: dome, center: [0, 0], radius: 50"), Contains("glass_window.center has 2 numbers"));
+}
+
+TEST_CASE("A dome's parameters are its centre and its radius", "[dome][parameters]")
+{
+    const GlassWindow dome = GlassWindow::dome(Vec3d(1, 2, 3), 50, 7, 1.5, 1.333);
+    const std::vector<String> names = windowParameterNames(windowLayout(dome));
+    CHECK(names == std::vector<String>{ "center[0]", "center[1]", "center[2]", "radius", "thickness[0]", "index[0]", "innerIndex",
+                                        "outerIndex" });
+    std::vector<double> p = windowParameters(dome);
+    CHECK(p == std::vector<double>{ 1, 2, 3, 50, 7, 1.5, 1, 1.333 });
+    p[2] = 4;
+    p[3] = 60;
+    const GlassWindow moved = withParameters(dome, p.data());
+    CHECK(moved.center == Vec3d(1, 2, 4));
+    CHECK(moved.radius == 60);
+    CHECK(moved.normal == Vec3d(0, 0, 1));
+    CHECK(kindOf(windowLayout(dome), 2) == WindowParameter::CENTER);
+    CHECK(kindOf(windowLayout(dome), 3) == WindowParameter::RADIUS);
+}
+
+TEST_CASE("Calibrators and bundle adjustment refuse a dome", "[dome]")
+{
+    GlassWindow dome = GlassWindow::dome(Vec3d(1, 2, 3), 50, 7, 1.5, 1.333);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), dome), other = camera->clone();
+    const std::vector<std::vector<Point3f> > object(3, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 }, { 2, 2, 0 } });
+    std::vector<std::vector<Point2f> > image(3);
+    for (std::vector<Point2f>& view : image)
+        for (const Point3f& X : object[0])
+            view.push_back(Point2f(600 + 20*X.x, 500 + 20*X.y));
+    const std::vector<std::vector<Point2f> > none;
+    std::vector<Mat> rvecs, tvecs;
+    const auto refused = [](const std::function<void()>& call)
+    { CHECK_THAT(refusal(call, Error::StsNotImplemented), Contains("dome")); };
+    refused([&] { calibrateGlass(object, image, image, camera, rvecs, tvecs); });
+    refused([&] { calibrateGlass(object, image, image, camera, rvecs, tvecs, GLASS_FREE_WEDGE); });
+    refused([&] { calibrateGlass(object, image, image, K, noArray(), dome, rvecs, tvecs); });
+    Mat R = Mat::eye(3, 3, CV_64F), T = Mat::zeros(3, 1, CV_64F);
+    refused([&] { stereoCalibrateGlass(object, image, image, image, image, camera, other, R, T, rvecs, tvecs, noArray(), noArray(), noArray()); });
+    std::vector<Mat> Rs{ R }, Ts{ T };
+    std::vector<std::vector<Mat> > seen(1);
+    for (const std::vector<Point2f>& view : image)
+        seen[0].push_back(Mat(view));
+    const std::vector<Ptr<RefractiveCamera> > one{ camera }, two{ RefractiveCamera::create(K, noArray()), camera };
+    refused([&] { calibrateGlassRig(object, seen, seen, one, std::vector<int>(), Rs, Ts, rvecs, tvecs); });
+    Mat points3D, lengths = (Mat_<double>(1, 4) << 0, 1, 1, 0.1);
+    const std::vector<Mat> pixels{ seen[0][0], seen[0][0] };
+    Rs.push_back(Mat::eye(3, 3, CV_64F));
+    Ts.push_back((Mat_<double>(3, 1) << 1, 0, 0));
+    refused([&] { refractiveBundleAdjust(pixels, two, std::vector<int>(), Rs, Ts, points3D, lengths); });
+}
