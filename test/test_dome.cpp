@@ -149,30 +149,29 @@ TEST_CASE("Round trips through domes, to all sides, of any media", "[dome]")
         double none;
         left += !domeKernels().solveIn(dome, 1, &X[0], &X[1], &X[2], NULL, &back[0], &back[1], &none);
         QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w, X);
-        // Behind a caustic a point has several images: any of them is one.
-        Vec3d again, leaving = unit(back);
-        double grazingBack = 1;
-        QUICK_REQUIRE(trace(window, again, leaving, &grazingBack), i, w, X);
-        if (norm(unit(back) - w) > 1e-6 && grazingBack > 1e-2)
+        const double error = norm(unit(back) - w)*grazing*grazing;
+        const bool isRarest = window.innerIndex <= std::min(window.outerIndex, *std::min_element(window.index.begin(),
+                                                                                                window.index.end()));
+        if (error >= 1e-13 && !isRarest)
         {
-            QUICK_REQUIRE(window.innerIndex > std::min(window.outerIndex, *std::min_element(window.index.begin(), window.index.end())),
-                          i, w, X);
-            QUICK_REQUIRE(norm((X - again).cross(leaving)) < 1e-10*norm(X), i, w, X);
+            // Next to a caustic two directions see the point, and behind it more: any of them is right.
+            Vec3d again, leaving = unit(back);
+            double grazingBack = 1;
+            QUICK_REQUIRE(trace(window, again, leaving, &grazingBack), i, w, X);
+            QUICK_REQUIRE(norm((X - again).cross(leaving))*grazingBack < 1e-10*norm(X), i, w, X, grazingBack);
             several++;
             continue;
         }
-        const double error = norm(unit(back) - w)*grazing*grazing;
         QUICK_REQUIRE(error < 1e-13, i, w, X, error);
         worst = std::max(worst, error);
         // The scalar code and the kernel are two ways to one answer; and homogeneous points.
         Vec3d scalar;
         QUICK_REQUIRE(findDomePath(dome, X, 1, scalar) == REFRACT_OK, i, w, X);
-        const bool isOne = window.innerIndex == 1;
-        QUICK_REQUIRE((!isOne || norm(unit(scalar) - w)*grazing*grazing < 1e-13), i, w, X);
+        QUICK_REQUIRE((!isRarest || norm(unit(scalar) - w)*grazing*grazing < 1e-13), i, w, X);
         QUICK_REQUIRE(solveIn(layers, X*1e-4, 1e-4, back) == REFRACT_OK, i, w, X);
-        QUICK_REQUIRE((!isOne || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w, X);
+        QUICK_REQUIRE((!isRarest || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w, X);
         QUICK_REQUIRE(solveIn(layers, direction, 0, back) == REFRACT_OK, i, w);
-        QUICK_REQUIRE((!isOne || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w);
+        QUICK_REQUIRE((!isRarest || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w);
         trips++;
     }
     CHECK(trips > 30000);

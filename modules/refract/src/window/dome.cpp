@@ -70,6 +70,7 @@ struct AngleAtCenter
 double solveBetween(const AngleAtCenter& angle, double phi, double alpha, double low, double high)
 {
     const int STEPS = 200;
+    const double FAR = 1e-9;        // radians: where light grazes the slope is infinite, and steps are short far from the root
     alpha = std::min(std::max(alpha, low), high);
     for (int k = 0; k < STEPS; k++)
     {
@@ -77,7 +78,8 @@ double solveBetween(const AngleAtCenter& angle, double phi, double alpha, double
         angle(alpha, value, slope);
         (value < phi ? low : high) = alpha;
         double next = alpha - (value - phi)/slope;
-        if (!(next >= low && next <= high))
+        const bool isStuck = std::abs(next - alpha) <= 1e-3*(high - low) && std::abs(value - phi) > FAR;
+        if (!(next >= low && next <= high) || isStuck)
             next = 0.5*(low + high);
         const double step = std::abs(next - alpha);
         alpha = next;
