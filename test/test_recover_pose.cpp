@@ -21,12 +21,14 @@ struct Matched
     std::vector<uchar> isRight;
 };
 
-enum SceneMedium { NOTHING, AIR, WATER, WEDGE };      // WEDGE: water, and faces that are not parallel
+enum SceneMedium { NOTHING, AIR, WATER, WEDGE, DOME };      // water, and WEDGE: faces that are not parallel; DOME: spheres
 
 GlassWindow windowIn(SceneMedium medium, bool second)
 {
     if (medium == NOTHING)
         return GlassWindow();
+    if (medium == DOME)
+        return GlassWindow::dome(second ? Vec3d(-5, 12, -40) : Vec3d(15, 10, -45), 90, 12, 1.49, 1.333);
     const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : paper::NORMAL1;
     if (medium == AIR)
         return paper::pane(50, normal);
@@ -155,7 +157,7 @@ struct Tally
 
 TEST_CASE("Perfect matches give the perfect pose, its length too", "[pose][recover]")
 {
-    for (SceneMedium medium : { NOTHING, AIR, WATER, WEDGE })
+    for (SceneMedium medium : { NOTHING, AIR, WATER, WEDGE, DOME })
     {
         Random random(6000);
         Matched m = matchedScene(medium, random, 60);
@@ -261,7 +263,7 @@ TEST_CASE("Intervals of short baselines hold what they say", "[.monte-carlo]")
 
 TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
 {
-    const SceneMedium medium = GENERATE(WATER, WEDGE);
+    const SceneMedium medium = GENERATE(WATER, WEDGE, DOME);
     Random random(6950);
     const Matched m = matchedScene(medium, random, 40);
     const Camera &c1 = cameraOf(m.camera1), &c2 = cameraOf(m.camera2);

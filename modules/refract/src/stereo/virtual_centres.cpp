@@ -22,11 +22,12 @@ double paraxialMagnification(const Camera& camera)
 {
     const double SMALL = 1e-4;
     const Vec3d n = camera.layers().normal(), across = normalize(n.cross(std::abs(n[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
-    const Vec3d w = normalize(n + SMALL*across);
+    const Vec3d w[] = { normalize(n + SMALL*across), normalize(n - SMALL*across) };
+    const double x[] = { w[0][0], w[1][0] }, y[] = { w[0][1], w[1][1] }, z[] = { w[0][2], w[1][2] };
     Rays rays;
-    uchar status = REFRACT_OK;
-    camera.layers().traceOut(1, &w[0], &w[1], &w[2], rays, &status);
-    return norm(w.cross(n))/norm(rays.direction(0).cross(n));
+    uchar status[] = { REFRACT_OK, REFRACT_OK };
+    camera.layers().traceOut(2, x, y, z, rays, status);
+    return norm(w[0] - w[1])/norm(rays.direction(0) - rays.direction(1));
 }
 
 Vec2d virtualCentreRange(const Camera& camera)
