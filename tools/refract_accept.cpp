@@ -4,6 +4,7 @@
 #include "accept/acceptance_output.hpp"
 #include "accept/board_points.hpp"
 #include "calibrate/calibration_images.hpp"
+#include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -53,6 +54,7 @@ struct Options
     std::string calibration, points, lengths, maxError, plane, volume, unit;
     std::vector<std::string> boards, images;            //!< of each camera; files whose points are in --points
     TargetOptions target;
+    ConditionsOptions conditions;
     std::string certificate, dcc, summary;
     CertificateLabel label;
     double pixelSigma = 0.;
@@ -70,6 +72,7 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--images", o.images, "images (quoted globs) of the points of --points: whether one calibrated is told by SHA-256, too");
     app.add_option("--volume", o.volume, "xmin,xmax,ymin,ymax,zmin,zmax in the frame of camera 1 (default: where it was calibrated)");
     o.target.addTo(app, false);
+    o.conditions.addTo(app);
     app.add_option("--unit", o.unit, "unit of lengths, where calib.yml does not say it")->check(CLI::IsMember(unitNames()));
     app.add_flag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
     app.add_option("--pixel-sigma", o.pixelSigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
@@ -283,7 +286,8 @@ int main(int argc, char** argv)
         const Options o = parsed(command, addOptions);
         checkOptions(o, command.settings());
         const PermissibleError limit(o.maxError);
-        const Calibration calibration = readCalibration(o.calibration);
+        const Calibration asCalibrated = readCalibration(o.calibration);
+        const Calibration calibration = o.conditions.appliedTo(asCalibrated, o.calibration);
         requireWindows(calibration, o.calibration, o.noWindow);
         const std::optional<cv::Vec4d> plane = planeOf(o, calibration);
         const std::optional<CalibratedVolume> volume = volumeOf(o, calibration);
@@ -298,6 +302,8 @@ int main(int argc, char** argv)
         acceptance.unit = unit;
         acceptance.imagesChecked = byPixels || (!hashes.empty() && !calibration.provenance.images.empty());
         acceptance.notices = noticesOf(o, calibration, data.points, errors, acceptance.imagesChecked);
+        if (o.conditions.isSaid())
+            acceptance.notices.push_back("The " + o.conditions.notice(asCalibrated));
         const Certificate certificate = certificateOf(o, calibration, acceptance, errors, data, hashes, command);
         writeOutputs(o, certificate);
         if (!command.quiet())

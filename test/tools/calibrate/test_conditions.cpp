@@ -136,6 +136,23 @@ TEST_CASE("Of the old medium stays what it did to other parameters", "[condition
         CHECK(camera.camera->window().outerIndex == 1.341);
     CHECK(after.covariance.data != before.covariance.data);
 
+    // And so of what the covariance is made of, row by row of a budget.
+    const std::vector<int> before0 = {columnsOf(rig, 0).outerIndex, columnsOf(rig, 0).distance};
+    Calibration sourced = calibrationOf(c.input);
+    Mat factor(sourced.covariance.rows, 1, CV_64F, Scalar(0));
+    factor.at<double>(before0[0]) = 0.002;
+    factor.at<double>(before0[1]) = -0.3;
+    sourced.provenance.sources = {{std::string(INDEX_OF_MEDIUM) + ", camera 1", "0.002", 0.002, factor}};
+    const std::vector<UncertaintySource> sources = inMedium(sourced, mediumOf(1.341, KNOWN_TO), "calib.yml").provenance.sources;
+    REQUIRE(sources.size() == 2);
+    CHECK(sources[0].factor.at<double>(before0[0]) == 0.);
+    CHECK(sources[0].factor.at<double>(before0[1]) == -0.3);
+    CHECK(factor.at<double>(before0[0]) == 0.002);
+    CHECK(sources[1].name == INDEX_OF_MEDIUM);
+    CHECK(sources[1].factor.at<double>(media[0]) == KNOWN_TO);
+    CHECK(sources[1].factor.at<double>(media[1]) == KNOWN_TO);
+    CHECK(norm(sources[1].factor) == Approx(std::sqrt(2.)*KNOWN_TO));
+
     // In one medium on both sides the distance is not known.
     const Calibrated air = calibrated(allScenes()[1], random);
     CHECK_THROWS_AS(inMedium(calibrationOf(air.input), mediumOf(1.333, 0.), "calib.yml"), Failure);

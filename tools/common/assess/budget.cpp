@@ -70,7 +70,7 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     add("index", indices, own.index, own.layers);
     add("wedge", std.wedge.text("'", 1./ARC_MINUTE), own.wedge, own.end - own.wedge);
     add("distance", std.distance.text(length), own.distance, 1);
-    add("index of the scene's medium", std.outerIndex.text(""), own.outerIndex, 1);
+    add(INDEX_OF_MEDIUM, std.outerIndex.text(""), own.outerIndex, 1);
     return sources;
 }
 

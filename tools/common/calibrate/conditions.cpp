@@ -29,12 +29,17 @@ GlassWindow inMedium(GlassWindow window, const Medium& medium)
     return window;
 }
 
-//! One error for all windows, independent of all else.
-void setVariance(Mat& covariance, const RigModel& rig, double std)
+std::vector<int> columnsOfMedium(const RigModel& rig)
 {
     std::vector<int> columns;
     for (int c = 0; c < (int)rig.cameras.size(); c++)
         columns.push_back(columnsOf(rig, c).outerIndex);
+    return columns;
+}
+
+//! One error for all windows, independent of all else.
+void setVariance(Mat& covariance, const std::vector<int>& columns, double std)
+{
     for (int column : columns)
     {
         covariance.row(column).setTo(0.);
@@ -43,6 +48,23 @@ void setVariance(Mat& covariance, const RigModel& rig, double std)
     for (int a : columns)
         for (int b : columns)
             covariance.at<double>(a, b) = std*std;
+}
+
+//! The same of what the covariance is made of: the index of that time stays as far as it moved other parameters.
+void setSource(std::vector<UncertaintySource>& sources, const std::vector<int>& columns, int rows, const Medium& medium)
+{
+    for (UncertaintySource& source : sources)
+    {
+        source.factor = source.factor.clone();
+        for (int column : columns)
+            source.factor.row(column).setTo(0.);
+        if (source.name.find(INDEX_OF_MEDIUM) == 0)
+            source.name += ", when calibrated";
+    }
+    UncertaintySource now = {INDEX_OF_MEDIUM, medium.std.text(""), medium.std, Mat(rows, 1, CV_64F, Scalar(0))};
+    for (int column : columns)
+        now.factor.at<double>(column) = medium.std;
+    sources.push_back(now);
 }
 
 } // namespace
@@ -64,7 +86,10 @@ Calibration inMedium(const Calibration& calibration, const Medium& medium, const
     result.covariance = Mat(count, count, CV_64F, Scalar(0));
     if (!calibration.covariance.empty())
         calibration.covariance.copyTo(result.covariance);
-    setVariance(result.covariance, rig, medium.std);
+    const std::vector<int> columns = columnsOfMedium(rig);
+    setVariance(result.covariance, columns, medium.std);
+    if (!result.provenance.sources.empty())
+        setSource(result.provenance.sources, columns, count, medium);
     return result;
 }
 

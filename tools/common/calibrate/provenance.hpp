@@ -41,6 +41,8 @@ struct UncertaintySource
     cv::Mat factor;                 //!< rows of the covariance
 };
 
+const char* const INDEX_OF_MEDIUM = "index of the scene's medium";     //!< name of its source
+
 struct Provenance
 {
     std::vector<CalibrationImage> images;
