@@ -25,7 +25,8 @@ for _enumeration in _enumerations.ALL:
     _enumeration.__module__ = __name__
 
 # Static methods are there as functions too, RefractiveCamera_create, for programs of old.
-__all__ = ["__version__"] + [_name for _name, _thing in globals().items() if not _name.startswith(("_", "RefractiveCamera_", "GlassWindow_"))
+_others = ("_", "RefractiveCamera_", "GlassWindow_")
+__all__ = ["__version__"] + [_name for _name, _thing in globals().items() if not _name.startswith(_others)
                              and not isinstance(_thing, type(_sys))]
 
 _cv2 = _sys.modules.get("cv2")      # _native has imported it, if it is installed
