@@ -401,7 +401,8 @@ TEST_CASE("Calibrators and bundle adjustment refuse a dome", "[dome]")
     refused([&] { calibrateGlass(object, image, image, camera, rvecs, tvecs, GLASS_FREE_WEDGE); });
     refused([&] { calibrateGlass(object, image, image, K, noArray(), dome, rvecs, tvecs); });
     Mat R = Mat::eye(3, 3, CV_64F), T = Mat::zeros(3, 1, CV_64F);
-    refused([&] { stereoCalibrateGlass(object, image, image, image, image, camera, other, R, T, rvecs, tvecs, noArray(), noArray(), noArray()); });
+    refused([&] { stereoCalibrateGlass(object, image, image, image, image, camera, other, R, T, rvecs, tvecs, noArray(), noArray(),
+                                       noArray()); });
     std::vector<Mat> Rs{ R }, Ts{ T };
     std::vector<std::vector<Mat> > seen(1);
     for (const std::vector<Point2f>& view : image)

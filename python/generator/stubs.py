@@ -22,7 +22,8 @@ RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "double": "float",
            "FileNode": "FileNode", "size_t": "int"}
 FIELDS = {"normal": ("tuple[float, float, float]", "Numbers"), "thickness": ("tuple[float, ...]", "Numbers"), "index":
           ("tuple[float, ...]", "Numbers"), "wedge": ("tuple[tuple[float, float], ...]", "Array | Sequence[Numbers]"),
-          "materials": ("tuple[str, ...]", "Sequence[str]"), "center": ("tuple[float, float, float]", "Numbers"), "shape": ("int", "int")}       # others: float, Number
+          "materials": ("tuple[str, ...]", "Sequence[str]"), "center": ("tuple[float, float, float]", "Numbers"),
+          "shape": ("int", "int")}        # others: float, Number
 POINTS = r"imag.*|objectPoints|points\d?|src|disparity|undistorted|cameraMatrix\d?|newCameraMatrix|P\d?|R1|R2|covariance|lengths"
 MAY_BE_NONE = r"distCoeffs\d?|R|P|T|newCameraMatrix|depth|calibrationCovariance|covariance|imagePointsDirect\d?|points3D|lengths|" \
               r"poseCovariances|cameraCovariances?|Rs|Ts|rvecs|tvecs|targetCovariance"

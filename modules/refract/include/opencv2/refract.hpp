@@ -223,9 +223,9 @@ enum WindowShape {
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
-A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place. The camera
-may be anywhere inside the dome. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor
-its indices can be found from images. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only
+A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
+camera is anywhere inside. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor its
+indices can be found from images. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only
 and refuse a dome with the code Error::StsNotImplemented; all other calls take both.
 
 Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
