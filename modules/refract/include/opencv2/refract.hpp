@@ -1496,8 +1496,8 @@ noArray(): all are exact.
 @param pixelCovariances per camera, per view, as imagePoints: the covariance of each pixel, as for calibrateGlassRig.
 @param rigCovariance prior knowledge of all cameras together, in place of cameraCovariances: PxP, in the order of stdDeviations,
 the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration, as readRig returns it. What
-has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a window that cameras share, the
-rows of its first camera count. noArray(): nothing is known.
+has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a window that cameras share,
+the rows of its first camera count. noArray(): nothing is known.
 @param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
 times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
 independent.
