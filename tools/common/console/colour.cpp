@@ -9,12 +9,16 @@
 
 namespace tools {
 
+bool takesEscapes()
+{
+    const char* const terminal = std::getenv("TERM");
+    return terminal && terminal != std::string("dumb");
+}
+
 std::string toned(const std::ostream& out, const std::string& text, Tone tone)
 {
     const char* const none = std::getenv("NO_COLOR");
-    const char* const terminal = std::getenv("TERM");
-    const bool unwanted = (none && *none) || !terminal || terminal == std::string("dumb");
-    if (&out != &std::cout || !isatty(STDOUT_FILENO) || unwanted)
+    if (&out != &std::cout || !isatty(STDOUT_FILENO) || !takesEscapes() || (none && *none))
         return text;
     const char* const code = tone == Tone::GOOD ? "32" : tone == Tone::BAD ? "31" : "33";
     return std::string("\033[1;") + code + "m" + text + "\033[0m";

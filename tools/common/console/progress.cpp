@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/progress.hpp"
+#include "console/colour.hpp"
 
 #include <unistd.h>
 #include <chrono>
@@ -12,7 +13,7 @@ namespace tools {
 using std::chrono::milliseconds;
 
 Progress::Progress(const std::string& what, int total, bool quiet)
-    : what_(what), total_(total), terminal_(isatty(STDERR_FILENO))
+    : what_(what), total_(total), terminal_(isatty(STDERR_FILENO) && takesEscapes())
 {
     if (!quiet)
         thread_ = std::thread([this] { show(); });
