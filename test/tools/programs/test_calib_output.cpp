@@ -79,7 +79,8 @@ TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_line
         {"limit of the error not met", 10, false, PANE + std::string(" --max-error-at=600:1e-4"), "FAIL\n", "take sharper images: 99 %", 2},
         {"contradicted", 10, false, " --thickness=26 --index=1.5437 --no-robust", "Not usable: the images contradict",
             "put right what the images contradict", 2},
-        {"contradicted, stereo", 10, true, " --thickness=26 --index=1.5437 --no-robust", "- the images contradict --thickness=26",
+        // In air a rig that is 1.3 times as large, with its board, sees the same: a square of 50.7 is as good, and may come first.
+        {"contradicted, stereo", 10, true, " --thickness=26 --index=1.5437 --no-robust", "the images contradict --thickness=26",
             "put right what the images contradict", 2},
         {"weak", 1, false, PANE + std::string(" --free=thickness,index"), "- and ", "take 3 more pairs, first: ", 0},
         {"weak, stereo, limits", 2, true, PANE + std::string(" --max-rms=1 --max-normal-std=3"), "PASS; look at the weak points; "
