@@ -77,7 +77,7 @@ bool hasProgram(const std::string& name) { return std::system(("command -v " + n
 
 } // namespace
 
-TEST_CASE("refract_accept decides with a guard band, and says it in ten lines", "[accept_tool]")
+TEST_CASE("refract_accept decides with a guard band, and says it in ten lines", "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
     const TemporaryFolder out;
@@ -136,7 +136,7 @@ TEST_CASE("refract_accept decides with a guard band, and says it in ten lines", 
     }
 }
 
-TEST_CASE("Certificates of the same input have the same bytes, and text that means something in HTML and XML", "[accept_tool]")
+TEST_CASE("Certificates of the same input have the same bytes, and text that means something in HTML and XML", "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
     const TemporaryFolder out;
@@ -188,7 +188,7 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
     CHECK(std::system((validate + out / "e.xml" + " 2>>" + out / "log").c_str()) == 0);
 }
 
-TEST_CASE("refract_accept refuses images that calibrated, and tells when it cannot know", "[accept_tool]")
+TEST_CASE("refract_accept refuses images that calibrated, and tells when it cannot know", "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
     const TemporaryFolder out;
@@ -236,7 +236,7 @@ TEST_CASE("refract_accept refuses images that calibrated, and tells when it cann
     CHECK(json["notices"].size() == 3);
 }
 
-TEST_CASE("refract_accept says what is wrong in one sentence", "[accept_tool]")
+TEST_CASE("refract_accept says what is wrong in one sentence", "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
     const TemporaryFolder out;

@@ -271,6 +271,18 @@ TEST_CASE("refract_stereo takes videos, of one length", "[tools][stereo]")
     CHECK(!fs::exists(folder / "c.ply"));
 }
 
+TEST_CASE("refract_stereo blames the chessboard, not the calibration, if a chessboard is all there is", "[tools][stereo]")
+{
+    const TemporaryFolder folder;
+    const std::string boards = paths::bundled() + "/stereo";
+    const ToolResult result = runTool("refract_stereo " + boards + "/truth.yml " + boards + "/measure1/z600_1.jpg " + boards
+                                      + "/measure2/z600_1.jpg --depth=400,1300 --out=" + (folder / "c.ply"));
+    CAPTURE(result.err);
+    CHECK(result.code == 1);
+    CHECK(result.err.find("a pattern that repeats") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "c.ply"));
+}
+
 TEST_CASE("refract_stereo says so if the images do not fit the calibration", "[tools][stereo]")
 {
     const TemporaryFolder folder;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/checked_stereo.hpp"
+#include "stereo/depth_search.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/pair_mistakes.hpp"
 #include "stereo/point_sigma.hpp"
@@ -105,6 +106,10 @@ void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchS
     const PairDiagnosis diagnosis = diagnosePair(rig_.calibration(), image1, image2);
     if (!diagnosis.mistake.empty() || diagnosis.rows > mostRows(rows))
         result.refusal = whatFeaturesSay(diagnosis);
+    else if (!rows.contradicts() && diagnosis.features < MIN_FEATURES)
+        result.refusal = format("only %.0f %% of the matches are supported by texture, and only %d details are unlike all others: a pattern "
+                                "that repeats, as a chessboard's, matches at several depths; show a scene with texture",
+                                100*support.share(), diagnosis.features);
     if (!rows.contradicts() || !result.refusal.empty())
         return;
     const std::string text = format("matches are %.2g px (RMS) off their rows, where '%s' allows for %.2g: calibration and images do "

@@ -8,6 +8,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
+#include <set>
 #include <cmath>
 
 namespace tools {
@@ -56,8 +57,9 @@ Partners findPartners(const Mat& grey1, const Mat& grey2, int mostFeatures)
     if (first.places.size() < 2 || second.places.size() < 2)
         return partners;
     const std::vector<int> forth = bestOf(first, second), back = bestOf(second, first);
+    std::set<std::pair<float, float>> places;       // a corner of a chessboard is several features, one a direction, but one observation
     for (size_t i = 0; i < forth.size(); i++)
-        if (forth[i] >= 0 && back[forth[i]] == (int)i)
+        if (forth[i] >= 0 && back[forth[i]] == (int)i && places.emplace(first.places[i].pt.x, first.places[i].pt.y).second)
         {
             partners.pixels1.push_back(first.places[i].pt);
             partners.pixels2.push_back(second.places[forth[i]].pt);
