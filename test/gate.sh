@@ -31,7 +31,7 @@ run "style: shell, Python, white space, links" tools/lint.sh
 build build/release
 suite "all tests" build/release
 # A kernel's rounding, and what it accepts, differ from one instruction set to the next.
-kernels='^(kernels|lens|camera|project|undistort|undistort_map|plane|triangulate|triangulate_rig|epilines|epipolar|stereo_rectify|pnp|dome)$'
+kernels='^(kernels|lens|camera|project|undistort(_map)?|plane|triangulate(_rig)?|epilines|epipolar|stereo_rectify|pnp|dome)$'
 for disabled in AVX512-SKX AVX512-SKX,AVX2; do
   export OPENCV_CPU_DISABLE=$disabled
   suite "kernels without $disabled" build/release -L "$kernels" -LE 'slow|tools'

@@ -107,8 +107,8 @@ void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchS
     if (!diagnosis.mistake.empty() || diagnosis.rows > mostRows(rows))
         result.refusal = whatFeaturesSay(diagnosis);
     else if (!rows.contradicts() && diagnosis.features < MIN_FEATURES)
-        result.refusal = format("only %.0f %% of the matches are supported by texture, and only %d details are unlike all others: a pattern "
-                                "that repeats, as a chessboard's, matches at several depths; show a scene with texture",
+        result.refusal = format("only %.0f %% of the matches are supported by texture, and only %d details are unlike all others: a "
+                                "pattern that repeats, as a chessboard's, matches at several depths; show a scene with texture",
                                 100*support.share(), diagnosis.features);
     if (!rows.contradicts() || !result.refusal.empty())
         return;
