@@ -14,13 +14,15 @@ namespace {
 const double COLDER_AND_SALTIER = 0.0075;       // fresh water at 20 degrees -> sea water at 8
 const double KNOWN_TO = 0.0002;
 
+//! One water before all windows; the scene's rigs are drawn with one for each.
 RigModel inWater(const RigModel& rig, double change)
 {
     RigModel result = rig.clone();
+    const double index = rig.cameras[0]->window().outerIndex + change;
     for (const Ptr<RefractiveCamera>& camera : result.cameras)
     {
         GlassWindow window = camera->window();
-        window.outerIndex += change;
+        window.outerIndex = index;
         camera->setWindow(window);
     }
     return result;
@@ -72,7 +74,7 @@ struct Errors
     int count = 0;
 };
 
-//! Of points measured in the other water. @param known by how much of the change, and how well, the calibration is told
+//! Of points measured in another water. @param isSaid the calibration is told of it
 Errors measuredElsewhere(bool isSaid, int rigs, unsigned salt)
 {
     const Scene scene = allScenes()[2];
