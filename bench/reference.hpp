@@ -24,6 +24,14 @@ T dot(const Vec3<T>& a, const Vec3<T>& b) { return a[0]*b[0] + a[1]*b[1] + a[2]*
 template<typename T>
 Vec3<T> add(const Vec3<T>& a, T s, const Vec3<T>& b) { return { a[0] + s*b[0], a[1] + s*b[1], a[2] + s*b[2] }; }
 
+//! Unit direction behind a face of unit normal m. @param ratio index before it over that behind it
+template<typename T>
+Vec3<T> refracted(const Vec3<T>& d, T ratio, const Vec3<T>& m)
+{
+    const T c = dot(m, d);
+    return add({ ratio*d[0], ratio*d[1], ratio*d[2] }, std::sqrt(1 - ratio*ratio*(1 - c*c)) - ratio*c, m);
+}
+
 template<typename T>
 struct Lens
 {
@@ -92,6 +100,15 @@ struct Lens
 template<typename T>
 struct Ray { Vec3<T> origin, direction; };
 
+//! How far two rays are apart where they meet the plane of a depth, over that depth: pixels of a pinhole with focal length 1.
+template<typename T>
+T apart(const Ray<T>& one, const Ray<T>& other, T depth)
+{
+    const Vec3<T> X = add(one.origin, (depth - one.origin[2])/one.direction[2], one.direction);
+    const Vec3<T> Y = add(other.origin, (depth - other.origin[2])/other.direction[2], other.direction);
+    return std::hypot(X[0] - Y[0], X[1] - Y[1])/depth;
+}
+
 //! Lens and window.
 template<typename T>
 struct Camera
@@ -106,10 +123,8 @@ struct Camera
         Vec3<T> d = lens.unproject(pixel), point = { 0, 0, 0 };
         for (size_t k = 0; k < height.size(); k++)
         {
-            const T c = dot(normal, d), ratio = index[k]/index[k + 1];
-            point = add(point, height[k]/c, d);
-            const T across = std::sqrt(1 - ratio*ratio*(1 - c*c)) - ratio*c;
-            d = add({ ratio*d[0], ratio*d[1], ratio*d[2] }, across, normal);
+            point = add(point, height[k]/dot(normal, d), d);
+            d = refracted(d, index[k]/index[k + 1], normal);
         }
         const T c = dot(normal, d);
         const Vec3<T> radial = add(point, -dot(normal, point), normal), slope = add(d, -c, normal);

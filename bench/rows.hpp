@@ -42,6 +42,15 @@ inline std::vector<int> sample(int n, int wanted = 2000)
     return some;
 }
 
+//! Of a sample of answers; NaN if one is missing.
+inline double worst(const std::vector<uchar>& status, const std::function<double(int)>& error)
+{
+    double most = 0;
+    for (int i : sample((int)status.size()))
+        most = std::max(most, status[i] ? NAN : error(i));
+    return most;
+}
+
 typedef reference::Vec2<long double> Pixel;
 typedef reference::Vec3<long double> Point;
 inline Point exact(const cv::Point3d& p) { return { p.x, p.y, p.z }; }

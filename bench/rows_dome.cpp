@@ -47,8 +47,7 @@ reference::Ray<long double> trace(const Dome& a, const Pixel& pixel)
         const long double ahead = reference::dot(off, d);
         point = reference::add(point, -ahead + std::sqrt(ahead*ahead - reference::dot(off, off) + radius*radius), d);
         const Point from = reference::add(point, -1.L, center), m = { from[0]/radius, from[1]/radius, from[2]/radius };
-        const long double c = reference::dot(m, d);
-        d = reference::add({ ratio*d[0], ratio*d[1], ratio*d[2] }, std::sqrt(1 - ratio*ratio*(1 - c*c)) - ratio*c, m);
+        d = reference::refracted(d, ratio, m);
         medium = next;
         radius += k < w.index.size() ? w.thickness[k] : 0;
     }
@@ -58,19 +57,7 @@ reference::Ray<long double> trace(const Dome& a, const Pixel& pixel)
 //! Pixels between where two rays meet the plane of a depth, as a pinhole sees it.
 double apart(const Dome& a, const reference::Ray<long double>& one, const reference::Ray<long double>& other, double depth)
 {
-    Point X[2];
-    int k = 0;
-    for (const reference::Ray<long double>& ray : { one, other })
-        X[k++] = reference::add(ray.origin, (depth - ray.origin[2])/ray.direction[2], ray.direction);
-    return (double)(a.exactly.lens.fx*std::hypot(X[0][0] - X[1][0], X[0][1] - X[1][1])/depth);
-}
-
-double worst(const Data& a, const std::function<double(int)>& error)
-{
-    double most = 0;
-    for (int i : sample((int)a->points.pixels.size()))
-        most = std::max(most, a->status[i] ? NAN : error(i));
-    return most;
+    return (double)(a.exactly.lens.fx*reference::apart(one, other, (long double)depth));
 }
 
 Row row(const Data& a, const std::string& key, const std::string& work, const std::string& peer, double target, double bytes)
@@ -87,7 +74,7 @@ Row unprojectRow(const Data& a)
     r.peer = [=] { undistortPoints(a->points.pixels, a->peerPixels, a->scene.K, a->scene.D); };
     r.error = [=]
     {
-        return worst(a, [&](int i) { return apart(*a, { exact(a->origins[i]), exact(a->directions[i]) },
+        return worst(a->status, [&](int i) { return apart(*a, { exact(a->origins[i]), exact(a->directions[i]) },
                                                   trace(*a, exact(a->points.pixels[i])), a->points.depths[i]); });
     };
     return r;
@@ -113,7 +100,7 @@ Row projectRow(const Data& a, const std::string& key, const std::string& work, b
     };
     r.error = [=]
     {
-        return worst(a, [&](int i)
+        return worst(a->status, [&](int i)
         {
             const Point3d& X = a->points.points[i];
             return apart(*a, { exact(X), { 0, 0, 1 } }, trace(*a, exact(a->pixels[i])), X.z);

@@ -56,8 +56,7 @@ reference::Ray<long double> trace(const Wedge& a, const Pixel& pixel)
         const Point& m = k + 1 < c.height.size() ? n : outer;
         height += c.height[k];
         point = reference::add(point, (height*reference::dot(m, n) - reference::dot(m, point))/reference::dot(m, d), d);
-        const long double cosIn = reference::dot(m, d), ratio = c.index[k]/c.index[k + 1];
-        d = reference::add({ ratio*d[0], ratio*d[1], ratio*d[2] }, std::sqrt(1 - ratio*ratio*(1 - cosIn*cosIn)) - ratio*cosIn, m);
+        d = reference::refracted(d, c.index[k]/c.index[k + 1], m);
     }
     return { point, d };
 }
@@ -65,19 +64,7 @@ reference::Ray<long double> trace(const Wedge& a, const Pixel& pixel)
 //! Pixels between where two rays meet the plane of a depth, as a pinhole sees it.
 double apart(const Wedge& a, const reference::Ray<long double>& one, const reference::Ray<long double>& other, double depth)
 {
-    Point X[2];
-    int k = 0;
-    for (const reference::Ray<long double>& ray : { one, other })
-        X[k++] = reference::add(ray.origin, (depth - ray.origin[2])/ray.direction[2], ray.direction);
-    return (double)(a.exactly.lens.fx*std::hypot(X[0][0] - X[1][0], X[0][1] - X[1][1])/depth);
-}
-
-double worst(const Data& a, const std::function<double(int)>& error)
-{
-    double most = 0;
-    for (int i : sample((int)a->points.pixels.size()))
-        most = std::max(most, a->ours.status[i] ? NAN : error(i));
-    return most;
+    return (double)(a.exactly.lens.fx*reference::apart(one, other, (long double)depth));
 }
 
 Row row(const Data& a, const std::string& key, const std::string& work, double bytes)
@@ -96,7 +83,7 @@ Row undistortRow(const Data& a)
     r.peer = [=] { undistort(a->scene.camera, a->peers); };
     r.error = [=]
     {
-        return worst(a, [&](int i)
+        return worst(a->ours.status, [&](int i)
         {
             const double z = a->points.depths[i];
             const reference::Ray<long double> found = { exact(Point3d(a->ours.pixels[i].x*z, a->ours.pixels[i].y*z, z)), { 0, 0, 1 } };
@@ -115,7 +102,7 @@ Row unprojectRow(const Data& a)
     r.peer = [=] { unproject(a->scene.camera, a->peers); };
     r.error = [=]
     {
-        return worst(a, [&](int i) { return apart(*a, { exact(a->ours.origins[i]), exact(a->ours.directions[i]) },
+        return worst(a->ours.status, [&](int i) { return apart(*a, { exact(a->ours.origins[i]), exact(a->ours.directions[i]) },
                                                   trace(*a, exact(a->points.pixels[i])), a->points.depths[i]); });
     };
     return r;
@@ -135,7 +122,7 @@ Row projectRow(const Data& a, const std::string& key, const std::string& work, b
     r.peer = [=] { project(a->scene.camera, a->peers); };
     r.error = [=]
     {
-        return worst(a, [&](int i)
+        return worst(a->ours.status, [&](int i)
         {
             const Point3d& X = a->points.points[i];
             return apart(*a, { exact(X), { 0, 0, 1 } }, trace(*a, exact(a->ours.pixels[i])), X.z);

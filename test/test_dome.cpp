@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Domes; against 60-digit references in test_reference.cpp, in every call as two of allWindows().
+#include "kernel_levels.hpp"
 #include "quick_require.hpp"
 #include "scenes.hpp"
-#include "dispatch/kernels.hpp"
 #include "window/dome.hpp"
 #include "window/dome_kernels.hpp"
 #include "window/layers.hpp"
@@ -78,16 +78,6 @@ Dome domeOf(const GlassWindow& window, const std::vector<Sphere>& faces)
     const WindowLayout at = windowLayout(window);
     return { { window.center[0], window.center[1], window.center[2] }, 0, faces.data(), (int)faces.size(), window.innerIndex,
              window.outerIndex, at };
-}
-
-std::vector<const Kernels*> levelsOfThisMachine()
-{
-    std::vector<const Kernels*> levels(1, kernelsBaseline());
-    if (checkHardwareSupport(CV_CPU_AVX2) && checkHardwareSupport(CV_CPU_FMA3) && kernelsAvx2())
-        levels.push_back(kernelsAvx2());
-    if (checkHardwareSupport(CV_CPU_AVX512_SKX) && kernelsAvx512())
-        levels.push_back(kernelsAvx512());
-    return levels;
 }
 
 std::string refusal(const std::function<void()>& call, int code)
@@ -298,7 +288,7 @@ TEST_CASE("Every instruction set gives the same answer behind a dome", "[dome][k
             const Vec3d X = window.center + 2.5*window.radius*random.logUniform(1, 100)*unit(random.vector(1));
             x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
         }
-        for (const Kernels* level : levelsOfThisMachine())
+        for (const Kernels* level : kernelLevels())
         {
             for (std::vector<double>& values : d)
                 values.assign(n, 0);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The inner loops, compiled for every instruction set of this machine, through the inner header.
-#include "dispatch/kernels.hpp"
+#include "kernel_levels.hpp"
 #include "window/layers.hpp"
 #include "scenes.hpp"
 
@@ -17,16 +17,6 @@ using namespace cv::refract;
 using namespace scenes;
 
 namespace {
-
-std::vector<const Kernels*> allLevels()
-{
-    std::vector<const Kernels*> levels(1, kernelsBaseline());
-    if (checkHardwareSupport(CV_CPU_AVX2) && checkHardwareSupport(CV_CPU_FMA3) && kernelsAvx2())
-        levels.push_back(kernelsAvx2());
-    if (checkHardwareSupport(CV_CPU_AVX512_SKX) && kernelsAvx512())
-        levels.push_back(kernelsAvx512());
-    return levels;
-}
 
 const int MOST = 40;
 typedef std::array<double, MOST + 1> Array;     // one more, which no kernel may touch
@@ -57,7 +47,7 @@ FisheyeModel angles()
 
 TEST_CASE("The fastest level of the machine is chosen", "[kernels]")
 {
-    CHECK(&kernels() == allLevels().back());
+    CHECK(&kernels() == kernelLevels().back());
 }
 
 TEST_CASE("Every level computes the same, and no more points than it is given", "[kernels]")
@@ -67,7 +57,7 @@ TEST_CASE("Every level computes the same, and no more points than it is given", 
     Random random(kind);
     const Layers layers(makeWindow(kind, random));
     const Stack stack = layers.stack();
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
         for (int n = 1; n <= MOST; n++)
         {
             CAPTURE(level->instructions, n);
@@ -98,7 +88,7 @@ TEST_CASE("Every level computes the same, and no more points than it is given", 
 
 TEST_CASE("Angles, sines and cosines of every level against long double", "[kernels]")
 {
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
     {
         CAPTURE(level->instructions);
         long double worst = 0, worstBack = 0;
@@ -123,7 +113,7 @@ TEST_CASE("A lane without an answer is NaN and leaves its neighbours alone", "[k
 {
     Random random;
     const Layers layers(makeWindow(PANE_IN_AIR, random));
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
         for (int bad = 0; bad < 19; bad++)
         {
             Array x, y, z, dx, dy, dz;
@@ -144,7 +134,7 @@ TEST_CASE("A chord is close where the cubic through its points stays within the 
     Random random;
     const double TOLERANCE = 0.01;
     int known = 0, close = 0;
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
         for (int n = 1; n <= 19; n++)
             for (int trial = 0; trial < 50; trial++)
             {
@@ -190,7 +180,7 @@ TEST_CASE("A chord is close where the cubic through its points stays within the 
 
 TEST_CASE("Where the middle of a chord is out of sight it has no answer, where the next middle is it has one", "[kernels]")
 {
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
         for (int bad = 0; bad <= 19; bad++)
         {
             Array t, v, tMiddle, slack;
@@ -215,7 +205,7 @@ TEST_CASE("No kernel leaves upper halves of registers in use", "[kernels]")
     const Layers layers(GlassWindow(Vec3d(0.1, 0, 1), 20, 1.5, 30));
     const Stack stack = layers.stack();
     const double R[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, t[3] = {};
-    for (const Kernels* level : allLevels())
+    for (const Kernels* level : kernelLevels())
         for (int n : { 1, 5, 8, 13, 16 })
         {
             CAPTURE(level->instructions, n);

@@ -23,30 +23,10 @@ const double SIGMA = 0.1, SQUARE = 39.;
 //! Two cameras, eight pairs, thickness and square known to within what is given. @param square 0: exactly
 inline Calibration calibrated(double square = 2e-4)
 {
-    scenes::Random random(1230);
     GivenStd std;
     std.thickness = 0.1;
     std.scale = square;
-    RigModel rig = paperRig(2);
-    RigData data = dataOf(rig);
-    for (int i = 0; i < 8; i++)
-    {
-        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
-        data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, SIGMA, random));
-    }
-    RigOptions options;
-    options.window = rig.cameras[0]->window();
-    options.std = std;
-    for (int k = 0; k < 2; k++)
-    {
-        options.known[k] = rig.cameras[k];
-        rig.known.push_back(knownOf(*rig.cameras[k], options, k));
-        rig.known[k].window = rig.cameras[k]->window();
-    }
-    rig.targetCovariance = targetCovarianceOf(data, rig, std);
-    RigCalibration c = fittedRig(rig, data, SQUARE);
-    c.options = options;
-    return toFile(c, "");
+    return toFile(calibratedPairs(std, 1230, SIGMA, SQUARE), "");
 }
 
 //! Draws what the rig may be in truth.

@@ -33,4 +33,30 @@ inline tools::RigData dataOf(const tools::RigModel& rig)
     return data;
 }
 
+//! Two cameras with known lenses, eight pairs; what is known of the given values.
+inline tools::RigCalibration calibratedPairs(const tools::GivenStd& std, unsigned seed, double sigma, double square)
+{
+    scenes::Random random(seed);
+    tools::RigModel rig = paperRig(2);
+    tools::RigData data = dataOf(rig);
+    for (int i = 0; i < 8; i++)
+    {
+        const cv::Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
+        data.views.push_back(observe(rig, board(6, 5, square), rvec, tvec, true, sigma, random));
+    }
+    tools::RigOptions options;
+    options.window = rig.cameras[0]->window();
+    options.std = std;
+    for (int k = 0; k < 2; k++)
+    {
+        options.known[k] = rig.cameras[k];
+        rig.known.push_back(tools::knownOf(*rig.cameras[k], options, k));
+        rig.known[k].window = rig.cameras[k]->window();
+    }
+    rig.targetCovariance = tools::targetCovarianceOf(data, rig, std);
+    tools::RigCalibration c = fittedRig(rig, data, square);
+    c.options = options;
+    return c;
+}
+
 #endif // REFRACT_TEST_TOOLS_FITTED_RIG_HPP

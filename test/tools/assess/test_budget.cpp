@@ -14,31 +14,7 @@ namespace {
 
 const double SQUARE = 39.;
 
-//! Two cameras, eight pairs; what is known of the given values.
-RigCalibration calibrated(const GivenStd& std)
-{
-    scenes::Random random(1210);
-    RigModel rig = paperRig(2);
-    RigData data = dataOf(rig);
-    for (int i = 0; i < 8; i++)
-    {
-        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660)), rvec = random.vector(0.4);
-        data.views.push_back(observe(rig, board(6, 5, SQUARE), rvec, tvec, true, 0.1, random));
-    }
-    RigOptions options;
-    options.window = rig.cameras[0]->window();
-    options.std = std;
-    for (int k = 0; k < 2; k++)
-    {
-        options.known[k] = rig.cameras[k];
-        rig.known.push_back(knownOf(*rig.cameras[k], options, k));
-        rig.known[k].window = rig.cameras[k]->window();
-    }
-    rig.targetCovariance = targetCovarianceOf(data, rig, std);
-    RigCalibration c = fittedRig(rig, data, SQUARE);
-    c.options = options;
-    return c;
-}
+RigCalibration calibrated(const GivenStd& std) { return calibratedPairs(std, 1210, 0.1, SQUARE); }
 
 const BudgetRow& rowOf(const std::vector<BudgetRow>& rows, const std::string& source)
 {

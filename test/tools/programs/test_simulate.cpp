@@ -45,6 +45,18 @@ sets:
 
 const char* const CHESSBOARD = "{ pattern: chessboard, size: \"6x5\", square: 39. }";
 
+//! One sentence, with a text in it. @param unwritten in the folder
+void checkRefused(const TemporaryFolder& folder, const std::string& file, const std::string& expected, const std::string& unwritten)
+{
+    writeFile(folder / "rig.yml", file);
+    const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
+    CAPTURE(file, expected, result.err);
+    CHECK(result.code == 1);
+    CHECK(result.err.find(expected) != std::string::npos);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK(!std::filesystem::exists(folder / unwritten));
+}
+
 //! Two small cameras behind panes and what they see; lines of `shapes` and `sets` as in the file.
 std::string texturedScene(const std::string& shapes, const std::string& sets, int seed = 1)
 {
@@ -332,15 +344,7 @@ TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one s
                           Case{good + "poses:\n   a: [ { rvec: [ 0., 0., 0. ], tvec: [ 0., 0., 600. ] } ]\n",
                                "are of a 'target'"},
                           Case{scene(CHESSBOARD, "   room: { window: 1, scene: 1 }\n"), "renders the 'scene' of the file"}})
-    {
-        writeFile(folder / "rig.yml", c.text);
-        const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
-        CAPTURE(c.text, c.expected, result.err);
-        CHECK(result.code == 1);
-        CHECK(result.err.find(c.expected) != std::string::npos);
-        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-        CHECK(!std::filesystem::exists(folder / "out"));        // no depth without its image either
-    }
+        checkRefused(folder, c.text, c.expected, "out");        // no depth without its image either
 }
 
 TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence", "[tools][simulate]")
@@ -367,15 +371,7 @@ TEST_CASE("refract_simulate refuses scenes it cannot render, with one sentence",
                           Case{replaced("glass_window:", "window:"), "glass_window"},
                           Case{replaced("index: [ 1.5 ]", "index: [ 0.5 ]"), "index"},
                           Case{replaced("distance: [ 600., 700. ]", "distance: [ 100., 110. ]"), "smaller target"}})
-    {
-        writeFile(folder / "rig.yml", c.text);
-        const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
-        CAPTURE(c.text, result.err);
-        CHECK(result.code == 1);
-        CHECK(result.err.find(c.expected) != std::string::npos);
-        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-        CHECK(!std::filesystem::exists(folder / "out/truth.yml"));
-    }
+        checkRefused(folder, c.text, c.expected, "out/truth.yml");
 }
 
 //! Of a camera above a laser, and a projector at the same place.
@@ -449,13 +445,5 @@ TEST_CASE("refract_simulate refuses emitters that it cannot render, with one sen
                           Case{laser("brightness: 9., fringes: { periods: [ 9. ], steps: 2 }"), "'steps'"},
                           Case{replaced("rvec: [ 0., -0.25, 0. ], ", ""), "'rvec' is missing"},
                           Case{replaced("image_width: 160, image_height: 320", "line_width: 1"), "no key 'line_width'"}})
-    {
-        writeFile(folder / "rig.yml", c.text);
-        const ToolResult result = runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out"));
-        CAPTURE(c.text, c.expected, result.err);
-        CHECK(result.code == 1);
-        CHECK(result.err.find(c.expected) != std::string::npos);
-        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-        CHECK(!std::filesystem::exists(folder / "out"));
-    }
+        checkRefused(folder, c.text, c.expected, "out");
 }

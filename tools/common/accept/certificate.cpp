@@ -7,7 +7,7 @@
 #include "console/failure.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
-#include <kainjow/mustache.hpp>
+#include "report/page_template.hpp"
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -208,11 +208,7 @@ std::string certificateHtml(const Certificate& c)
     page.set("command", shortened(c.command, LONG_COMMAND));
     page.set("errors_over_length", drawErrorsOverLength(a));
     page.set("errors_in_volume", drawErrorsInVolume(a));
-    mustache page_template(CERTIFICATE_TEMPLATE);
-    const std::string html = page_template.render(page);
-    if (!page_template.is_valid())
-        throw Failure("the certificate's template is broken: " + page_template.error_message());
-    return html;
+    return renderPage("the certificate", CERTIFICATE_TEMPLATE, page);
 }
 
 } // namespace tools

@@ -4,9 +4,8 @@
 #include "accept/certificate.hpp"
 #include "accept/dcc_template.hpp"
 #include "calibrate/units.hpp"
-#include "console/failure.hpp"
 #include "console/table.hpp"
-#include <kainjow/mustache.hpp>
+#include "report/page_template.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -108,11 +107,7 @@ std::string certificateDcc(const Certificate& c)
             remarks << data{"text", (sentences == &a.missing ? "Against VDI/VDE 2634 part 1: " : "") + textOf(sentence)};
     page.set("inputs", inputs);
     page.set("remarks", remarks);
-    mustache page_template(DCC_TEMPLATE);
-    const std::string xml = page_template.render(page);
-    if (!page_template.is_valid())
-        throw Failure("the DCC's template is broken: " + page_template.error_message());
-    return xml;
+    return renderPage("the DCC", DCC_TEMPLATE, page);
 }
 
 } // namespace tools

@@ -38,6 +38,37 @@ ParameterColumns columnsOf(const RigModel& rig, int camera)
     return columnsOf(*rig.cameras[camera], first);
 }
 
+void putWindow(const GlassWindow& window, const ParameterColumns& at, double* numbers)
+{
+    std::copy_n(window.normal.val, 3, numbers + at.normal);
+    numbers[at.distance] = window.distance;
+    for (int i = 0; i < at.layers; i++)
+    {
+        numbers[at.thickness + i] = window.thickness[i];
+        numbers[at.index + i] = window.index[i];
+    }
+    numbers[at.innerIndex] = window.innerIndex;
+    numbers[at.outerIndex] = window.outerIndex;
+    for (int i = at.wedge; i < at.end; i++)
+        numbers[i] = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2];
+}
+
+GlassWindow windowOf(GlassWindow window, const ParameterColumns& at, const double* numbers)
+{
+    window.normal = normalize(Vec3d(numbers + at.normal));
+    window.distance = numbers[at.distance];
+    for (int i = 0; i < at.layers; i++)
+    {
+        window.thickness[i] = numbers[at.thickness + i];
+        window.index[i] = numbers[at.index + i];
+        if (at.wedge < at.end)
+            window.wedge[i] = Vec2d(numbers + at.wedge + 2*i);
+    }
+    window.innerIndex = numbers[at.innerIndex];
+    window.outerIndex = numbers[at.outerIndex];
+    return window;
+}
+
 int extrinsicsColumn(const RigModel& rig, int camera)
 {
     return columnsOf(rig, (int)rig.cameras.size() - 1).end + 6*(camera - 1);

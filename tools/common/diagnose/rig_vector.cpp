@@ -19,21 +19,6 @@ void put(const Vec3d& values, int first, VectorXd& numbers)
         numbers[first + i] = values[i];
 }
 
-void put(const GlassWindow& window, const ParameterColumns& at, VectorXd& numbers)
-{
-    put(window.normal, at.normal, numbers);
-    numbers[at.distance] = window.distance;
-    for (int i = 0; i < at.layers; i++)
-    {
-        numbers[at.thickness + i] = window.thickness[i];
-        numbers[at.index + i] = window.index[i];
-    }
-    numbers[at.innerIndex] = window.innerIndex;
-    numbers[at.outerIndex] = window.outerIndex;
-    for (int i = at.wedge; i < at.end; i++)
-        numbers[i] = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2];
-}
-
 Vec3d get(const VectorXd& numbers, int first) { return Vec3d(numbers[first], numbers[first + 1], numbers[first + 2]); }
 
 //! The first camera that looks through a camera's window.
@@ -43,23 +28,6 @@ int ownerOf(const RigModel& rig, int camera)
     while (!rig.sharesWindow(owner, camera))
         owner++;
     return owner;
-}
-
-GlassWindow windowOf(GlassWindow window, const ParameterColumns& at, const VectorXd& numbers)
-{
-    const Vec3d normal = get(numbers, at.normal);
-    window.normal = normalize(normal);
-    window.distance = numbers[at.distance];
-    for (int i = 0; i < at.layers; i++)
-    {
-        window.thickness[i] = numbers[at.thickness + i];
-        window.index[i] = numbers[at.index + i];
-        if (at.wedge < at.end)
-            window.wedge[i] = Vec2d(numbers[at.wedge + 2*i], numbers[at.wedge + 2*i + 1]);
-    }
-    window.innerIndex = numbers[at.innerIndex];
-    window.outerIndex = numbers[at.outerIndex];
-    return window;
 }
 
 //! Rows e1, e2, n: along e1, e2 a wedge is told (GlassWindow::wedge).
@@ -103,10 +71,10 @@ RigidTransform placeOfCamera(const RigModel& rig, int camera, const VectorXd& nu
 VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const VectorXd& numbers)
 {
     const RigidTransform there = fromTo(placeOfCamera(rig, owner, numbers), placeOfCamera(rig, camera, numbers));
-    const GlassWindow shared = windowOf(rig.cameras[owner]->window(), columnsOf(rig, owner), numbers);
+    const GlassWindow shared = windowOf(rig.cameras[owner]->window(), columnsOf(rig, owner), numbers.data());
     const ParameterColumns at = columnsOf(*rig.cameras[camera]);
     VectorXd window = VectorXd::Zero(at.end);
-    put(seenFrom(shared, there), at, window);
+    putWindow(seenFrom(shared, there), at, window.data());
     return window.tail(at.end - at.normal);
 }
 
@@ -123,7 +91,7 @@ VectorXd toVector(const RigModel& rig)
         const Mat lens = rig.cameras[c]->lensParameters();
         for (int i = 0; i < at.lensCount; i++)
             numbers[at.lens + i] = lens.at<double>(i);
-        put(rig.cameras[c]->window(), at, numbers);
+        putWindow(rig.cameras[c]->window(), at, numbers.data());
         if (c == 0)
             continue;
         put(rotationVector(rig.extrinsics[c].R), extrinsicsColumn(rig, c), numbers);
@@ -149,7 +117,7 @@ RigModel withVector(const RigModel& rig, const VectorXd& numbers)
             lens.at<double>(i) = numbers[at.lens + i];
         result.cameras[c]->setLensParameters(lens);
         const int owner = ownerOf(rig, c);
-        GlassWindow window = windowOf(rig.cameras[c]->window(), at, numbers);
+        GlassWindow window = windowOf(rig.cameras[c]->window(), at, numbers.data());
         if (owner < c)
             window = seenFrom(result.cameras[owner]->window(), fromTo(result.extrinsics[owner], result.extrinsics[c]));
         window.distance = std::max(0., window.distance);        // between equal media any will do, and 0 is given

@@ -4,8 +4,8 @@
 #include "history/history_page.hpp"
 #include "history/history_template.hpp"
 #include "console/table.hpp"
+#include "report/page_template.hpp"
 #include "report/plot.hpp"
-#include <kainjow/mustache.hpp>
 #include <cmath>
 
 using namespace kainjow::mustache;
@@ -179,7 +179,7 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("figures", figures(history, result, covariance));
     page.set("trends", trendRows(history, result, covariance));
     page.set("checks", checkRows(history, result));
-    return mustache(HISTORY_TEMPLATE).render(page);
+    return renderPage("the history", HISTORY_TEMPLATE, page);
 }
 
 } // namespace tools

@@ -23,36 +23,19 @@ const double LEAST = 1e-12, MOST_DEGREES = 45., MOST = 1e9;
 VectorXd parametersOf(const RefractiveCamera& camera)
 {
     const ParameterColumns at = columnsOf(camera);
-    const GlassWindow w = camera.window();
     const std::vector<double> lens = camera.lensParameters();
     VectorXd q = VectorXd::Zero(at.end);
     for (int i = 0; i < at.lensCount; i++)
         q[at.lens + i] = lens[i];
-    for (int i = 0; i < 3; i++)
-        q[at.normal + i] = w.normal[i];
-    q[at.distance] = w.distance;
-    for (int i = 0; i < at.layers; i++)
-    {
-        q[at.thickness + i] = w.thickness[i];
-        q[at.index + i] = w.index[i];
-    }
-    q[at.innerIndex] = w.innerIndex;
-    q[at.outerIndex] = w.outerIndex;
+    putWindow(camera.window(), at, q.data());
     return q;
 }
 
 Ptr<RefractiveCamera> withWindow(const RefractiveCamera& camera, const VectorXd& q)
 {
     const ParameterColumns at = columnsOf(camera);
-    GlassWindow w = camera.window();
-    w.normal = normalize(Vec3d(q[at.normal], q[at.normal + 1], q[at.normal + 2]));
-    w.distance = std::max(q[at.distance], 0.);
-    for (int i = 0; i < at.layers; i++)
-    {
-        w.thickness[i] = q[at.thickness + i];
-        w.index[i] = q[at.index + i];
-    }
-    w.outerIndex = q[at.outerIndex];
+    GlassWindow w = windowOf(camera.window(), at, q.data());
+    w.distance = std::max(w.distance, 0.);
     const Ptr<RefractiveCamera> moved = copyWithWindow(camera.clone(), w);
     moved->setImageSize(camera.imageSize());
     return moved;

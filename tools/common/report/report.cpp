@@ -4,15 +4,14 @@
 #include "report/report.hpp"
 #include "assess/next_step.hpp"
 #include "calibrate/estimated_parameters.hpp"
-#include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/given_values.hpp"
+#include "report/page_template.hpp"
 #include "report/report_template.hpp"
 #include "report/summary.hpp"
 #include "report/thumbnails.hpp"
-#include <kainjow/mustache.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -408,11 +407,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     page.set("version", REFRACT_VERSION);
     page.set("opencv_version", CV_VERSION);
 
-    mustache page_template(REPORT_TEMPLATE);
-    const std::string html = page_template.render(page);
-    if (!page_template.is_valid())
-        throw Failure("the report's template is broken: " + page_template.error_message());
-    return html;
+    return renderPage("the report", REPORT_TEMPLATE, page);
 }
 
 } // namespace tools

@@ -227,20 +227,8 @@ void chainDome(const Dome& dome, int rows, int n, const double* px, const double
         const Vector atPoint[2] = { rays.dp[0], rays.dp[1] };
         Vector dO[2];
         followBack(dome, byWindow, at, rays, dO);
-        // All of D and dO are across p.
-        const Vector first = cross(dO[1], p), second = cross(p, dO[0]);
-        const Lanes factor = -1/(scale*dot(dO[0], first));
-        enum { MOST_ROWS = 3 };
-        Lanes share[MOST_ROWS][2];
-        for (int row = 0; row < rows; row++)
-        {
-            const Vector D = loadRow(byDirection, row, at);
-            const Lanes a = share[row][0] = dot(D, first)*factor, b = share[row][1] = dot(D, second)*factor;
-            storeAt(a*atPoint[0].x + b*atPoint[1].x, byPoint, row, 0, at);
-            storeAt(a*atPoint[0].y + b*atPoint[1].y, byPoint, row, 1, at);
-            storeAt(a*atPoint[0].z + b*atPoint[1].z, byPoint, row, 2, at);
-        }
-        shareOut(rows, byWindow.data ? dome.at.count : 0, share, byWindow, at);
+        chainRows(rows, byWindow.data ? dome.at.count : 0, dO, atPoint, p, scale,
+                  [&](int row) { return loadRow(byDirection, row, at); }, byPoint, byWindow, at);
     });
 }
 

@@ -51,10 +51,26 @@ inline void arriveAt(Lanes s, double index, RaysBeside& rays, Vector (&dO)[2])
     }
 }
 
-//! The two rays' changes of all parameters, rows 0 and 1 of byWindow -> those of the rows' directions, by the share of each ray.
-template<typename At>
-inline void shareOut(int rows, int columns, const Lanes (*share)[2], const Columns& byWindow, At at)
+/** Rows D by the direction -> by the point, and by the window, of which rows 0 and 1 of byWindow are the two rays' changes. D, along
+the unit direction 0, is a sum of what O moves by with each ray: both are across p.
+@param atPoint the two rays' vectors at X. @param p at the camera, over `scale` the direction that D is by
+@param loadD D of a row; all in the frame of dO */
+template<typename At, typename LoadRow>
+inline void chainRows(int rows, int columns, const Vector (&dO)[2], const Vector (&atPoint)[2], const Vector& p, Lanes scale,
+                      const LoadRow& loadD, const Columns& byPoint, const Columns& byWindow, At at)
 {
+    enum { MOST_ROWS = 3 };
+    const Vector across1 = cross(dO[1], p), across2 = cross(p, dO[0]);
+    const Lanes factor = -1/(scale*dot(dO[0], across1));
+    Lanes share[MOST_ROWS][2];
+    for (int row = 0; row < rows; row++)
+    {
+        const Vector D = loadD(row);
+        const Lanes a = share[row][0] = dot(D, across1)*factor, b = share[row][1] = dot(D, across2)*factor;
+        storeAt(a*atPoint[0].x + b*atPoint[1].x, byPoint, row, 0, at);
+        storeAt(a*atPoint[0].y + b*atPoint[1].y, byPoint, row, 1, at);
+        storeAt(a*atPoint[0].z + b*atPoint[1].z, byPoint, row, 2, at);
+    }
     for (int column = 0; column < columns; column++)
     {
         const Lanes first = load(byWindow.at(0, column), at), second = load(byWindow.at(1, column), at);

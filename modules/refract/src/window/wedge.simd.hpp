@@ -396,20 +396,8 @@ void chainWedge(const TiltedFaces& window, int rows, int n, const double* px, co
         const Vector atPoint[2] = { outOfFrame(axes.value, rays.dp[0]), outOfFrame(axes.value, rays.dp[1]) };
         Vector dO[2];
         followBack(window, byWindow, at, rays, dO);
-        const Lanes factor = -1/(scale*(dO[0].x*dO[1].y - dO[0].y*dO[1].x));
-        enum { MOST_ROWS = 3 };
-        Lanes share[MOST_ROWS][2];
-        for (int row = 0; row < rows; row++)
-        {
-            const Vector D = intoFrame(axes.value, loadRow(byDirection, row, at));
-            const Lanes a = (D.x*dO[1].y - D.y*dO[1].x)*factor, b = (dO[0].x*D.y - dO[0].y*D.x)*factor;
-            share[row][0] = a;
-            share[row][1] = b;
-            storeAt(a*atPoint[0].x + b*atPoint[1].x, byPoint, row, 0, at);
-            storeAt(a*atPoint[0].y + b*atPoint[1].y, byPoint, row, 1, at);
-            storeAt(a*atPoint[0].z + b*atPoint[1].z, byPoint, row, 2, at);
-        }
-        shareOut(rows, byWindow.data ? window.at.count : 0, share, byWindow, at);
+        chainRows(rows, byWindow.data ? window.at.count : 0, dO, atPoint, rays.p, scale,
+                  [&](int row) { return intoFrame(axes.value, loadRow(byDirection, row, at)); }, byPoint, byWindow, at);
     });
 }
 
