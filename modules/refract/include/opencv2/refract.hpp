@@ -161,7 +161,9 @@ enum GlassCalibrationFlags {
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
-    GLASS_FREE_WEDGE = 16777216         //!< wedge of every layer; a window without one gets one, starting at 0
+    GLASS_FREE_WEDGE = 16777216,        //!< wedge of every layer; a window without one gets one, starting at 0
+    GLASS_FREE_RADIUS = 33554432,       //!< radius of a dome or tube
+    GLASS_FREE_CURVATURE = 67108864     //!< curvature of a pane; a flat window becomes a bent one, starting at 0
 };
 
 //! How calibrateGlassRig used one image
@@ -216,7 +218,9 @@ public:
 //! What a window's faces are.
 enum WindowShape {
     WINDOW_FLAT = 0,            //!< planes
-    WINDOW_DOME = 1             //!< spheres about one point
+    WINDOW_DOME = 1,            //!< spheres about one point
+    WINDOW_TUBE = 2,            //!< circular cylinders about one axis
+    WINDOW_BENT = 3             //!< a pane that is slightly bent: as flat, with a curvature
 };
 
 /** @brief A window: layers between planes that share one normal, or between spheres that share one centre.
@@ -267,11 +271,26 @@ public:
     */
     CV_WRAP static GlassWindow dome(const Vec3d& center, double radius, double thickness, double index, double outerIndex = 1.);
 
+    /** @brief A tube of one layer, the camera in air.
+    @param axisPoint any point of the axis, camera coordinates; the window keeps the one that is nearest to the camera.
+    @param axisDirection of the axis, either way; it is normalised.
+    @param radius of the inner face; larger than the axis' distance from the camera.
+    @param thickness of the tube, >= 0.
+    @param index of the tube, >= 1.
+    @param outerIndex index of the scene's medium, >= 1 (1.33 water).
+    */
+    CV_WRAP static GlassWindow tube(const Vec3d& axisPoint, const Vec3d& axisDirection, double radius, double thickness,
+                                    double index, double outerIndex = 1.);
+
     CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
-    CV_PROP_RW Vec3d normal;                   //!< flat: unit, camera coordinates, normal[2] > 0
-    CV_PROP_RW double distance;                //!< flat: centre of projection to the first surface, along the normal
-    CV_PROP_RW Vec3d center;                   //!< dome: of the spheres, camera coordinates
-    CV_PROP_RW double radius;                  //!< dome: of the inner face; layers add to it
+    CV_PROP_RW Vec3d normal;                   //!< flat, bent: unit, camera coordinates, normal[2] > 0
+    CV_PROP_RW double distance;                //!< flat, bent: centre of projection to the first surface, along the normal
+    CV_PROP_RW Vec3d center;                   //!< dome: of the spheres; tube: a point of the axis; camera coordinates
+    CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
+    CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
+    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is on
+    the camera's side. The other faces are spheres about the same point. 0: planes. */
+    CV_PROP_RW double curvature;
     CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera

@@ -13,12 +13,14 @@ struct WindowLayout
 {
     int shape;                  //!< a WindowShape
     int layers;
-    int normal;                 //!< three; the distance follows, so that the first surface is in one piece; a dome's center
+    int normal;                 //!< three; the distance follows, so that the first surface is in one piece; a dome's or tube's center
+    int axis;                   //!< a tube's, three after its center; others: media
     int media;                  //!< all others
-    int distance;               //!< a dome's radius
+    int distance;               //!< a dome's or tube's radius
     int thickness, index;       //!< one per layer
     int innerIndex, outerIndex;
-    int wedge;                  //!< two per layer, if the window has a wedge; they follow all others
+    int wedge;                  //!< two per layer, if the window has a wedge
+    int curvature;              //!< one, if the window is bent
     int count;
 };
 

@@ -8,19 +8,24 @@ namespace cv { namespace refract {
 
 static const double LEAST_THICKNESS = 1e-6;      // of its start
 
+//! It has a center and a radius, not a normal and a distance.
+static bool isAboutCenter(int shape) { return shape == WINDOW_DOME || shape == WINDOW_TUBE; }
+
 WindowLayout windowLayout(int layers, bool hasWedge, int shape)
 {
     WindowLayout at;
     at.shape = shape;
     at.layers = layers;
     at.normal = 0;
-    at.media = at.distance = 3;
+    at.axis = 3;
+    at.media = at.distance = shape == WINDOW_TUBE ? 6 : 3;
     at.thickness = at.distance + 1;
     at.index = at.thickness + layers;
     at.innerIndex = at.index + layers;
     at.outerIndex = at.innerIndex + 1;
     at.wedge = at.outerIndex + 1;
-    at.count = at.wedge + (hasWedge ? 2*layers : 0);
+    at.curvature = at.wedge + (hasWedge ? 2*layers : 0);
+    at.count = at.curvature + (shape == WINDOW_BENT ? 1 : 0);
     return at;
 }
 
@@ -32,21 +37,26 @@ WindowLayout windowLayout(const GlassWindow& window)
 WindowParameter kindOf(const WindowLayout& at, int parameter)
 {
     CV_DbgAssert(parameter >= 0 && parameter < at.count);
-    const bool isDome = at.shape == WINDOW_DOME;
-    return parameter < at.distance ? (isDome ? WindowParameter::CENTER : WindowParameter::NORMAL) :
-           parameter < at.thickness ? (isDome ? WindowParameter::RADIUS : WindowParameter::DISTANCE) :
+    const bool isRound = isAboutCenter(at.shape);
+    return parameter < at.axis ? (isRound ? WindowParameter::CENTER : WindowParameter::NORMAL) :
+           parameter < at.distance ? WindowParameter::AXIS :
+           parameter < at.thickness ? (isRound ? WindowParameter::RADIUS : WindowParameter::DISTANCE) :
            parameter < at.index ? WindowParameter::THICKNESS :
            parameter < at.innerIndex ? WindowParameter::INDEX :
            parameter < at.outerIndex ? WindowParameter::INNER_INDEX :
-           parameter < at.wedge ? WindowParameter::OUTER_INDEX : WindowParameter::WEDGE;
+           parameter < at.wedge ? WindowParameter::OUTER_INDEX :
+           parameter < at.curvature ? WindowParameter::WEDGE : WindowParameter::CURVATURE;
 }
 
 std::vector<String> windowParameterNames(const WindowLayout& at)
 {
     std::vector<String> names(at.count);
+    const bool isRound = isAboutCenter(at.shape);
     for (int i = 0; i < 3; i++)
-        names[at.normal + i] = format(at.shape == WINDOW_DOME ? "center[%d]" : "normal[%d]", i);
-    names[at.distance] = at.shape == WINDOW_DOME ? "radius" : "distance";
+        names[at.normal + i] = format(isRound ? "center[%d]" : "normal[%d]", i);
+    for (int i = at.axis; i < at.media; i++)
+        names[i] = format("axis[%d]", i - at.axis);
+    names[at.distance] = isRound ? "radius" : "distance";
     for (int i = 0; i < at.layers; i++)
     {
         names[at.thickness + i] = format("thickness[%d]", i);
@@ -54,8 +64,10 @@ std::vector<String> windowParameterNames(const WindowLayout& at)
     }
     names[at.innerIndex] = "innerIndex";
     names[at.outerIndex] = "outerIndex";
-    for (int i = 0; i < at.count - at.wedge; i++)
+    for (int i = 0; i < at.curvature - at.wedge; i++)
         names[at.wedge + i] = format("wedge[%d][%d]", i/2, i % 2);
+    if (at.count > at.curvature)
+        names[at.curvature] = "curvature";
     return names;
 }
 
@@ -63,16 +75,19 @@ std::vector<double> windowParameters(const GlassWindow& window)
 {
     const WindowLayout at = windowLayout(window);
     std::vector<double> p(at.count);
-    const bool isDome = window.shape == WINDOW_DOME;
-    const Vec3d& where = isDome ? window.center : window.normal;
+    const bool isRound = isAboutCenter(window.shape);
+    const Vec3d& where = isRound ? window.center : window.normal;
     std::copy(where.val, where.val + 3, p.begin() + at.normal);
-    p[at.distance] = isDome ? window.radius : window.distance;
+    std::copy(window.axis.val, window.axis.val + at.media - at.axis, p.begin() + at.axis);
+    p[at.distance] = isRound ? window.radius : window.distance;
     std::copy(window.thickness.begin(), window.thickness.end(), p.begin() + at.thickness);
     std::copy(window.index.begin(), window.index.end(), p.begin() + at.index);
     p[at.innerIndex] = window.innerIndex;
     p[at.outerIndex] = window.outerIndex;
-    for (int i = 0; i < at.count - at.wedge; i++)
+    for (int i = 0; i < at.curvature - at.wedge; i++)
         p[at.wedge + i] = window.wedge[i/2][i % 2];
+    if (at.count > at.curvature)
+        p[at.curvature] = window.curvature;
     return p;
 }
 
@@ -80,10 +95,12 @@ GlassWindow withParameters(GlassWindow window, const double* p)
 {
     const WindowLayout at = windowLayout(window);
     const int layers = at.layers;
-    if (window.shape == WINDOW_DOME)
+    if (isAboutCenter(window.shape))
     {
         window.center = Vec3d(p + at.normal);
         window.radius = p[at.distance];
+        if (window.shape == WINDOW_TUBE)
+            window.axis = normalize(Vec3d(p + at.axis));
     }
     else
     {
@@ -94,8 +111,10 @@ GlassWindow withParameters(GlassWindow window, const double* p)
     window.index.assign(p + at.index, p + at.index + layers);
     window.innerIndex = p[at.innerIndex];
     window.outerIndex = p[at.outerIndex];
-    for (int i = 0; i < at.count - at.wedge; i++)
+    for (int i = 0; i < at.curvature - at.wedge; i++)
         window.wedge[i/2][i % 2] = p[at.wedge + i];
+    if (at.count > at.curvature)
+        window.curvature = p[at.curvature];
     return window;
 }
 
@@ -105,13 +124,15 @@ std::vector<bool> freeWindowParameters(const WindowLayout& at, int flags)
     for (int i = 0; i < at.count; i++)
         switch (kindOf(at, i))
         {
-        case WindowParameter::NORMAL: case WindowParameter::CENTER: isFree[i] = true; break;
+        case WindowParameter::NORMAL: case WindowParameter::CENTER: case WindowParameter::AXIS: isFree[i] = true; break;
         case WindowParameter::DISTANCE: isFree[i] = (flags & GLASS_FREE_DISTANCE) != 0; break;
         case WindowParameter::THICKNESS: isFree[i] = (flags & GLASS_FREE_THICKNESS) != 0; break;
         case WindowParameter::INDEX: isFree[i] = (flags & GLASS_FREE_INDEX) != 0; break;
-        case WindowParameter::INNER_INDEX: case WindowParameter::RADIUS: break;
+        case WindowParameter::INNER_INDEX: break;
+        case WindowParameter::RADIUS: isFree[i] = (flags & GLASS_FREE_RADIUS) != 0; break;
         case WindowParameter::OUTER_INDEX: isFree[i] = (flags & GLASS_FREE_OUTER_INDEX) != 0; break;
         case WindowParameter::WEDGE: isFree[i] = (flags & GLASS_FREE_WEDGE) != 0; break;
+        case WindowParameter::CURVATURE: isFree[i] = (flags & GLASS_FREE_CURVATURE) != 0; break;
         }
     return isFree;
 }
@@ -120,7 +141,8 @@ double lowerBound(WindowParameter kind, double start)
 {
     switch (kind)
     {
-    case WindowParameter::NORMAL: case WindowParameter::CENTER: case WindowParameter::WEDGE:
+    case WindowParameter::NORMAL: case WindowParameter::CENTER: case WindowParameter::AXIS: case WindowParameter::WEDGE:
+    case WindowParameter::CURVATURE:
         return -std::numeric_limits<double>::infinity();
     case WindowParameter::DISTANCE: return 0.;
     case WindowParameter::THICKNESS: case WindowParameter::RADIUS: return LEAST_THICKNESS*start;
@@ -130,10 +152,14 @@ double lowerBound(WindowParameter kind, double start)
 
 double upperBound(WindowParameter kind)
 {
-    const bool isLength = kind == WindowParameter::DISTANCE || kind == WindowParameter::RADIUS || kind == WindowParameter::THICKNESS;
-    if (kind == WindowParameter::NORMAL || kind == WindowParameter::CENTER || kind == WindowParameter::WEDGE)
+    switch (kind)
+    {
+    case WindowParameter::NORMAL: case WindowParameter::CENTER: case WindowParameter::AXIS: case WindowParameter::WEDGE:
+    case WindowParameter::CURVATURE:
         return std::numeric_limits<double>::infinity();
-    return isLength ? MAX_LENGTH : MAX_INDEX;
+    case WindowParameter::DISTANCE: case WindowParameter::RADIUS: case WindowParameter::THICKNESS: return MAX_LENGTH;
+    default: return MAX_INDEX;
+    }
 }
 
 }} // namespace

@@ -15,14 +15,15 @@ namespace cv { namespace refract {
 // Beyond what there is, and small enough that no product of them overflows.
 const double MAX_LENGTH = 1e100, MAX_INDEX = 1e6;
 
-enum class WindowParameter { NORMAL, DISTANCE, CENTER, RADIUS, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX, WEDGE };
+enum class WindowParameter { NORMAL, DISTANCE, CENTER, AXIS, RADIUS, THICKNESS, INDEX, INNER_INDEX, OUTER_INDEX, WEDGE, CURVATURE };
 
 WindowLayout windowLayout(int layers, bool hasWedge = false, int shape = WINDOW_FLAT);
 WindowLayout windowLayout(const GlassWindow& window);
 WindowParameter kindOf(const WindowLayout& at, int parameter);
 
 /** normal[0], normal[1], normal[2], distance, thickness[0], ..., index[0], ..., innerIndex, outerIndex, wedge[0][0], wedge[0][1], ...
-A dome's begin center[0], center[1], center[2], radius. */
+A dome's begin center[0], center[1], center[2], radius, a tube's center[0], ..., axis[0], ..., radius; a bent window's end with
+curvature. */
 std::vector<String> windowParameterNames(const WindowLayout& at);
 std::vector<double> windowParameters(const GlassWindow& window);
 /** The window with other parameters; it keeps what is none of them.

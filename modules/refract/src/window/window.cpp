@@ -8,7 +8,8 @@
 namespace cv { namespace refract {
 
 GlassWindow::GlassWindow()
-    : shape(WINDOW_FLAT), normal(0, 0, 1), distance(0), center(0, 0, 0), radius(0), innerIndex(1), outerIndex(1), wavelength(0) {}
+    : shape(WINDOW_FLAT), normal(0, 0, 1), distance(0), center(0, 0, 0), axis(0, 0, 0), radius(0), curvature(0), innerIndex(1),
+      outerIndex(1), wavelength(0) {}
 
 //! The unit normal, after a check of everything.
 static Vec3d checkedNormal(const Vec3d& normal, double thickness, double index, double distance, double outerIndex)
@@ -31,13 +32,33 @@ static Vec3d checkedNormal(const Vec3d& normal, double thickness, double index, 
 // A window that a function returns would not do: it may be made, and destroyed, in this one's place.
 GlassWindow::GlassWindow(const Vec3d& normal_, double thickness_, double index_, double distance_, double outerIndex_)
     : shape(WINDOW_FLAT), normal(checkedNormal(normal_, thickness_, index_, distance_, outerIndex_)), distance(distance_),
-      center(0, 0, 0), radius(0), thickness(1, thickness_), index(1, index_), innerIndex(1), outerIndex(outerIndex_), wavelength(0) {}
+      center(0, 0, 0), axis(0, 0, 0), radius(0), curvature(0), thickness(1, thickness_), index(1, index_), innerIndex(1),
+      outerIndex(outerIndex_), wavelength(0) {}
 
 GlassWindow GlassWindow::dome(const Vec3d& center, double radius, double thickness, double index, double outerIndex)
 {
     GlassWindow window;
     window.shape = WINDOW_DOME;
     window.center = center;
+    window.radius = radius;
+    window.thickness.assign(1, thickness);
+    window.index.assign(1, index);
+    window.outerIndex = outerIndex;
+    window.check();
+    return window;
+}
+
+GlassWindow GlassWindow::tube(const Vec3d& axisPoint, const Vec3d& axisDirection, double radius, double thickness, double index,
+                              double outerIndex)
+{
+    const double length = cv::norm(axisDirection);
+    if (!(length > 0) || !std::isfinite(length))
+        CV_Error_(Error::StsBadArg, ("axisDirection is (%g, %g, %g); it must be finite and not zero", axisDirection[0],
+                                     axisDirection[1], axisDirection[2]));
+    GlassWindow window;
+    window.shape = WINDOW_TUBE;
+    window.axis = axisDirection/length;
+    window.center = axisPoint - axisPoint.dot(window.axis)*window.axis;
     window.radius = radius;
     window.thickness.assign(1, thickness);
     window.index.assign(1, index);
