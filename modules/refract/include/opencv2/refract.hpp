@@ -288,8 +288,8 @@ public:
     CV_PROP_RW Vec3d center;                   //!< dome: of the spheres; tube: a point of the axis; camera coordinates
     CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
     CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
-    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is on
-    the camera's side. The other faces are spheres about the same point. 0: planes. */
+    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is
+    on the camera's side. The other faces are spheres about the same point. 0: planes. */
     CV_PROP_RW double curvature;
     CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
@@ -1370,7 +1370,8 @@ there is no image.
 @param otherMinima Cx5 CV_64F: for a window that is estimated only from images through it: the normal (3) of the second best
 minimum, the root of the difference of its squared errors from the best, in standard deviations of a pixel, and its distance.
 If the root is below about 3, the data do not distinguish both minima: add a pair, or other tilts. NaN if no other minimum was
-found. The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and radius.
+found. The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and
+radius.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
@@ -1379,9 +1380,10 @@ exact; noArray(): all are exact.
 L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
 estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
 NaN the flags decide, also for window parameters without a variance. Rows of a normal, and of a tube's center and axis, are not
-used; those of a dome's center are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's parameters, then of its rvec and T (rows and columns of camera 1:
-not used). With a variance they are estimated, with this prior; with the variance 0 exact, with any flags. An emitter of which
-only one coordinate is known needs this: of a straight sheet of light the images determine the plane, three of the six.
+used; those of a dome's center are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's
+parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with this
+prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a straight
+sheet of light the images determine the plane, three of the six.
 @param pixelCovariancesDirect per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the
 pixels' variance, in units of which they are, is estimated). An empty array, list or whole: usual pixels.
 @param pixelCovariancesRefracted as pixelCovariancesDirect.
