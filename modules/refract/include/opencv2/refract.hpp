@@ -29,8 +29,8 @@ without a window.
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
-  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it. Behind a dome
-  the axis is the one through the dome's centre.
+  Behind a window with a wedge or a curvature the ray misses the axis by little, and the origin is a point of the ray near it.
+  Behind a dome the axis is the one through the dome's centre. Behind a tube the origin is a point of the ray near the camera.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
@@ -67,6 +67,9 @@ the path from a point to the camera is the one of least optical length.
 A dome's faces are spheres about one point S (GlassWindow::dome). From there, the moment \f$L = r \times p\f$ is the same in all
 media, so a face of radius r_k turns the ray about L by
 \f[ \arcsin\frac{|L|}{n_{k+1} r_k} - \arcsin\frac{|L|}{n_k r_k} \f]
+
+A tube's faces are cylinders about one axis a (GlassWindow::tube). Along it \f$k = n\,w \cdot a\f$ is the same in all media, and
+across it a ray is one in a dome whose media have the indices \f$\sqrt{n_i^2 - k^2}\f$.
 
 @{
     @defgroup refract_camera Windows and cameras
@@ -224,13 +227,15 @@ enum WindowShape {
     WINDOW_BENT = 3             //!< a pane that is slightly bent: as flat, with a curvature
 };
 
-/** @brief A window: layers between planes that share one normal, or between spheres that share one centre.
+/** @brief A window: layers between planes that share a normal, spheres that share a centre, or cylinders that share an axis.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
-A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
+A **flat** window has `normal` and `distance`. A **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
 camera is anywhere inside. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor its
-indices can be found from images.
+indices can be found from images. A **tube** (GlassWindow::tube) has the `axis` beside them; a ray along the axis never leaves,
+and has no answer. A **bent** window is a flat one with a `curvature`: tempered plate bows by 1 to 3 mm a metre, which is a
+sphere of some 40 to 100 m (a bow of b over the length l is a curvature of 8 b/l^2).
 
 Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
 tempered glass. At range z a wedge d looks like a tilt of the pane by index z d/thickness.
@@ -588,7 +593,7 @@ CV_EXPORTS_W void refractiveSplineWeights(InputArray objectPoints, InputArray rv
 /** @brief Rays of pixels in the scene. Closed form, except for the lens.
 @param imagePoints N raw pixels.
 @param origins N points of the rays, camera coordinates: on the window's axis, tau * normal; near it behind a window with a
-wedge.
+wedge or a curvature; near the camera in a tube.
 @param directions N unit vectors in the outer medium, camera coordinates.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
