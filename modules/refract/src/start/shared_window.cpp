@@ -30,6 +30,12 @@ GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
     const Matx33d R = b.rotation.R*a.rotation.R.t();
     if (hasCenter(window.shape))
         return windowInFrame(window, R, b.T - R*a.T);
+    if (window.shape == WINDOW_BENT)
+    {
+        window = windowInFrame(window, R, b.T - R*a.T);
+        window.distance = std::max(window.distance, 0.);
+        return window;
+    }
     const WindowTransfer transfer(window.normal, window.distance, a, b);
     if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
     {
