@@ -13,11 +13,11 @@ namespace cv { namespace refract {
 namespace {
 
 //! The window of an owner as another camera sees it; the distance is negative beyond it.
-WindowTransfer seenFrom(const Rig& rig, int c)
+GlassWindow seenFrom(const Rig& rig, int c)
 {
-    const GlassWindow window = rig.cameras[rig.owner[c]].window();
-    return WindowTransfer(window.normal, window.distance, TransformWithDerivatives(rig.extrinsics[rig.owner[c]]),
-                          TransformWithDerivatives(rig.extrinsics[c]));
+    const TransformWithDerivatives a(rig.extrinsics[rig.owner[c]]), b(rig.extrinsics[c]);
+    const Matx33d R = b.rotation.R*a.rotation.R.t();
+    return windowInFrame(rig.cameras[rig.owner[c]].window(), R, b.T - R*a.T);
 }
 
 double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
