@@ -141,10 +141,12 @@ Rig readRig(const std::string& filename)
     }
     if (rig.cameras.size() > MAX_CAMERAS)
         throw Failure(format("'%s' has %zu cameras; the tools are for up to %d", filename.c_str(), rig.cameras.size(), MAX_CAMERAS));
+    const char* const shapes[] = { "a flat window", "a dome", "a tube", "a bent pane" };
     for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
         if (camera->window().shape != cv::refract::WINDOW_FLAT)
-            throw Failure("'" + filename + "' has a camera behind a dome; the tools take flat windows only. The library takes domes: "
-                          "refractiveProjectPoints, triangulateRefractive and the other calls of opencv2/refract.hpp");
+            throw Failure("'" + filename + "' has a camera behind " + shapes[camera->window().shape] + "; the tools take flat windows "
+                          "only. The library takes all shapes: refractiveProjectPoints, triangulateRefractive and the other calls of "
+                          "opencv2/refract.hpp");
     return rig;
 }
 
