@@ -6,6 +6,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,7 @@ struct GivenValue
 std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
-    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
+    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex, round = isRound(window);
     std::vector<double> indices;
     for (size_t i = 0; i < window.index.size(); i++)
         indices.push_back(options.std.indexOf(i));
@@ -108,8 +109,10 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
         {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers, window.thickness,
          std::vector<double>(window.thickness.size(), options.std.thickness), [](const ParameterColumns& at) { return at.thickness; }},
         {GLASS_FREE_INDEX, "index", "--index", layers, window.index, indices, [](const ParameterColumns& at) { return at.index; }},
-        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia, {window.distance}, {options.std.distance},
+        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && !round, {window.distance}, {options.std.distance},
          [](const ParameterColumns& at) { return at.distance; }},
+        {GLASS_FREE_RADIUS, "radius", "--radius", round, {window.radius}, {options.std.radius},
+         [](const ParameterColumns& at) { return at.radius; }},
         {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia, {window.outerIndex},
          {options.std.outerIndex}, [](const ParameterColumns& at) { return at.outerIndex; }}};
     values.erase(std::remove_if(values.begin(), values.end(), [&](const GivenValue& value) {
@@ -185,7 +188,7 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
     for (int c : rig.windowOwners())
     {
         const ParameterColumns at = columnsOf(rig.fit.rig, c);
-        if (at.wedge == at.end || ((rig.options.flags & GLASS_FREE_WEDGE) && !(rig.options.std.wedge > 0.)))
+        if (at.wedge == at.curvature || ((rig.options.flags & GLASS_FREE_WEDGE) && !(rig.options.std.wedge > 0.)))
             continue;
         const std::string where = ofWindow(rig, c);
         const double known = rig.options.std.wedge;
@@ -197,6 +200,23 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
             const auto angle = [&](int i) { return plusMinus(values[i]/ARC_MINUTE, stdOfSum(found, {i})/ARC_MINUTE); };
             return format("the images contradict --wedge-std=%.3g: set free, the wedge%s would be (", known/ARC_MINUTE, where.c_str())
                 + angle(at.wedge) + ", " + angle(at.wedge + 1) + ") arc minutes" + howFar(deviations); }});
+    }
+}
+
+//! The curvature of a window that is taken to be flat within --bow-std.
+void addBows(const FittedRig& rig, std::vector<Cause>& causes)
+{
+    for (int c : rig.windowOwners())
+    {
+        const ParameterColumns at = columnsOf(rig.fit.rig, c);
+        if (!at.has(at.curvature) || !(rig.options.std.curvature > 0.))
+            continue;
+        const std::string where = ofWindow(rig, c);
+        const double known = rig.options.std.bow, sag = known/rig.options.std.curvature;
+        causes.push_back({format("bow %d", c), {{{{at.curvature, 1.}}}}, [=](const Relaxed& found, double deviations) {
+            return format("the images contradict --bow-std=%.2g: set free, the bow%s would be ", known, where.c_str())
+                + plusMinus(sag*toVector(found.glass)[at.curvature], sag*stdOfSum(found, {at.curvature})) + " mm per metre"
+                + howFar(deviations); }});
     }
 }
 
@@ -377,6 +397,7 @@ std::vector<Cause> causesOf(const RigData& data, const RigOptions& options, cons
     std::vector<Cause> causes;
     addValues(rig, causes);
     addWedges(rig, causes);
+    addBows(rig, causes);
     addMotion(rig, causes);
     addLenses(rig, causes);
     addPlaces(rig, causes);
