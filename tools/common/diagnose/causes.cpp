@@ -132,6 +132,13 @@ std::string typed(const RigOptions& options, const GivenValue& given)
 
 std::string unitHint(double ratio) { return isRatioOfUnits(ratio) ? " (a wrong unit?)" : ""; }
 
+//! A drawing may say the outer one.
+std::string outerRadiusHint(double given, double found, double glass)
+{
+    const double NEARLY = 0.3;
+    return std::abs(given - glass - found) < NEARLY*glass ? " (is that given of the outer face? --radius is of the inner one)" : "";
+}
+
 /** Of some windows together. Of several layers, which images hardly distinguish, each takes its part of what their sum changes by. */
 Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vector<int>& owners)
 {
@@ -148,6 +155,7 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
         }
     const std::string where = owners.size() == 1 ? ofWindow(rig, owners[0]) : std::string(" of all windows");
     const std::string value = typed(rig.options, given);
+    const double glass = glassOf(rig.options.window);
     return {format("%s %d", given.option, owners.size() == 1 ? owners[0] : -1), {shift},
             [=](const Relaxed& found, double deviations) {
         const std::string estimate = plusMinus(sumOf(found, numbers), stdOfSum(found, numbers));
@@ -156,7 +164,9 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
                 + estimate + format(" and not %.5g", given.sum()) + howFar(deviations);
         return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, value.c_str(),
                       given.std() > 0. ? format(" +- %.2g", given.std()).c_str() : "", given.word, where.c_str())
-            + estimate + unitHint(sumOf(found, numbers)/given.sum()) + howFar(deviations); }};
+            + estimate + unitHint(sumOf(found, numbers)/given.sum())
+            + (given.flag == GLASS_FREE_RADIUS ? outerRadiusHint(given.sum(), sumOf(found, numbers), glass) : std::string())
+            + howFar(deviations); }};
 }
 
 //! All windows together, as one option gives them; and each alone.

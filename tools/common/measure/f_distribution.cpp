@@ -42,12 +42,20 @@ double upperTailAnyF(int k, double v, double x)
     return std::min(1., sum);
 }
 
-double quantileF2(double v, double probability)
+double quantileF(int k, double v, double probability)
 {
-    return 0.5*v*std::expm1(-2./v*std::log(probability));
+    const double ofTwo = 0.5*v*std::expm1(-2./v*std::log(probability));
+    if (k == 2)
+        return ofTwo;
+    double low = 0., high = ofTwo;
+    while (upperTailAnyF(k, v, high) > probability)
+        high *= 2.;
+    for (int i = 0; i < 100 && high - low > 1e-12*high; i++)
+        (upperTailAnyF(k, v, 0.5*(low + high)) > probability ? low : high) = 0.5*(low + high);
+    return 0.5*(low + high);
 }
 
-double upperTailNoncentralF2(double v, double lambda, double x)
+double upperTailNoncentralF(int k, double v, double lambda, double x)
 {
     // A Poisson mixture of central ones; from where it is largest, terms fall off fast to both sides.
     const int last = (int)(0.5*lambda + 10.*std::sqrt(0.5*lambda) + 30.);
@@ -56,7 +64,7 @@ double upperTailNoncentralF2(double v, double lambda, double x)
     {
         logFactorial += std::log(std::max(j, 1));
         const double logWeight = (lambda > 0 ? j*std::log(0.5*lambda) : j ? -HUGE_VAL : 0.) - 0.5*lambda - logFactorial;
-        sum += std::exp(logWeight)*upperTailF(1 + j, v, x/(1 + j));
+        sum += std::exp(logWeight)*upperTailAnyF(k + 2*j, v, k*x/(k + 2*j));
     }
     return std::min(1., sum);
 }
