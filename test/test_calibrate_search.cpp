@@ -5,6 +5,7 @@
 #include "rig_scenes.hpp"
 #include "start/multi_start.hpp"
 #include "start/shared_window.hpp"
+#include "window/place.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -26,10 +27,10 @@ struct Search
         views.object = scene.object;
         views.cameras.push_back({ scenes::PixelViews(count), scene.refracted[0] });
         const RigStart given = { { { static_cast<const Camera&>(*truth.cameras[0]) }, { 0 }, { Pose() } }, {} };
-        for (const Vec3d& normal : ringOfNormals(0.4, 8, 0))
+        for (const GlassWindow& place : placesAround(given.rig.cameras[0].window(), 0.4, 8, 0))
         {
             tilts.push_back(given);
-            REQUIRE(setNormal(tilts.back().rig, 0, normal));
+            REQUIRE(setPlace(tilts.back().rig, 0, place));
         }
     }
 
@@ -60,7 +61,7 @@ TEST_CASE("A search ends in distinct minima, the best first; a stage keeps what 
     std::vector<OtherMinimum> others(1);
     describeOther(minima, others);
     CHECK(others[0].excess == Approx(std::sqrt((minima[1].cost/minima[0].cost - 1)*minima[0].freedom)));
-    CHECK(norm(others[0].normal - normalOf(minima[1])) == 0);
+    CHECK(norm(others[0].window.normal - minima[1].rig.cameras[0].window().normal) == 0);
     Stage plausible = { ALL_VIEWS, FINE };
     plausible.maxExcess = 0.99*others[0].excess;
     CHECK(keptMinima(minima, plausible).size() == 1);

@@ -373,35 +373,3 @@ TEST_CASE("A dome's parameters are its centre and its radius", "[dome][parameter
     CHECK(kindOf(windowLayout(dome), 2) == WindowParameter::CENTER);
     CHECK(kindOf(windowLayout(dome), 3) == WindowParameter::RADIUS);
 }
-
-TEST_CASE("Calibrators and bundle adjustment refuse a dome", "[dome]")
-{
-    GlassWindow dome = GlassWindow::dome(Vec3d(1, 2, 3), 50, 7, 1.5, 1.333);
-    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), dome), other = camera->clone();
-    const std::vector<std::vector<Point3f> > object(3, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 }, { 2, 2, 0 } });
-    std::vector<std::vector<Point2f> > image(3);
-    for (std::vector<Point2f>& view : image)
-        for (const Point3f& X : object[0])
-            view.push_back(Point2f(600 + 20*X.x, 500 + 20*X.y));
-    const std::vector<std::vector<Point2f> > none;
-    std::vector<Mat> rvecs, tvecs;
-    const auto refused = [](const std::function<void()>& call)
-    { CHECK_THAT(refusal(call, Error::StsNotImplemented), Contains("dome")); };
-    refused([&] { calibrateGlass(object, image, image, camera, rvecs, tvecs); });
-    refused([&] { calibrateGlass(object, image, image, camera, rvecs, tvecs, GLASS_FREE_WEDGE); });
-    refused([&] { calibrateGlass(object, image, image, K, noArray(), dome, rvecs, tvecs); });
-    Mat R = Mat::eye(3, 3, CV_64F), T = Mat::zeros(3, 1, CV_64F);
-    refused([&] { stereoCalibrateGlass(object, image, image, image, image, camera, other, R, T, rvecs, tvecs, noArray(), noArray(),
-                                       noArray()); });
-    std::vector<Mat> Rs{ R }, Ts{ T };
-    std::vector<std::vector<Mat> > seen(1);
-    for (const std::vector<Point2f>& view : image)
-        seen[0].push_back(Mat(view));
-    const std::vector<Ptr<RefractiveCamera> > one{ camera }, two{ RefractiveCamera::create(K, noArray()), camera };
-    refused([&] { calibrateGlassRig(object, seen, seen, one, std::vector<int>(), Rs, Ts, rvecs, tvecs); });
-    Mat points3D, lengths = (Mat_<double>(1, 4) << 0, 1, 1, 0.1);
-    const std::vector<Mat> pixels{ seen[0][0], seen[0][0] };
-    Rs.push_back(Mat::eye(3, 3, CV_64F));
-    Ts.push_back((Mat_<double>(3, 1) << 1, 0, 0));
-    refused([&] { refractiveBundleAdjust(pixels, two, std::vector<int>(), Rs, Ts, points3D, lengths); });
-}

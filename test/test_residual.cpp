@@ -35,8 +35,9 @@ struct Image
         if (!isCamera1)
             blocks.push_back({ 0.05, 0.1, -0.07, 20, -10, 30 });
         blocks.push_back({ all.begin(), all.begin() + lens });
-        window_ = { std::vector<double>(all.begin() + lens, all.begin() + lens + 3),
-                    std::vector<double>(all.begin() + lens + 3, all.end()), { -0.1, 0.06, 0.03, -15, 8, 20 } };
+        const int media = lens + camera.at().media;
+        window_ = { std::vector<double>(all.begin() + lens, all.begin() + media), std::vector<double>(all.begin() + media, all.end()),
+                    { -0.1, 0.06, 0.03, -15, 8, 20 } };
         if (refracted)
             for (int i = 0; i < (owner == CAMERA_3 ? 3 : 2); i++)
                 blocks.push_back(window_[i]);
@@ -104,8 +105,10 @@ double jacobianError(Image& image, int block, int coordinate, double step)
 
 TEST_CASE("Every jacobian of the residual equals central differences", "[residual]")
 {
-    GlassWindow window({ -0.24, 0.1, 1 }, 20, 1.5437, 50, 1.2);
-    window.innerIndex = 1.1;
+    GlassWindow pane({ -0.24, 0.1, 1 }, 20, 1.5437, 50, 1.2), dome = GlassWindow::dome({ 15, -10, 20 }, 90, 12, 1.5, 1.2);
+    pane.innerIndex = dome.innerIndex = 1.1;
+    const GlassWindow window = GENERATE_COPY(pane, dome);
+    CAPTURE(window.shape);
     const Ptr<RefractiveCamera> handle = makeCamera(lensNamed("4 coefficients"), window);
     ImagePoints points;
     Random random(500);

@@ -55,6 +55,24 @@ int requirementOf(ParameterBlock::Kind kind)
            kind == ParameterBlock::TARGETS ? 0 : GLASS_REQUIRE_WINDOW;
 }
 
+//! A standard deviation of a coordinate beyond which it is not determined.
+double largestSigma(const ParameterBlock& block, int i, double range)
+{
+    const double MAX_ANGLE_SIGMA = CV_PI/4;
+    if (block.kind == ParameterBlock::EXTRINSICS)
+        return i < 3 ? MAX_ANGLE_SIGMA : range;
+    if (block.kind == ParameterBlock::LENS)
+        return i < 2 ? block.values[i] : std::numeric_limits<double>::infinity();
+    switch (kindOf(block.at, (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media) + i))
+    {
+    case WindowParameter::NORMAL: case WindowParameter::AXIS: return MAX_ANGLE_SIGMA;
+    case WindowParameter::DISTANCE: case WindowParameter::CENTER: return range;
+    case WindowParameter::WEDGE: return MAX_WEDGE_SIGMA;
+    case WindowParameter::CURVATURE: return 1/range;
+    default: return block.values[i];
+    }
+}
+
 std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
 {
     const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(problem);
@@ -62,21 +80,16 @@ std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
     for (const ParameterBlock& block : problem.blocks())
         for (int i = 0; i < (int)block.values.size(); i++)
         {
-            const bool isThird = block.kind == ParameterBlock::NORMAL && i == 2;     // a normal has two
-            if (block.kind == ParameterBlock::POSE || !block.isFree[i] || isThird)
+            const bool isDirection = block.isOnManifold();      // of three coordinates two are free: those of no axis
+            if (block.kind == ParameterBlock::POSE || !block.isFree[i] || (isDirection && i % 3 == 2))
                 continue;
             FreeParameter p;
-            p.name = block.kind == ParameterBlock::NORMAL ? "normal" : block.names[i];
+            p.name = isDirection ? String(block.names[i].substr(0, block.names[i].find('['))) : block.names[i];
             if (block.kind != ParameterBlock::TARGETS && problem.cameraCount() > (block.kind == ParameterBlock::EXTRINSICS ? 2 : 1))
                 p.name += format(" of camera %d", block.index + 1);
             p.block = &block;
             p.coordinate = i;
-            const bool isAngle = block.kind == ParameterBlock::NORMAL || (block.kind == ParameterBlock::EXTRINSICS && i < 3);
-            const bool isLength = block.kind == ParameterBlock::MEDIA ? block.windowParameter(i) == WindowParameter::DISTANCE :
-                                  block.kind == ParameterBlock::EXTRINSICS && i >= 3;
-            const bool isWedge = block.kind == ParameterBlock::MEDIA && block.windowParameter(i) == WindowParameter::WEDGE;
-            p.maxSigma = !(required & requirementOf(block.kind)) ? infinity : isAngle ? CV_PI/4 : isLength ? range :
-                isWedge ? MAX_WEDGE_SIGMA : block.kind == ParameterBlock::MEDIA || i < 2 ? p.value() : infinity;
+            p.maxSigma = required & requirementOf(block.kind) ? largestSigma(block, i, range) : infinity;
             parameters.push_back(p);
         }
     return parameters;

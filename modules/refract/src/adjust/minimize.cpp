@@ -71,8 +71,8 @@ void addBlock(ceres::Problem& problem, ParameterBlock& block)
             fixed.push_back(i);
         else if (std::isfinite(block.lower[i]))
             problem.SetParameterLowerBound(values, i, block.lower[i]);
-    if (block.kind == ParameterBlock::NORMAL)
-        problem.SetManifold(values, new ceres::SphereManifold<3>());
+    if (block.isOnManifold())
+        problem.SetManifold(values, block.manifold().release());
     else if (!fixed.empty())
         problem.SetManifold(values, new ceres::SubsetManifold(size, fixed));
 }

@@ -3,19 +3,33 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/parameter_block.hpp"
+#include "window/place.hpp"
 #include <Eigen/Cholesky>
+#include <ceres/line_manifold.h>
 #include <ceres/sphere_manifold.h>
 #include <map>
 
 namespace cv { namespace refract {
 
+bool ParameterBlock::isOnManifold() const { return kind == PLACE && at.shape != WINDOW_DOME; }
+
+std::unique_ptr<ceres::Manifold> ParameterBlock::manifold() const
+{
+    if (!isOnManifold())
+        return nullptr;
+    if (at.shape == WINDOW_TUBE)
+        return std::unique_ptr<ceres::Manifold>(new ceres::LineManifold<3>());
+    return std::unique_ptr<ceres::Manifold>(new ceres::SphereManifold<3>());
+}
+
 Eigen::MatrixXd ParameterBlock::tangentBasis(bool withHeld) const
 {
     const int size = (int)values.size();
-    if (kind == NORMAL && isFree[0])
+    if (isOnManifold() && isFree[0])
     {
-        Eigen::Matrix<double, 3, 2, Eigen::RowMajor> basis;
-        ceres::SphereManifold<3>().PlusJacobian(values.data(), basis.data());
+        const std::unique_ptr<ceres::Manifold> curved = manifold();
+        RowMajorMatrix basis(size, curved->TangentSize());
+        curved->PlusJacobian(values.data(), basis.data());
         return basis.colwise().normalized();    // radians; Ceres' scale differs between versions
     }
     Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(size, size);

@@ -8,6 +8,9 @@
 #include "camera/camera.hpp"
 #include "window/parameters.hpp"
 #include <Eigen/Core>
+#include <memory>
+
+namespace ceres { class Manifold; }
 
 namespace cv { namespace refract {
 
@@ -16,19 +19,22 @@ typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> R
 //! Parameters of the problem that belong together.
 struct ParameterBlock
 {
-    enum Kind { LENS, NORMAL, MEDIA, EXTRINSICS, TARGETS, POSE };
+    enum Kind { LENS, PLACE, MEDIA, EXTRINSICS, TARGETS, POSE };        //!< PLACE: of a window, see window/place.hpp
     Kind kind;
     int index;                      //!< the camera (of a window: its owner); of a pose the view; 0 of TARGETS
     WindowLayout at;                //!< of the camera's window
     Eigen::Map<Eigen::VectorXd> values;     //!< kept by the problem
-    std::vector<bool> isFree;       //!< per coordinate; a normal is free or fixed as a whole
+    std::vector<bool> isFree;       //!< per coordinate; a normal or a line is free or fixed as a whole
     std::vector<String> names;      //!< in messages
     std::vector<double> lower;      //!< bounds
     std::vector<bool> isHeld;       //!< on its bound while solving
     Eigen::VectorXd priorMean;
     Eigen::MatrixXd sqrtInformation;        //!< W, W (values - priorMean) has unit covariance; no rows: there is no prior
 
-    //! d values / d free coordinates; orthonormal. A normal moves on the sphere.
+    //! The values are a normal or a line. On which manifold they move; null of others.
+    bool isOnManifold() const;
+    std::unique_ptr<ceres::Manifold> manifold() const;
+    //! d values / d free coordinates; orthonormal.
     Eigen::MatrixXd tangentBasis(bool withHeld = true) const;
     //! What a coordinate of MEDIA is.
     WindowParameter windowParameter(int coordinate) const { return kindOf(at, at.media + coordinate); }

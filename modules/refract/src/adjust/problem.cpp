@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/problem.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -135,10 +136,10 @@ void Problem::setRigPrior(const Eigen::MatrixXd& covariance)
             rows.push_back(block.kind == ParameterBlock::TARGETS ? -1 : row + k);
         if (block.kind == ParameterBlock::TARGETS)
             continue;
-        const bool isNormal = block.kind == ParameterBlock::NORMAL;
-        const double ofNormal = isNormal ? covariance.diagonal().segment<3>(row).sum() : 0;
+        const bool isWhole = block.isOnManifold();
+        const double ofBlock = isWhole ? covariance.diagonal().segment(row, size).sum() : 0;
         for (int k = 0; k < size; k++)
-            if (isNormal ? ofNormal > 0 : covariance(row + k, row + k) > 0)
+            if (isWhole ? ofBlock > 0 : covariance(row + k, row + k) > 0)
                 block.isFree[k] = true;
         const Eigen::MatrixXd tangents = block.tangentBasis();
         for (int k = 0; k < tangents.cols(); k++)
@@ -192,7 +193,8 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);
     if (!rig_.owns(c))
         return;
-    add(ParameterBlock::NORMAL, lens + at.normal, std::vector<bool>(3, camera.refracts() && !(flags & GLASS_FIX_NORMAL)), false);
+    add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)),
+        at.shape == WINDOW_DOME);
     add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
 }
 
@@ -266,7 +268,7 @@ int Problem::coordinateCount() const
 
 int Problem::blockOf(ParameterBlock::Kind kind, int camera) const
 {
-    if (kind == ParameterBlock::NORMAL || kind == ParameterBlock::MEDIA)
+    if (kind == ParameterBlock::PLACE || kind == ParameterBlock::MEDIA)
         camera = rig_.owner[camera];
     for (int i = 0; i < cameraBlocks_; i++)
         if (blocks_[i].kind == kind && blocks_[i].index == camera)
@@ -291,7 +293,7 @@ std::vector<int> Problem::blocksOf(const Image& image) const
     blocks.push_back(blockOf(ParameterBlock::LENS, c));
     if (!image.refracted)
         return blocks;
-    blocks.push_back(blockOf(ParameterBlock::NORMAL, c));
+    blocks.push_back(blockOf(ParameterBlock::PLACE, c));
     blocks.push_back(blockOf(ParameterBlock::MEDIA, c));
     if (owner != c && owner > 0)
         blocks.push_back(blockOf(ParameterBlock::EXTRINSICS, owner));
@@ -307,7 +309,7 @@ void Problem::updateCameras()
         RigCamera::Parameters parameters;
         parameters.extrinsics = valuesOf(ParameterBlock::EXTRINSICS, c);
         parameters.lens = valuesOf(ParameterBlock::LENS, c);
-        parameters.normal = valuesOf(ParameterBlock::NORMAL, c);
+        parameters.place = valuesOf(ParameterBlock::PLACE, c);
         parameters.media = valuesOf(ParameterBlock::MEDIA, c);
         parameters.ownerExtrinsics = valuesOf(ParameterBlock::EXTRINSICS, rig_.owner[c]);
         parameters.ownsWindow = rig_.owns(c);
@@ -412,11 +414,10 @@ FitOutcome Problem::findPointWithoutImage() const
         {
             const TransferredWindow* window = cameras_[image.camera].window.get();
             CV_Assert(window);
-            const WindowLayout& at = cameras_[image.camera].at();
-            const double* const normal = &window->parameters[at.normal];
-            outcome.status = normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
-            outcome.point = Point3d(normal[0], normal[1], normal[2]);
-            outcome.distance = window->parameters[at.distance];
+            const GlassWindow seen = withParameters(rig_.cameras[image.camera].window(), window->parameters.data());
+            outcome.status = seen.normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
+            outcome.point = Point3d(seen.normal);
+            outcome.distance = distanceToSurface(seen);
             return outcome;
         }
         outcome.view = image.view;
@@ -568,7 +569,7 @@ int Problem::publicRow(ParameterBlock::Kind kind, int camera) const
         row += rig_.cameras[c].parameterCount();
     const Camera& camera_ = rig_.cameras[camera];
     const WindowLayout& at = camera_.layers().at();
-    return row + (kind == ParameterBlock::LENS ? 0 : camera_.lensCount() + (kind == ParameterBlock::NORMAL ? at.normal : at.media));
+    return row + (kind == ParameterBlock::LENS ? 0 : camera_.lensCount() + (kind == ParameterBlock::PLACE ? at.normal : at.media));
 }
 
 Eigen::MatrixXd Problem::publicBasis() const
@@ -593,8 +594,8 @@ Eigen::MatrixXd Problem::publicBasis() const
 //! The rows of a window in a camera that does not own it.
 void Problem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
 {
-    const int owner = rig_.owner[camera], row = publicRow(ParameterBlock::NORMAL, camera);
-    const int ownerRow = publicRow(ParameterBlock::NORMAL, owner);
+    const int owner = rig_.owner[camera], row = publicRow(ParameterBlock::PLACE, camera);
+    const int ownerRow = publicRow(ParameterBlock::PLACE, owner);
     const TransferredWindow& window = *cameras_[camera].window;
     const int count = rig_.cameras[camera].layers().at().count;
     Eigen::MatrixXd rows = window.byWindow*basis.middleRows(ownerRow, count);

@@ -36,7 +36,7 @@ ImageResidual::ImageResidual(const RigCamera& camera, const ImagePoints& points,
     targets_ = addBlock(kind.hasTargetErrors, SharedTargetErrors::COUNT);
     extrinsics_ = addBlock(!kind.isCamera1, 6);
     lens_ = addBlock(true, camera.lensCount());
-    normal_ = addBlock(kind.refracted, 3);
+    place_ = addBlock(kind.refracted, camera.placeCount());
     media_ = addBlock(kind.refracted, camera.mediaCount());
     owner_ = addBlock(kind.refracted && camera.window && !kind.ownerIsCamera1, 6);
 }
@@ -104,8 +104,8 @@ void ImageResidual::writeJacobians(const Target& target, Point& point, int i, do
         point.byOwnersWindow.noalias() = byWindow.lazyProduct(camera_.window->byWindow);
         byWindow = point.byOwnersWindow;
     }
-    if (wanted(normal_))
-        rowsOf<3>(jacobians[normal_], i) = byWindow.middleCols<3>(at.normal);
+    if (wanted(place_))
+        rowsOf<Eigen::Dynamic>(jacobians[place_], i, sizes_[place_]) = byWindow.middleCols(at.normal, sizes_[place_]);
     if (wanted(media_))
         rowsOf<Eigen::Dynamic>(jacobians[media_], i, sizes_[media_]) = byWindow.middleCols(at.media, sizes_[media_]);
 }

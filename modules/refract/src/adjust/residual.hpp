@@ -16,7 +16,7 @@ namespace cv { namespace refract {
     object --pose, errors of all targets--> camera 1 --extrinsics--> camera --window, lens--> pixel
 
 The camera is evaluated once for all its images (RigCamera). Blocks in this order: pose (rvec, tvec; 6), the errors that all targets
-share (7; if the problem has them), extrinsics (rvec, T; 6) but for camera 1, lens, and through a window its normal (3, unit), media,
+share (7; if the problem has them), extrinsics (rvec, T; 6) but for camera 1, lens, and through a window its place, its media,
 and the owner's extrinsics if the window is neither the camera's own nor camera 1's.
 
 Every point has a weight: its residual, whitened (whitening.hpp), is multiplied by the weight's root. 0: left out. Half a pixel has
@@ -56,7 +56,7 @@ private:
     const SharedTargetErrors& targetErrors_;
     bool refracted_;
     std::vector<int> sizes_;
-    int targets_, extrinsics_, lens_, normal_, media_, owner_;    //!< position of each block; -1: there is none
+    int targets_, extrinsics_, lens_, place_, media_, owner_;    //!< position of each block; -1: there is none
 };
 
 }} // namespace

@@ -3,11 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/rig_camera.hpp"
-#include "window/parameters.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
-
-static const double MAX_TRIAL_WEDGE = 1;        // radians: GlassWindow::check() refuses 90 degrees
 
 Camera withWindow(const Camera& camera, const GlassWindow& window)
 {
@@ -37,7 +35,7 @@ void RigCamera::set(const Parameters& parameters)
 std::vector<double> RigCamera::ofOwner(const Parameters& parameters) const
 {
     std::vector<double> all(at().count);
-    std::copy(parameters.normal, parameters.normal + 3, all.begin() + at().normal);
+    std::copy(parameters.place, parameters.place + placeCount(), all.begin() + at().normal);
     std::copy(parameters.media, parameters.media + mediaCount(), all.begin() + at().media);
     return all;
 }
@@ -46,20 +44,12 @@ bool RigCamera::setWindow(const Parameters& parameters)
 {
     // With equal media the distance has no effect, or with a wedge hardly any: another camera's need not be known well enough to be
     // positive here.
-    if (window && window->parameters[at().innerIndex] == window->parameters[at().outerIndex] && window->parameters[at().distance] < 0)
+    if (window && !hasCenter(at().shape) && window->parameters[at().innerIndex] == window->parameters[at().outerIndex] &&
+        window->parameters[at().distance] < 0)
         window->hold(at().distance, 0);
     const std::vector<double> p = window ? window->parameters : ofOwner(parameters);
-    double wedge = 0;
-    for (int i = at().wedge; i < at().count; i++)
-        wedge += std::abs(p[i]);
-    if (!(wedge < MAX_TRIAL_WEDGE && p[at().normal + 2] > 0 && p[at().distance] >= 0))
+    if (!isPossible(at(), p.data()))
         return false;
-    for (int i = at().media; i < at().count; i++)
-        if (!(p[i] <= upperBound(kindOf(at(), i))))
-            return false;
-    for (int i = at().thickness; i < at().thickness + at().layers; i++)
-        if (!(p[i] > 0))                // faces that meet before a camera
-            return false;
     std::vector<double> all(parameters.lens, parameters.lens + lensCount());
     all.insert(all.end(), p.begin(), p.end());
     behindWindow_.setParameters(all);

@@ -25,7 +25,7 @@ public:
     {
         const double* extrinsics;
         const double* lens;
-        const double* normal;               //!< in the owner's frame
+        const double* place;                //!< in the owner's frame
         const double* media;                //!< the window's other parameters; the distance is the owner's
         const double* ownerExtrinsics;
         bool ownsWindow;
@@ -35,6 +35,7 @@ public:
     int lensCount() const { return behindWindow_.lensCount(); }
     //! Of the window's parameters.
     const WindowLayout& at() const { return behindWindow_.layers().at(); }
+    int placeCount() const { return at().media - at().normal; }
     int mediaCount() const { return at().count - at().media; }
 
     //! With its window, or the lens alone; null where the parameters are impossible.

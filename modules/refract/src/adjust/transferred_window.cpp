@@ -5,6 +5,7 @@
 /* With a wedge the transfer is differentiated automatically, one parameter at a time: it happens once a camera and step. */
 
 #include "adjust/transferred_window.hpp"
+#include "window/place.hpp"
 #include <Eigen/Geometry>
 #include <ceres/jet.h>
 
@@ -91,16 +92,55 @@ TransferredWindow::TransferredWindow(const WindowLayout& at, const double* ofOwn
                            const TransformWithDerivatives& camera)
     : parameters(ofOwner, ofOwner + at.count), byWindow(Eigen::MatrixXd::Identity(at.count, at.count))
 {
+    byOwner.setZero(at.count, 6);
+    byCamera.setZero(at.count, 6);
+    if (hasCenter(at.shape))
+        transferCenter(at, ofOwner, owner, camera);
+    else
+        transferFaces(at, ofOwner, owner, camera);
+}
+
+void TransferredWindow::transferFaces(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                                      const TransformWithDerivatives& camera)
+{
     const WindowTransfer plane(Vec3d(ofOwner + at.normal), ofOwner[at.distance], owner, camera);
     std::copy(plane.normal.val, plane.normal.val + 3, parameters.begin() + at.normal);
     parameters[at.distance] = plane.distance;
-    byOwner.setZero(at.count, 6);
-    byCamera.setZero(at.count, 6);
     byWindow.block<4, 4>(at.normal, at.normal) = plane.byWindow;
     byOwner.middleRows<4>(at.normal) = plane.byOwner;
     byCamera.middleRows<4>(at.normal) = plane.byCamera;
-    if (at.count > at.wedge)
+    if (at.curvature > at.wedge)
         addWedge(at, ofOwner, owner, camera);
+}
+
+/* A center is a point, a tube's axis a difference of points:
+
+    X1 = Ro^T (X_owner - To),    X = R X1 + T */
+void TransferredWindow::transferCenter(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                                       const TransformWithDerivatives& camera)
+{
+    typedef Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> > Map33;
+    const Matx33d back = owner.rotation.R.t(), turn = camera.rotation.R*back;
+    for (int first : { at.normal, at.axis })
+    {
+        if (first == at.media)
+            break;
+        const bool isPoint = first == at.normal;
+        const Vec3d given(ofOwner + first), fromOwner = isPoint ? given - owner.T : given, inCamera1 = back*fromOwner;
+        const Vec3d there = camera.rotation.R*inCamera1 + (isPoint ? camera.T : Vec3d());
+        std::copy_n(there.val, 3, parameters.begin() + first);
+        byWindow.block<3, 3>(first, first) = Map33(turn.val);
+        for (int i = 0; i < 3; i++)
+        {
+            const Vec3d byTurn = camera.rotation.R*(owner.rotation.dR[i].t()*fromOwner);
+            byOwner.block<3, 1>(first, i) = Eigen::Map<const Eigen::Vector3d>(byTurn.val);
+        }
+        byCamera.block<3, 3>(first, 0) = Map33(camera.rotation.derivativeOf(inCamera1).val);
+        if (!isPoint)
+            continue;
+        byOwner.block<3, 3>(first, 3) = -Map33(turn.val);
+        byCamera.block<3, 3>(first, 3).setIdentity();
+    }
 }
 
 void TransferredWindow::addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,

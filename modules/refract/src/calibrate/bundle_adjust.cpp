@@ -190,7 +190,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    addWedges(rig.cameras, flags);
+    addParameters(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
     if (!known.rigCovariance.empty() && !known.cameraCovariances.empty())

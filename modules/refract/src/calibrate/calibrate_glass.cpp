@@ -18,8 +18,7 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
 
     checkFlags(flags, MONO_FLAGS);
     Rig rig = { { cameraOf(camera) }, { 0 }, { Pose() } };
-    checkShapes(rig.cameras);
-    addWedges(rig.cameras, flags);
+    addParameters(rig.cameras, flags);
     RigTask task;
     task.views.object = readObjectViews(objectPoints, "objectPoints");
     task.views.cameras.push_back(readCameraViews(imagePointsDirect, "imagePointsDirect", imagePointsRefracted,

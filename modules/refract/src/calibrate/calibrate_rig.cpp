@@ -8,15 +8,37 @@
 #include "calibrate/calibration_error.hpp"
 #include "start/rig_task.hpp"
 #include "math/rotation.hpp"
+#include "window/place.hpp"
 #include <Eigen/Cholesky>
 
 namespace cv { namespace refract {
 
 namespace {
 
+//! Refuses to free what a shape has not.
+void checkFlagsOfShape(const GlassWindow& window, int flags)
+{
+    const bool isRound = hasCenter(window.shape);
+    const auto refuse = [=](int flag, const char* name, const char* has)
+    {
+        if (flags & flag)
+            CV_Error_(Error::StsBadFlag, ("flags has %s, but a window is %s (window.shape %d), which has %s", name,
+                                          isRound ? "a dome or tube" : "flat", window.shape, has));
+    };
+    if (isRound)
+    {
+        refuse(GLASS_FREE_DISTANCE, "GLASS_FREE_DISTANCE", "a radius: GLASS_FREE_RADIUS");
+        refuse(GLASS_FREE_WEDGE, "GLASS_FREE_WEDGE", "no wedge");
+        refuse(GLASS_FREE_CURVATURE, "GLASS_FREE_CURVATURE", "a radius: GLASS_FREE_RADIUS");
+    }
+    else
+        refuse(GLASS_FREE_RADIUS, "GLASS_FREE_RADIUS", "no radius");
+}
+
 //! Refuses what no data can determine.
 void checkWindow(const GlassWindow& window, int flags)
 {
+    checkFlagsOfShape(window, flags);
     const bool equalMedia = window.innerIndex == window.outerIndex;
     if (window.thickness.empty() && equalMedia && !(flags & GLASS_FIX_NORMAL))
         CV_Error_(Error::StsBadArg, ("window has no layer and equal media (index %g): it does not refract, so that its "
@@ -36,23 +58,19 @@ void checkFlags(int flags, int allowed)
         CV_Error_(Error::StsBadFlag, ("flags is %d; %d has no meaning here", flags, flags & ~allowed));
 }
 
-void checkShapes(const std::vector<Camera>& cameras)
-{
-    for (const Camera& camera : cameras)
-        if (camera.window().shape != WINDOW_FLAT)
-            CV_Error(Error::StsNotImplemented, "window is a dome (window.shape): calibration and bundle adjustment take flat windows "
-                                               "only. Give a camera whose dome is known, from its drawing, to the other calls");
-}
-
-void addWedges(std::vector<Camera>& cameras, int flags)
+void addParameters(std::vector<Camera>& cameras, int flags)
 {
     for (Camera& camera : cameras)
     {
         GlassWindow window = camera.window();
-        if (!(flags & GLASS_FREE_WEDGE) || !window.wedge.empty())
-            continue;
-        window.wedge.assign(window.thickness.size(), Vec2d());
-        camera.setWindow(window);
+        const bool hasFaces = !hasCenter(window.shape);
+        const bool addsWedge = (flags & GLASS_FREE_WEDGE) && window.wedge.empty(), addsBow = flags & GLASS_FREE_CURVATURE;
+        if (addsWedge && hasFaces)
+            window.wedge.assign(window.thickness.size(), Vec2d());
+        if (addsBow && hasFaces)
+            window.shape = WINDOW_BENT;
+        if ((addsWedge || addsBow) && hasFaces)
+            camera.setWindow(window);
     }
 }
 
@@ -136,7 +154,6 @@ std::vector<Camera> camerasOf(const std::vector<Ptr<RefractiveCamera> >& handles
                 CV_Error_(Error::StsBadArg, ("%s and %s are one object; each holds its own result",
                                              names[earlier].c_str(), names[c].c_str()));
     }
-    checkShapes(cameras);
     return cameras;
 }
 
@@ -346,7 +363,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    addWedges(rig.cameras, flags);
+    addParameters(rig.cameras, flags);
     setOwners(rig, windowOfCamera);
     checkWindows(rig, task.views, flags, refractedNames);
     if (flags & GLASS_USE_POSES)
@@ -438,7 +455,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_SHARED_WINDOW);
     Rig rig;
     rig.cameras = camerasOf({ camera1, camera2 }, { "camera1", "camera2" });
-    addWedges(rig.cameras, flags);
+    addParameters(rig.cameras, flags);
     rig.extrinsics = { Pose(), poseOf({ readRotation(R, "R"), readVec3(T, "T") }) };
     setOwners(rig, flags & GLASS_SHARED_WINDOW ? std::vector<int>{ 0, 0 } : std::vector<int>{ 0, 1 });
     RigTask task;

@@ -16,16 +16,14 @@ const int FIX_FLAGS = GLASS_FIX_FOCAL_LENGTH | GLASS_FIX_PRINCIPAL_POINT | GLASS
                       GLASS_FIX_K4 | GLASS_FIX_K5 | GLASS_FIX_K6 | GLASS_FIX_TANGENT_DIST | GLASS_FIX_S1_S2_S3_S4 |
                       GLASS_FIX_TAUX_TAUY;
 const int MONO_FLAGS = GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX | GLASS_FREE_WEDGE |
+                       GLASS_FREE_RADIUS | GLASS_FREE_CURVATURE |
                        GLASS_FREE_INTRINSICS | FIX_FLAGS | GLASS_ROBUST | GLASS_REQUIRE_WINDOW | GLASS_REQUIRE_INTRINSICS |
                        GLASS_REQUIRE_EXTRINSICS;
 
 void checkFlags(int flags, int allowed);
 
-//! Only flat windows can be estimated.
-void checkShapes(const std::vector<Camera>& cameras);
-
-//! With GLASS_FREE_WEDGE: windows without a wedge get one of 0, so that it is among their parameters.
-void addWedges(std::vector<Camera>& cameras, int flags);
+//! What flags free and a pane has not gets the value 0, so that it is among its parameters: a wedge, a curvature.
+void addParameters(std::vector<Camera>& cameras, int flags);
 
 /** Refuses windows and flags of which no data can tell, and windows that nobody looked through.
 @param names of each camera's refracted views */

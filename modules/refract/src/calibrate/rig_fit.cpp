@@ -10,6 +10,7 @@
 #include "start/pose_start.hpp"
 #include "start/sealed_start.hpp"
 #include "start/window_start.hpp"
+#include "window/parameters.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
@@ -88,12 +89,16 @@ void dropUnusable(const RigViews& inliers, const std::vector<Pose>& poses, RigTa
 
 Mat toMat(const std::vector<OtherMinimum>& minima)
 {
-    Mat_<double> rows((int)minima.size(), 5);
+    Mat_<double> rows((int)minima.size(), 5, NaN);
     for (int c = 0; c < rows.rows; c++)
     {
-        Mat(minima[c].normal.t()).copyTo(rows(Rect(0, c, 3, 1)));
+        if (std::isnan(minima[c].excess))
+            continue;
+        const std::vector<double> window = windowParameters(minima[c].window);
+        const WindowLayout at = windowLayout(minima[c].window);
+        std::copy_n(window.begin() + at.normal, 3, rows[c]);
         rows(c, 3) = minima[c].excess;
-        rows(c, 4) = minima[c].distance;
+        rows(c, 4) = window[at.distance];
     }
     return rows;
 }
@@ -136,7 +141,7 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
     FitOutcome outcome = startWindows(start.rig, views, start.poses, task.flags, minima);
     addPosesThroughWindow(start.rig, views, start.poses);
     if (outcome.converged())
-        outcome = keepGivenNormals(rig, views, start.poses, start.rig);
+        outcome = keepGivenPlaces(rig, views, start.poses, start.rig);
     if (!outcome.converged())
         return outcome;
     if (task.isSealed() && !task.isRobust())

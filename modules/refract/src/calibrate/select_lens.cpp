@@ -305,7 +305,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     task.criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
-    addWedges(rig.cameras, flags);
+    addParameters(rig.cameras, flags);
     setOwners(rig, windowOfCamera);
     if (!imagePointsRefracted.empty())
         checkWindows(rig, task.views, flags, refractedNames);

@@ -6,6 +6,7 @@
 
 #include "start/multi_start.hpp"
 #include "adjust/minimize.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -66,16 +67,14 @@ void addFits(const std::vector<RigStart>& starts, const RigViews& views, const T
     std::stable_sort(minima.begin(), minima.end());
 }
 
-double angleBetween(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(a.cross(b)), a.dot(b)); }
-
 bool isSameWindow(const Minimum& a, const Minimum& b, int c, double angle)
 {
     const double SAME_DISTANCE = 0.05;      // part of the distance
     const double NEAREST = 0.02;            // part of the range: of a window that ends on the camera, 5 % are nothing
-    const Camera &first = a.rig.cameras[c], &second = b.rig.cameras[c];
-    const double distance = first.window().distance;
-    return angleBetween(first.layers().normal(), second.layers().normal()) <= angle &&
-           std::abs(distance - second.window().distance) <= SAME_DISTANCE*std::max(distance, NEAREST*meanRange(a.poses));
+    const GlassWindow first = a.rig.cameras[c].window(), second = b.rig.cameras[c].window();
+    const double distance = first.distance;
+    return angleBetweenPlaces(first, second) <= angle &&
+           std::abs(distance - second.distance) <= SAME_DISTANCE*std::max(distance, NEAREST*meanRange(a.poses));
 }
 
 bool isSameMinimum(const Minimum& a, const Minimum& b, double angle)
@@ -170,8 +169,7 @@ void describeOther(const std::vector<Minimum>& sorted, std::vector<OtherMinimum>
         for (int c = 0; c < minimum.rig.count(); c++)
             if (isFirstBehind(minimum.rig, c) && !isSameWindow(sorted[0], minimum, c, SAME_ANGLE))
             {
-                others[c].normal = minimum.rig.cameras[c].layers().normal();
-                others[c].distance = minimum.rig.cameras[c].window().distance;
+                others[c].window = minimum.rig.cameras[c].window();
                 others[c].excess = excessOver(sorted[0], minimum);
             }
         return;

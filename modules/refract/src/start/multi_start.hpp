@@ -60,10 +60,9 @@ std::vector<Minimum> hillClimb(std::vector<Minimum> minima, const Neighbours& ne
 //! A second minimum of the cost of a window that only images through it tell of.
 struct OtherMinimum
 {
-    Vec3d normal = Vec3d::all(std::numeric_limits<double>::quiet_NaN());    //!< in the frame of the window's first camera
-    //! Root of the difference of the squared errors, in standard deviations of a pixel.
+    GlassWindow window;         //!< in the frame of its first camera
+    //! Root of the difference of the squared errors, in standard deviations of a pixel; NaN: there is none.
     double excess = std::numeric_limits<double>::quiet_NaN();
-    double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 //! The second best minimum, for the windows that it has elsewhere: rows of the first camera behind each.

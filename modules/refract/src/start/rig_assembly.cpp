@@ -5,6 +5,7 @@
 /* Cameras that each know where the targets are in their own frame become a rig: views in common tell where they are. */
 
 #include "start/rig_assembly.hpp"
+#include "window/place.hpp"
 #include "start/shared_window.hpp"
 
 namespace cv { namespace refract {
@@ -132,7 +133,7 @@ bool assemble(const Rig& given, const std::vector<CameraHypothesis>& cameras, co
         if (!given.owns(c))
             continue;
         GlassWindow window = transferred(cameras[from].camera.window(), start.rig.extrinsics[from], start.rig.extrinsics[c]);
-        if (!(window.normal[2] > 0))
+        if (!(window.normal[2] > 0 && distanceToSurface(window) >= 0))
             return false;
         if (!(flags & GLASS_FREE_DISTANCE))
             window.distance = given.cameras[c].window().distance;

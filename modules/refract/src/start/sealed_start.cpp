@@ -5,6 +5,7 @@
 #include "start/sealed_start.hpp"
 #include "start/rig_task.hpp"
 #include "start/shared_window.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -62,10 +63,10 @@ std::vector<RigStart> tilted(const std::vector<RigStart>& starts, int owner)
 {
     std::vector<RigStart> all = starts;
     for (const RigStart& start : starts)
-        for (const Vec3d& normal : ringOfNormals(TILT, AZIMUTHS, 0.5))
+        for (const GlassWindow& place : placesAround(start.rig.cameras[owner].window(), TILT, AZIMUTHS, 0.5))
         {
             RigStart other = start;
-            if (setNormal(other.rig, owner, normal))
+            if (setPlace(other.rig, owner, place))
                 all.push_back(other);
         }
     return all;
@@ -102,11 +103,13 @@ std::vector<RigStart> mirrored(const Rig& rig, const Rig& middle, int flags)
     std::vector<RigStart> others;
     for (int c = 0; c < rig.count(); c++)
     {
-        RigStart other = { rig, {} };
-        const Vec3d normal = rig.cameras[c].layers().normal();
-        if (rig.owns(c) && std::hypot(normal[0], normal[1]) > ROUGHLY_SAME_ANGLE &&
-            setNormal(other.rig, c, Vec3d(-normal[0], -normal[1], normal[2])))
-            others.push_back(other);
+        const GlassWindow window = rig.cameras[c].window();
+        for (const GlassWindow& place : mirroredPlaces(window))
+        {
+            RigStart other = { rig, {} };
+            if (rig.owns(c) && angleBetweenPlaces(place, window) > 2*ROUGHLY_SAME_ANGLE && setPlace(other.rig, c, place))
+                others.push_back(other);
+        }
         const std::vector<bool> isFree = freeLens(rig.cameras[c], flags);
         std::vector<double> lens = rig.cameras[c].lens().parameters();
         const std::vector<double> around = middle.cameras[c].lens().parameters();

@@ -5,6 +5,7 @@
 /* Windows of a rig: one camera owns each, the others see it from where they are. */
 
 #include "start/shared_window.hpp"
+#include "window/place.hpp"
 #include "window/wedge.hpp"
 
 namespace cv { namespace refract {
@@ -26,10 +27,12 @@ double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
 GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
 {
     const TransformWithDerivatives a(from), b(to);
+    const Matx33d R = b.rotation.R*a.rotation.R.t();
+    if (hasCenter(window.shape))
+        return windowInFrame(window, R, b.T - R*a.T);
     const WindowTransfer transfer(window.normal, window.distance, a, b);
     if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
     {
-        const Matx33d R = b.rotation.R*a.rotation.R.t();
         const std::vector<double> given = window.thickness;
         window = windowInFrame(window, R, b.T - R*a.T);
         for (size_t i = 0; i < given.size(); i++)       // the fit refuses faces that meet before the camera
@@ -47,13 +50,15 @@ FitOutcome transferToOthers(Rig& rig)
         if (rig.owns(c))
             continue;
         const GlassWindow window = transferred(rig.cameras[rig.owner[c]].window(), rig.extrinsics[rig.owner[c]], rig.extrinsics[c]);
+        FitOutcome outcome(FitOutcome::LOOKS_AWAY);
+        outcome.camera = c;
+        outcome.point = Point3d(window.normal);
+        outcome.distance = distanceToSurface(window);
         if (!(window.normal[2] > 0))
-        {
-            FitOutcome outcome(FitOutcome::LOOKS_AWAY);
-            outcome.camera = c;
-            outcome.point = Point3d(window.normal);
             return outcome;
-        }
+        outcome.status = FitOutcome::BEYOND_WINDOW;
+        if (hasCenter(window.shape) && !(outcome.distance > 0))
+            return outcome;
         rig.cameras[c].setWindow(window);
     }
     return FitOutcome();
@@ -64,7 +69,7 @@ void giveToNearest(Rig& rig)
     const std::vector<int> given = rig.owner;
     for (int owner = 0; owner < rig.count(); owner++)
     {
-        if (given[owner] != owner)
+        if (given[owner] != owner || hasCenter(rig.cameras[owner].window().shape))
             continue;
         int nearest = owner;
         for (int c = owner + 1; c < rig.count(); c++)
@@ -86,32 +91,20 @@ void giveToNearest(Rig& rig)
 bool setDistances(Rig& rig, double distance)
 {
     for (int c = 0; c < rig.count(); c++)
-        if (rig.owns(c))
-        {
-            GlassWindow window = rig.cameras[c].window();
-            window.distance = distance;
-            rig.cameras[c].setWindow(window);
-        }
-    return transferToOthers(rig).converged();
-}
-
-bool setNormal(Rig& rig, int owner, const Vec3d& normal)
-{
-    GlassWindow window = rig.cameras[owner].window();
-    window.normal = normal;
-    rig.cameras[owner].setWindow(window);
-    return transferToOthers(rig).converged();
-}
-
-std::vector<Vec3d> ringOfNormals(double tilt, int count, double first)
-{
-    std::vector<Vec3d> normals;
-    for (int i = 0; i < count; i++)
     {
-        const double azimuth = (i + first)*2*CV_PI/count;
-        normals.push_back(Vec3d(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt)));
+        GlassWindow window = rig.cameras[c].window();
+        if (!rig.owns(c) || hasCenter(window.shape))
+            continue;
+        window.distance = distance;
+        rig.cameras[c].setWindow(window);
     }
-    return normals;
+    return transferToOthers(rig).converged();
+}
+
+bool setPlace(Rig& rig, int owner, const GlassWindow& place)
+{
+    rig.cameras[owner].setWindow(withPlaceOf(rig.cameras[owner].window(), place));
+    return transferToOthers(rig).converged();
 }
 
 }} // namespace

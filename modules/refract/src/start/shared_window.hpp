@@ -11,18 +11,15 @@ namespace cv { namespace refract {
 
 //! The window as another camera sees it.
 GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to);
-//! The cameras that do not own their window get what they see of it. LOOKS_AWAY if one does.
+//! The cameras that do not own their window get what they see of it. LOOKS_AWAY if one does, BEYOND_WINDOW if one is outside a dome.
 FitOutcome transferToOthers(Rig& rig);
 //! Gives every shared window to the camera that is nearest to it.
 void giveToNearest(Rig& rig);
 
-//! The distance of every window from its owner; false if some camera then looks away from it.
+//! The distance of every window that has one from its owner; false if some camera then looks away from it.
 bool setDistances(Rig& rig, double distance);
-//! The normal of the window of an owner, in its frame; false if some camera then looks away from it.
-bool setNormal(Rig& rig, int owner, const Vec3d& normal);
-
-//! So many normals about the optical axis, tilted by so much; first: where they begin, in steps.
-std::vector<Vec3d> ringOfNormals(double tilt, int count, double first);
+//! The place of the window of an owner, in its frame; false if some camera then looks away from it.
+bool setPlace(Rig& rig, int owner, const GlassWindow& place);
 
 }} // namespace
 

@@ -7,6 +7,7 @@
 #include "start/window_start.hpp"
 #include "start/normal_from_pairs.hpp"
 #include "start/shared_window.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -37,10 +38,10 @@ std::vector<RigStart> likelyTilts(const RigStart& given, const RigViews& views)
     const RigStart& first = std::isfinite(placed.cost) ? placed : given;    // poses behind one window are near those behind another
     std::vector<RigStart> ring, likely(1, first);
     for (double tilt : { 0., 0.2, 0.45 })
-        for (const Vec3d& normal : ringOfNormals(tilt, tilt > 0 ? 8 : 1, 0))
+        for (const GlassWindow& place : placesAround(given.rig.cameras[0].window(), tilt, tilt > 0 ? 8 : 1, 0))
         {
             ring.push_back(first);
-            setNormal(ring.back().rig, 0, normal);
+            setPlace(ring.back().rig, 0, place);
         }
     for (const Minimum& best : multiStart(ring, look, views, GLASS_FIX_NORMAL))
         likely.push_back(best);
@@ -120,6 +121,16 @@ bool normalOfPairs(const Rig& rig, int owner, const RigViews& views, const std::
     return least < std::numeric_limits<double>::infinity();
 }
 
+//! Whether some view that was seen through the window has a pose without it.
+bool hasPairs(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses)
+{
+    for (int c = owner; c < rig.count(); c++)
+        for (int view = 0; view < views.count() && rig.owner[c] == owner; view++)
+            if (poses[view].found && countSeen(views.cameras[c].refracted[view]) > 0)
+                return true;
+    return false;
+}
+
 //! The camera that saw most through the window; -1 if none saw anything.
 int bestObserver(const Rig& rig, int owner, const RigViews& views)
 {
@@ -144,25 +155,23 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     GlassWindow window = rig.cameras[owner].window();
     if ((flags & GLASS_FIX_NORMAL) || !rig.cameras[owner].refracts())
         return window;
-    if (normalOfPairs(rig, owner, views, poses, flags, window.normal) || (flags & GLASS_FREE_INTRINSICS))
+    // A dome is round: with poses known it has one minimum, and no line through it to begin with.
+    const bool areKnown = hasCenter(window.shape) ? hasPairs(rig, owner, views, poses)
+                                                  : normalOfPairs(rig, owner, views, poses, flags, window.normal);
+    if (areKnown || (flags & GLASS_FREE_INTRINSICS))
         return window;
     const int best = bestObserver(rig, owner, views);
     if (best < 0)
         return window;
     const GlassWindow seenByBest = transferred(window, rig.extrinsics[owner], rig.extrinsics[best]);
-    if (!(seenByBest.normal[2] > 0))
+    if (!(seenByBest.normal[2] > 0 && distanceToSurface(seenByBest) >= 0))
         return window;
     const double givenDistance = window.distance;
     window = transferred(searchWindow(withWindow(rig.cameras[best], seenByBest), viewsThrough(views, best), flags, other),
                          rig.extrinsics[best], rig.extrinsics[owner]);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
-    GlassWindow second = window;
-    second.normal = other.normal;
-    second.distance = other.distance;
-    second = transferred(second, rig.extrinsics[best], rig.extrinsics[owner]);
-    other.normal = second.normal;
-    other.distance = second.distance;
+    other.window = transferred(other.window, rig.extrinsics[best], rig.extrinsics[owner]);
     return window;
 }
 
@@ -200,11 +209,11 @@ static bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const
     return true;
 }
 
-FitOutcome keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig)
+FitOutcome keepGivenPlaces(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig)
 {
     for (int c = 0; c < rig.count(); c++)
         if (!showsWhatWasSeen(rig, c, views, poses))
-            setNormal(rig, rig.owner[c], given.cameras[rig.owner[c]].window().normal);
+            setPlace(rig, rig.owner[c], given.cameras[rig.owner[c]].window());
     return transferToOthers(rig);
 }
 

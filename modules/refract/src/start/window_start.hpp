@@ -9,7 +9,7 @@
 
 namespace cv { namespace refract {
 
-/** Start of every window: its normal and, if free, its distance; the rest as given.
+/** Start of every window: its normal and, if free, its distance; the rest as given. Of a dome or tube the place.
 
 From pairs if there are any; a pose that is known without the window makes every image of its view one of a pair. Else,
 with the lens known, some views are fitted from the best few of a ring of tilts, as the cost through the window alone has
@@ -21,9 +21,9 @@ distance has a bound at 0, so that no camera comes to lie beyond. Where the star
 FitOutcome startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags,
                         std::vector<OtherMinimum>& others);
 
-/** The given normal for a window whose start hides what was seen through it: noisy pairs through a thin window have their least
+/** The given place for a window whose start hides what was seen through it: noisy pairs through a thin window have their least
 error anywhere. */
-FitOutcome keepGivenNormals(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig);
+FitOutcome keepGivenPlaces(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig);
 
 }} // namespace
 

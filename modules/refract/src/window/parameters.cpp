@@ -3,13 +3,11 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "window/parameters.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
 static const double LEAST_THICKNESS = 1e-6;      // of its start
-
-//! It has a center and a radius, not a normal and a distance.
-static bool isAboutCenter(int shape) { return shape == WINDOW_DOME || shape == WINDOW_TUBE; }
 
 WindowLayout windowLayout(int layers, bool hasWedge, int shape)
 {
@@ -37,7 +35,7 @@ WindowLayout windowLayout(const GlassWindow& window)
 WindowParameter kindOf(const WindowLayout& at, int parameter)
 {
     CV_DbgAssert(parameter >= 0 && parameter < at.count);
-    const bool isRound = isAboutCenter(at.shape);
+    const bool isRound = hasCenter(at.shape);
     return parameter < at.axis ? (isRound ? WindowParameter::CENTER : WindowParameter::NORMAL) :
            parameter < at.distance ? WindowParameter::AXIS :
            parameter < at.thickness ? (isRound ? WindowParameter::RADIUS : WindowParameter::DISTANCE) :
@@ -51,7 +49,7 @@ WindowParameter kindOf(const WindowLayout& at, int parameter)
 std::vector<String> windowParameterNames(const WindowLayout& at)
 {
     std::vector<String> names(at.count);
-    const bool isRound = isAboutCenter(at.shape);
+    const bool isRound = hasCenter(at.shape);
     for (int i = 0; i < 3; i++)
         names[at.normal + i] = format(isRound ? "center[%d]" : "normal[%d]", i);
     for (int i = at.axis; i < at.media; i++)
@@ -75,7 +73,7 @@ std::vector<double> windowParameters(const GlassWindow& window)
 {
     const WindowLayout at = windowLayout(window);
     std::vector<double> p(at.count);
-    const bool isRound = isAboutCenter(window.shape);
+    const bool isRound = hasCenter(window.shape);
     const Vec3d& where = isRound ? window.center : window.normal;
     std::copy(where.val, where.val + 3, p.begin() + at.normal);
     std::copy(window.axis.val, window.axis.val + at.media - at.axis, p.begin() + at.axis);
@@ -95,7 +93,7 @@ GlassWindow withParameters(GlassWindow window, const double* p)
 {
     const WindowLayout at = windowLayout(window);
     const int layers = at.layers;
-    if (isAboutCenter(window.shape))
+    if (hasCenter(window.shape))
     {
         window.center = Vec3d(p + at.normal);
         window.radius = p[at.distance];

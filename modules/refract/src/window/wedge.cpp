@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "window/wedge.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -66,6 +67,12 @@ std::vector<Face> facesOf(const GlassWindow& window)
 
 GlassWindow windowInFrame(GlassWindow window, const Matx33d& R, const Vec3d& T)
 {
+    if (hasCenter(window.shape))
+    {
+        window.center = R*window.center + T;
+        window.axis = R*window.axis;
+        return window;
+    }
     const Matx33d here = windowAxes(normalize(window.normal));
     std::vector<Face> faces;
     if (!window.wedge.empty())
