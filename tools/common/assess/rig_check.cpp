@@ -186,8 +186,17 @@ private:
 
     void fitOf(Tested& tested)
     {
-        if (!std::isfinite(tested.fit.chiSquare))
-            tested.fit = problem_->fit(*tested.change, tested.change->ranges().asDiagonal()*tested.at.directions, unchanged_);
+        if (std::isfinite(tested.fit.chiSquare))
+            return;
+        const MatrixXd directions = tested.change->ranges().asDiagonal()*tested.at.directions;
+        tested.fit = problem_->fit(*tested.change, directions, unchanged_);
+        // Where all else was bent far to explain a large change, the way back may be barred.
+        const double FAR = 5.;          // standard deviations
+        if (unchanged_.q.squaredNorm() < FAR*FAR*unchanged_.q.size())
+            return;
+        const CheckFit other = problem_->fit(*tested.change, directions, problem_->asCalibrated());
+        if (other.chiSquare < tested.fit.chiSquare)
+            tested.fit = other;
     }
 
     void addCandidate(const Tested& tested)
