@@ -30,6 +30,7 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 
 #include "assess/new_pane.hpp"
 #include "assess/rig_check.hpp"
+#include "calibrate/window_face.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
@@ -326,7 +327,7 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
     {
         const bool isCentre = w.lengthPerDegree > 0.;
         const double factor = isCentre ? w.lengthPerDegree : 1.;
-        table.add({format(isCentre ? "centre of camera %d's dome" : "window of camera %d", w.camera + 1),
+        table.add({format("%s of camera %d", isCentre ? nameOfShape(input.rig.cameras[w.camera]->window()) : "window", w.camera + 1),
                    w.tiltDeg == w.tiltDeg ? format("%.4f", factor*w.tiltDeg) : "-",
                    format("%.2g, %.2g", factor*w.stdDeg[0], factor*w.stdDeg[1]), format("%.2g", w.probability),
                    format("%.1f %%", 100.*powerOf(w, result, o.detect)),

@@ -156,7 +156,7 @@ void checkCentre(const RigCalibration& c, int camera, Collected& f)
     const std::string middle = round.shape == "dome" ? "centre" : "axis";
     const double std = placeStd(c.fit.covariance, c.fit.rig, camera);
     if (round.isNeedless())
-        f.cannotTell.push_back(of(c, camera) + round.needless());
+        f.cannotTell.push_back(of(c, camera) + round.needless(c.unit));
     else if (std > WEAK_CENTRE*window.radius)
         f.add(A_PARAMETER, of(c, camera) + format("the %s's %s is uncertain by %.2g %s: ", round.shape.c_str(), middle.c_str(), std,
                                                   c.unit.c_str())

@@ -63,13 +63,13 @@ std::string RoundWindow::offsetWords(const std::string& unit) const
         + format("%.2g px (%.2g %s at z = %.4g %s)", px, length, unit.c_str(), depth, unit.c_str());
 }
 
-std::string RoundWindow::needless() const
+std::string RoundWindow::needless(const std::string& unit) const
 {
     if (!isNeedless())
         return "";
-    return format("whether the %s refracts at all: with it ignored the same images fit as well (%.3f px, with it %.3f px). A camera in "
-                  "the %s sees as without one, and needs no model of it", shape.c_str(), ignoredPx, withPx,
-                  shape == "dome" ? "centre of a dome" : "axis of a thin tube");
+    return format("that the %s has to be modelled: with it ignored, each board where it then fits best, the images fit as well (%.3f px, "
+                  "with it %.3f px). It moves points by up to %.2g %s, nearly all alike", shape.c_str(), ignoredPx, withPx, length,
+                  unit.c_str()) + (shape == "dome" ? ": a camera in the centre of a dome sees as without one" : "");
 }
 
 std::optional<RoundWindow> roundWindowOf(const RigCalibration& c, int camera)

@@ -20,8 +20,8 @@ struct RoundWindow
     bool isNeedless() const;
     //! "3.1 +- 0.05 mm from the camera, which moves points by up to 2.1 px (0.7 mm at z = 600 mm)"
     std::string offsetWords(const std::string& unit) const;
-    //! Whether it has to be modelled; empty: it has.
-    std::string needless() const;
+    //! What the images cannot tell; empty: it has to be modelled.
+    std::string needless(const std::string& unit) const;
 };
 
 //! None: the window is no such one.
