@@ -92,7 +92,7 @@ int main(int argc, char** argv)
     std::vector<Row> rows;
     addPointRows(rows, count);
     addWedgeRows(rows, count);
-    addDomeRows(rows, count);
+    addCurvedRows(rows, count);
     addSplinedRows(rows, count);
     addPairRows(rows, count);
     addRobustRows(rows);

@@ -16,8 +16,8 @@ namespace bench {
 void addPointRows(std::vector<Row>& rows, int count);
 //! The same through faces that are not parallel.
 void addWedgeRows(std::vector<Row>& rows, int count);
-//! The same through a dome.
-void addDomeRows(std::vector<Row>& rows, int count);
+//! The same through a dome, a tube and a bent pane.
+void addCurvedRows(std::vector<Row>& rows, int count);
 //! A splined lens; none without mrcal.
 void addSplinedRows(std::vector<Row>& rows, int count);
 //! Two cameras: triangulation, epipolar curves.

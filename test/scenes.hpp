@@ -53,13 +53,15 @@ private:
 // ---- windows
 
 enum WindowKind { NO_WINDOW, PANE_IN_AIR, LAMINATE, AIR_GLASS_WATER, BARE_WATER, GLASS_ON_LENS, WATER_GLASS_AIR,
-                  DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER, DOME_IN_AIR, DOME_IN_WATER, WINDOW_KINDS };
+                  DOUBLE_GLAZING_IN_WATER, WEDGE_IN_AIR, WEDGE_IN_WATER, DOME_IN_AIR, DOME_IN_WATER, TUBE_IN_AIR, TUBE_IN_WATER,
+                  BENT_IN_AIR, BENT_IN_WATER, WINDOW_KINDS };
 
 inline const char* name(WindowKind kind)
 {
     static const char* names[] = { "no window", "pane in air", "laminate", "air-glass-water", "bare water",
                                    "glass on the lens", "water-glass-air", "double glazing in water", "wedge in air", "wedges in water",
-                                   "dome in air", "domes in water" };
+                                   "dome in air", "domes in water", "tube in air", "tubes in water", "bent pane in air",
+                                   "bent panes in water" };
     return names[kind];
 }
 
@@ -86,6 +88,20 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
         w.outerIndex = kind == DOME_IN_AIR ? 1 : 1.333;
         return w;
     }
+    if (kind == TUBE_IN_AIR || kind == TUBE_IN_WATER)
+    {
+        w.shape = cv::refract::WINDOW_TUBE;
+        w.radius = random.uniform(30, 120);
+        do      // the camera looks out of its side
+            w.axis = cv::normalize(random.vector(1));
+        while (std::abs(w.axis[2]) > 0.5);
+        const cv::Vec3d towards = cv::normalize(w.axis.cross(random.vector(1)));
+        w.center = random.uniform(0, 0.6)*w.radius*towards + random.uniform(-1, 1)*w.axis;
+        w.thickness = kind == TUBE_IN_AIR ? std::vector<double>{ random.uniform(2, 20) } : std::vector<double>{ 8, 5 };
+        w.index = kind == TUBE_IN_AIR ? std::vector<double>{ 1.5168 } : std::vector<double>{ 1.49, 1.4 };
+        w.outerIndex = kind == TUBE_IN_AIR ? 1 : 1.333;
+        return w;
+    }
     w.normal = randomNormal(random, maxTiltDegrees);
     w.distance = kind == GLASS_ON_LENS ? 0 : random.uniform(5, 150);
     const auto layer = [&](double thickness, double index)
@@ -102,10 +118,15 @@ inline GlassWindow makeWindow(WindowKind kind, Random& random, double maxTiltDeg
     case WATER_GLASS_AIR: layer(12, 1.5); w.innerIndex = 1.333; break;
     case DOUBLE_GLAZING_IN_WATER:
         layer(5, 1.52); layer(10, 1.02); layer(5, 1.52); w.innerIndex = w.outerIndex = 1.333; break;
-    case WEDGE_IN_WATER: layer(12, 1.49); layer(5, 1.4); w.outerIndex = 1.333; break;
+    case BENT_IN_WATER: case WEDGE_IN_WATER: layer(12, 1.49); layer(5, 1.4); w.outerIndex = 1.333; break;
     default: layer(20, 1.5437); break;
     }
-    if (kind == WEDGE_IN_AIR || kind == WEDGE_IN_WATER)
+    if (kind == BENT_IN_AIR || kind == BENT_IN_WATER)
+    {
+        w.shape = cv::refract::WINDOW_BENT;
+        w.curvature = (random.below(2) ? 1 : -1)/random.logUniform(2e3, 1e5);
+    }
+    if (kind == WEDGE_IN_AIR || kind == WEDGE_IN_WATER || kind == BENT_IN_WATER)
         for (size_t i = 0; i < w.thickness.size(); i++)
             w.wedge.push_back(cv::Vec2d(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01)));
     return w;

@@ -350,7 +350,7 @@ TEST_CASE("A dome is the same after its file, and a flat window's file has no wo
             fs["glass_window"] >> window;
         }, Error::StsParseError);
     };
-    CHECK_THAT(parse("shape: tube, radius: 5"), Contains("glass_window.shape is 'tube'; it must be flat or dome"));
+    CHECK_THAT(parse("shape: cone, radius: 5"), Contains("glass_window.shape is 'cone'; it must be flat, dome, tube or bent"));
     CHECK_THAT(parse("radius: 50, center: [0, 0, 1], thickness: 5, index: 1.5"), Contains("its shape is flat"));
     CHECK_THAT(parse("shape: dome, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is dome"));
     CHECK_THAT(parse("shape: dome, center: [0, 0], radius: 50"), Contains("glass_window.center has 2 numbers"));

@@ -21,7 +21,8 @@ struct Matched
     std::vector<uchar> isRight;
 };
 
-enum SceneMedium { NOTHING, AIR, WATER, WEDGE, DOME };      // water, and WEDGE: faces that are not parallel; DOME: spheres
+//! Water, and WEDGE: faces that are not parallel; DOME: spheres; TUBE: cylinders; BENT: spheres that are nearly planes.
+enum SceneMedium { NOTHING, AIR, WATER, WEDGE, DOME, TUBE, BENT };
 
 GlassWindow windowIn(SceneMedium medium, bool second)
 {
@@ -29,12 +30,19 @@ GlassWindow windowIn(SceneMedium medium, bool second)
         return GlassWindow();
     if (medium == DOME)
         return GlassWindow::dome(second ? Vec3d(-5, 12, -40) : Vec3d(15, 10, -45), 90, 12, 1.49, 1.333);
+    if (medium == TUBE)
+        return GlassWindow::tube(second ? Vec3d(-5, 12, -30) : Vec3d(15, 10, -35), Vec3d(0.1, 1, second ? 0.2 : -0.1), 90, 12, 1.49, 1.333);
     const Vec3d normal = second ? Vec3d(0.2, -0.05, 1) : paper::NORMAL1;
     if (medium == AIR)
         return paper::pane(50, normal);
     GlassWindow window(normal, 15, 1.49, 60, 1.333);
     if (medium == WEDGE)
         window.wedge.push_back(second ? Vec2d(0.03, 0.01) : Vec2d(-0.02, 0.02));
+    if (medium == BENT)
+    {
+        window.shape = WINDOW_BENT;
+        window.curvature = second ? 1e-4 : -1e-4;
+    }
     return window;
 }
 
@@ -157,7 +165,7 @@ struct Tally
 
 TEST_CASE("Perfect matches give the perfect pose, its length too", "[pose][recover]")
 {
-    for (SceneMedium medium : { NOTHING, AIR, WATER, WEDGE, DOME })
+    for (SceneMedium medium : { NOTHING, AIR, WATER, WEDGE, DOME, TUBE, BENT })
     {
         Random random(6000);
         Matched m = matchedScene(medium, random, 60);
@@ -263,7 +271,7 @@ TEST_CASE("Intervals of short baselines hold what they say", "[.monte-carlo]")
 
 TEST_CASE("The errors' derivatives are those of differences", "[pose][recover]")
 {
-    const SceneMedium medium = GENERATE(WATER, WEDGE, DOME);
+    const SceneMedium medium = GENERATE(WATER, WEDGE, DOME, TUBE, BENT);
     Random random(6950);
     const Matched m = matchedScene(medium, random, 40);
     const Camera &c1 = cameraOf(m.camera1), &c2 = cameraOf(m.camera2);

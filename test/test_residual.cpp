@@ -107,7 +107,10 @@ TEST_CASE("Every jacobian of the residual equals central differences", "[residua
 {
     GlassWindow pane({ -0.24, 0.1, 1 }, 20, 1.5437, 50, 1.2), dome = GlassWindow::dome({ 15, -10, 20 }, 90, 12, 1.5, 1.2);
     pane.innerIndex = dome.innerIndex = 1.1;
-    const GlassWindow window = GENERATE_COPY(pane, dome);
+    GlassWindow tube = GlassWindow::tube({ 15, -10, 20 }, { 0.3, 1, 0.2 }, 90, 12, 1.5, 1.2), bent = pane;
+    bent.shape = WINDOW_BENT;
+    bent.curvature = 1e-3;
+    const GlassWindow window = GENERATE_COPY(pane, dome, tube, bent);
     CAPTURE(window.shape);
     const Ptr<RefractiveCamera> handle = makeCamera(lensNamed("4 coefficients"), window);
     ImagePoints points;

@@ -104,9 +104,31 @@ StereoRig domedHousings()
     return rig;
 }
 
+//! The cameras in upright tubes, 10 and 25 mm off their axes.
+StereoRig tubes()
+{
+    StereoRig rig = housings();
+    rig.name = "tubes";
+    rig.camera1->setWindow(GlassWindow::tube(Vec3d(2, 0, 9), Vec3d(0.02, 1, 0.03), 60, 8, 1.49, 1.333));
+    rig.camera2->setWindow(GlassWindow::tube(Vec3d(5, 0, -24), Vec3d(-0.01, 1, 0.02), 60, 8, 1.49, 1.333));
+    return rig;
+}
+
+//! The first camera's port is bent by 3 mm a metre.
+StereoRig bentHousings()
+{
+    StereoRig rig = housings();
+    rig.name = "housings with a bent port";
+    GlassWindow window = rig.camera1->window();
+    window.shape = WINDOW_BENT;
+    window.curvature = 2.4e-5;
+    rig.camera1->setWindow(window);
+    return rig;
+}
+
 std::vector<StereoRig> allRigs()
 {
-    return { paperRig(), aquarium(), housings(), mixed(), wedgedHousings(), domedHousings() };
+    return { paperRig(), aquarium(), housings(), mixed(), wedgedHousings(), domedHousings(), tubes(), bentHousings() };
 }
 
 struct Rectified

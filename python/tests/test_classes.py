@@ -75,6 +75,36 @@ def test_a_dome():
         refract.calibrateGlass([np.zeros((6, 3), np.float32)], [np.zeros((6, 2), np.float32)], [np.zeros((6, 2), np.float32)], camera)
 
 
+def test_a_tube():
+    tube = refract.GlassWindow.tube((1, -2, 3.), (0, 2, 0), 50, 7, 1.5, 1.33)
+    assert tube.shape == refract.WINDOW_TUBE and tube.center == (1., 0., 3.) and tube.axis == (0., 1., 0.) and tube.radius == 50.
+    same = refract.GlassWindow(shape=refract.WINDOW_TUBE, center=[1, 0, 3], axis=[0, 5, 0], radius=50, thickness=7, index=1.5,
+                               outerIndex=1.33)
+    assert same == tube and eval(repr(tube), {"GlassWindow": refract.GlassWindow}) == tube
+    assert pickle.loads(pickle.dumps(tube)) == tube and copy.deepcopy(tube) == tube
+    camera = refract.RefractiveCamera.create(K, None, tube)
+    assert camera.window() == tube and camera.parameterNames()[7:11] == ("axis[0]", "axis[1]", "axis[2]", "radius")
+    X = np.array([[80., -60., 700.], [0., 0., 600.]])
+    pixels, status = refract.refractiveProjectPoints(X, np.zeros(3), np.zeros(3), camera)
+    origins, directions, status = refract.refractiveUnprojectPoints(pixels, camera)
+    offset = X - np.asarray(origins).reshape(-1, 3)
+    assert np.abs(np.cross(offset, np.asarray(directions).reshape(-1, 3))).max() < 1e-9
+    with pytest.raises(refract.error, match="inside the tube"):
+        refract.GlassWindow.tube((60., 0, 0), (0, 1, 0), 50, 7, 1.5)
+    with pytest.raises(refract.error, match="axis"):
+        refract.GlassWindow((0, 0, 1), 7, 1.5, axis=(0, 1, 0))
+
+
+def test_a_bent_pane():
+    bent = refract.GlassWindow((0, 0, 2), 7, 1.5, 40, shape=refract.WINDOW_BENT, curvature=1e-5)
+    assert bent.normal == (0., 0., 1.) and bent.curvature == 1e-5 and eval(repr(bent), {"GlassWindow": refract.GlassWindow}) == bent
+    assert pickle.loads(pickle.dumps(bent)) == bent
+    camera = refract.RefractiveCamera.create(K, None, bent)
+    assert camera.parameterNames()[-1] == "curvature"
+    with pytest.raises(refract.error, match="curvature"):
+        refract.GlassWindow((0, 0, 1), 7, 1.5, curvature=1e-5)
+
+
 def test_faces_that_are_not_parallel():
     window = refract.GlassWindow((0., 0., 1.), 20., 1.5, distance=50.)
     assert len(window.wedge) == 0

@@ -29,8 +29,8 @@ without a window.
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
-  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it. Behind a dome
-  the axis is the one through the dome's centre.
+  Behind a window with a wedge or a curvature the ray misses the axis by little, and the origin is a point of the ray near it.
+  Behind a dome the axis is the one through the dome's centre. Behind a tube the origin is a point of the ray near the camera.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
@@ -67,6 +67,9 @@ the path from a point to the camera is the one of least optical length.
 A dome's faces are spheres about one point S (GlassWindow::dome). From there, the moment \f$L = r \times p\f$ is the same in all
 media, so a face of radius r_k turns the ray about L by
 \f[ \arcsin\frac{|L|}{n_{k+1} r_k} - \arcsin\frac{|L|}{n_k r_k} \f]
+
+A tube's faces are cylinders about one axis a (GlassWindow::tube). Along it \f$k = n\,w \cdot a\f$ is the same in all media, and
+across it a ray is one in a dome whose media have the indices \f$\sqrt{n_i^2 - k^2}\f$.
 
 @{
     @defgroup refract_camera Windows and cameras
@@ -122,8 +125,9 @@ enum RectifyFlags {
 //! @addtogroup refract_calibrate
 //! @{
 
-/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust. The normal is free
-unless GLASS_FIX_NORMAL is set.
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust. The place of a window is
+free unless GLASS_FIX_NORMAL is set: a pane's normal, a dome's centre, a tube's centre and axis. A flag whose parameter a window
+does not have is refused: a dome has no distance and no wedge, a pane no radius.
 
 With GLASS_FREE_INTRINSICS the coefficients that the lens has are estimated, also if they are 0 at the start: a lens without
 coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. A GLASS_FIX_... flag keeps a parameter at its
@@ -157,7 +161,7 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
-    GLASS_FIX_NORMAL = 1048576,         //!< the normals stay (calibrateGlassRig, refractiveBundleAdjust)
+    GLASS_FIX_NORMAL = 1048576,         //!< the windows stay in their places (calibrateGlassRig, refractiveBundleAdjust)
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
@@ -223,14 +227,15 @@ enum WindowShape {
     WINDOW_BENT = 3             //!< a pane that is slightly bent: as flat, with a curvature
 };
 
-/** @brief A window: layers between planes that share one normal, or between spheres that share one centre.
+/** @brief A window: layers between planes that share a normal, spheres that share a centre, or cylinders that share an axis.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
-A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
+A **flat** window has `normal` and `distance`. A **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
 camera is anywhere inside. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor its
-indices can be found from images. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only
-and refuse a dome with the code Error::StsNotImplemented; all other calls take both.
+indices can be found from images. A **tube** (GlassWindow::tube) has the `axis` beside them; a ray along the axis never leaves,
+and has no answer. A **bent** window is a flat one with a `curvature`: tempered plate bows by 1 to 3 mm a metre, which is a
+sphere of some 40 to 100 m (a bow of b over the length l is a curvature of 8 b/l^2).
 
 Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
 tempered glass. At range z a wedge d looks like a tilt of the pane by index z d/thickness.
@@ -284,12 +289,12 @@ public:
 
     CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
     CV_PROP_RW Vec3d normal;                   //!< flat, bent: unit, camera coordinates, normal[2] > 0
-    CV_PROP_RW double distance;                //!< flat, bent: centre of projection to the first surface, along the normal
+    CV_PROP_RW double distance;                //!< flat, bent: from the camera to the first surface, along the normal
     CV_PROP_RW Vec3d center;                   //!< dome: of the spheres; tube: a point of the axis; camera coordinates
     CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
     CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
-    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is on
-    the camera's side. The other faces are spheres about the same point. 0: planes. */
+    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is
+    on the camera's side. The other faces are spheres about the same point. 0: planes. */
     CV_PROP_RW double curvature;
     CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
@@ -558,7 +563,9 @@ CV_EXPORTS_W void refractiveProjectPoints(InputArray objectPoints, InputArray rv
 @param status Nx1 CV_8U.
 @param jacobian 2N x (6 + lens + window) CV_64F, rows u, v of each point; columns rvec (3), tvec (3), lens parameters
 (fx, fy, cx, cy, coefficients as given), normal (3, of the unnormalised vector: orthogonal to n), distance,
-thickness of each layer, index of each layer, innerIndex, outerIndex and, where the window has one, wedge of each layer (2).
+thickness of each layer, index of each layer, innerIndex, outerIndex and, where the window has one, wedge of each layer (2);
+of a dome center (3) and radius in place of normal and distance, of a tube center (3), axis (3, of the unnormalised vector) and
+radius; of a bent window the curvature last. parameterNames() has them in order.
 NaN where status is not 0.
 */
 CV_EXPORTS_AS(refractiveProjectPointsExtended) void refractiveProjectPoints(
@@ -586,7 +593,7 @@ CV_EXPORTS_W void refractiveSplineWeights(InputArray objectPoints, InputArray rv
 /** @brief Rays of pixels in the scene. Closed form, except for the lens.
 @param imagePoints N raw pixels.
 @param origins N points of the rays, camera coordinates: on the window's axis, tau * normal; near it behind a window with a
-wedge.
+wedge or a curvature; near the camera in a tube.
 @param directions N unit vectors in the outer medium, camera coordinates.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
@@ -1368,7 +1375,8 @@ there is no image.
 @param otherMinima Cx5 CV_64F: for a window that is estimated only from images through it: the normal (3) of the second best
 minimum, the root of the difference of its squared errors from the best, in standard deviations of a pixel, and its distance.
 If the root is below about 3, the data do not distinguish both minima: add a pair, or other tilts. NaN if no other minimum was
-found. The row, and the frame of the normal, are those of the first camera of the window.
+found. The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and
+radius.
 @param flags see GlassCalibrationFlags.
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
 exact; noArray(): all are exact.
@@ -1376,10 +1384,11 @@ exact; noArray(): all are exact.
 @param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance of its
 L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
 estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
-NaN the flags decide, also for window parameters without a variance (rows of the normal are not used). noArray(): no prior
-knowledge. It may also be a (P+6)x(P+6) one, of the camera's parameters, then of its rvec and T (rows and columns of camera 1:
-not used). With a variance they are estimated, with this prior; with the variance 0 exact, with any flags. An emitter of which
-only one coordinate is known needs this: of a straight sheet of light the images determine the plane, three of the six.
+NaN the flags decide, also for window parameters without a variance. Rows of a normal, and of a tube's center and axis, are not
+used; those of a dome's center are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's
+parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with this
+prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a straight
+sheet of light the images determine the plane, three of the six.
 @param pixelCovariancesDirect per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the
 pixels' variance, in units of which they are, is estimated). An empty array, list or whole: usual pixels.
 @param pixelCovariancesRefracted as pixelCovariancesDirect.

@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* With a wedge the transfer is differentiated automatically, one parameter at a time: it happens once a camera and step. */
+/* With a wedge or a curvature the transfer is differentiated automatically, one parameter at a time: it happens once a camera and
+step. */
 
 #include "adjust/transferred_window.hpp"
 #include "window/place.hpp"
@@ -86,6 +87,21 @@ void transfer(const WindowLayout& at, const std::vector<Jet>& window, const JetC
     }
 }
 
+//! As windowInFrame() of a bent pane: the axis through the other camera and the spheres' centre.
+void transferBent(const WindowLayout& at, const std::vector<Jet>& window, const JetCamera& owner, const JetCamera& camera,
+                  std::vector<Jet>& seen)
+{
+    const Jet33 R = camera.R*owner.R.transpose();
+    const Jet3 t = camera.T - R*owner.T, given(window[at.normal], window[at.normal + 1], window[at.normal + 2]);
+    const Jet &k = window[at.curvature], &distance = window[at.distance];
+    const Jet side = 1. - k*distance;
+    const Jet3 n = R*given.normalized(), gradient = side*n - k*t;
+    const Jet length = gradient.norm();
+    for (int i = 0; i < 3; i++)
+        seen[at.normal + i] = gradient[i]/length;
+    seen[at.distance] = (distance*(1. + side) + 2.*side*n.dot(t) - k*t.dot(t))/(1. + length);
+}
+
 } // namespace
 
 TransferredWindow::TransferredWindow(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
@@ -109,8 +125,14 @@ void TransferredWindow::transferFaces(const WindowLayout& at, const double* ofOw
     byWindow.block<4, 4>(at.normal, at.normal) = plane.byWindow;
     byOwner.middleRows<4>(at.normal) = plane.byOwner;
     byCamera.middleRows<4>(at.normal) = plane.byCamera;
-    if (at.curvature > at.wedge)
-        addWedge(at, ofOwner, owner, camera);
+    std::vector<int> rows;
+    if (at.shape == WINDOW_BENT)
+        rows = { at.normal, at.normal + 1, at.normal + 2, at.distance };
+    else if (at.curvature > at.wedge)
+        for (int i = 0; i < at.layers; i++)
+            rows.insert(rows.end(), { at.thickness + i, at.wedge + 2*i, at.wedge + 2*i + 1 });
+    if (!rows.empty())
+        differentiate(at, ofOwner, owner, camera, rows);
 }
 
 /* A center is a point, a tube's axis a difference of points:
@@ -143,28 +165,23 @@ void TransferredWindow::transferCenter(const WindowLayout& at, const double* ofO
     }
 }
 
-void TransferredWindow::addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
-                            const TransformWithDerivatives& camera)
+void TransferredWindow::differentiate(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                                      const TransformWithDerivatives& camera, const std::vector<int>& rows)
 {
+    const auto seenBy = at.shape == WINDOW_BENT ? transferBent : transfer;
     for (int varied = 0; varied < at.count + 12; varied++)
     {
         std::vector<Jet> window(ofOwner, ofOwner + at.count), seen(at.count);
         if (varied < at.count)
             window[varied].v[0] = 1;
         const int ofPlaces = varied - at.count;
-        transfer(at, window, JetCamera(owner, ofPlaces < 6 ? ofPlaces : -1), JetCamera(camera, ofPlaces - 6), seen);
+        seenBy(at, window, JetCamera(owner, ofPlaces < 6 ? ofPlaces : -1), JetCamera(camera, ofPlaces - 6), seen);
         double* const column = varied < at.count ? byWindow.col(varied).data() :
                                ofPlaces < 6 ? byOwner.col(ofPlaces).data() : byCamera.col(ofPlaces - 6).data();
-        const auto copy = [&](int row)
+        for (int row : rows)
         {
             parameters[row] = seen[row].a;
             column[row] = seen[row].v[0];
-        };
-        for (int i = 0; i < at.layers; i++)
-        {
-            copy(at.thickness + i);
-            copy(at.wedge + 2*i);
-            copy(at.wedge + 2*i + 1);
         }
     }
 }

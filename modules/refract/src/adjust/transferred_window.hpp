@@ -12,7 +12,7 @@ namespace cv { namespace refract {
 
 /** A window that is described in the frame of its owner, as another camera sees it, with derivatives. Between parallel faces only
 the normal and the distance depend on the frame; with a wedge the thickness (along the normal through the centre of projection) and
-the wedge's axes do, too. Of a dome it is the center, of a tube the center and the axis. */
+the wedge's axes do, too; where they are bent the normal leads to the spheres' centre. Of a dome it is the center, of a tube the center and the axis. */
 struct TransferredWindow
 {
     //! @param ofOwner the window's parameters in the order of the layout
@@ -31,8 +31,9 @@ private:
                        const TransformWithDerivatives& camera);
     void transferCenter(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
                         const TransformWithDerivatives& camera);
-    void addWedge(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
-                  const TransformWithDerivatives& camera);
+    //! These parameters, and their derivatives by all.
+    void differentiate(const WindowLayout& at, const double* ofOwner, const TransformWithDerivatives& owner,
+                       const TransformWithDerivatives& camera, const std::vector<int>& rows);
 };
 
 }} // namespace

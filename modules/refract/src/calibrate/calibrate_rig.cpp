@@ -83,7 +83,12 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
         // A camera without a window may be among others that have one; nothing of it is estimated then.
         if (!rig.owns(owner) || (anyRefracts && !refracts(rig.cameras[owner])))
             continue;
-        checkWindow(rig.cameras[owner].window(), flags);
+        const GlassWindow window = rig.cameras[owner].window();
+        checkWindow(window, flags);
+        const bool isShared = std::count(rig.owner.begin(), rig.owner.end(), owner) > 1;
+        if (isShared && window.shape == WINDOW_BENT && !window.wedge.empty())
+            CV_Error(Error::StsNotImplemented, "a window that several cameras share is bent and has a wedge: its faces have no common "
+                                               "centre. Leave one of both out (window.wedge empty, or window.shape WINDOW_FLAT)");
         bool isSeen = false;
         for (int c = owner; c < rig.count(); c++)
             isSeen = isSeen || (rig.owner[c] == owner && seesAnything(views.cameras[c].refracted));

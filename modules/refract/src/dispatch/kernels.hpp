@@ -10,6 +10,7 @@
 #include "lens/opencv_model.hpp"
 #include "lens/spline_model.hpp"
 #include "points/point_kernels.hpp"
+#include "window/curved_kernels.hpp"
 #include "window/dome_kernels.hpp"
 #include "window/layer_kernels.hpp"
 #include "window/wedge_kernels.hpp"
@@ -33,6 +34,7 @@ is its constant in the component's *.simd.hpp. */
     EACH(LayerKernels, layer) \
     EACH(WedgeKernels, wedge) \
     EACH(DomeKernels, dome) \
+    EACH(CurvedKernels, curved) \
     EACH(LensKernels<OpenCVModel>, openCV) \
     EACH(LensKernels<FisheyeModel>, fisheye) \
     EACH(SplineKernels, spline) \

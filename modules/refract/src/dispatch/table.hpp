@@ -11,6 +11,7 @@
 #include "lens/opencv.simd.hpp"
 #include "lens/spline.simd.hpp"
 #include "points/points.simd.hpp"
+#include "window/curved.simd.hpp"
 #include "window/dome.simd.hpp"
 #include "window/layers.simd.hpp"
 #include "window/wedge.simd.hpp"

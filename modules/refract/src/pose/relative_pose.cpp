@@ -56,7 +56,7 @@ struct PoseTerms
 {
     PoseTerms(const MatchedCameras& pair, const RigidTransform& pose)
         : R(pose.R), t(pose.t), normal1(pose.R*pair.camera1.layers().normal()), normal2(pair.camera2.layers().normal()),
-          hasOffsets(pair.camera1.layers().isTilted() || pair.camera2.layers().isTilted())
+          hasOffsets(pair.camera1.layers().hasOffsets() || pair.camera2.layers().hasOffsets())
     {
         const Vec3d rvec = rotationVector(pose.R);
         const Rotation rotation(rvec.val);

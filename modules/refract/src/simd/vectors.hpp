@@ -33,6 +33,14 @@ inline Vector cross(const Vector& a, const Vector& b)
     return { a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x };
 }
 
+//! Into the frame whose axes are the rows, and back.
+inline Vector intoFrame(const double* axes, const Vector& a) { return { dot(axes, a), dot(axes + 3, a), dot(axes + 6, a) }; }
+inline Vector outOfFrame(const double* axes, const Vector& a)
+{
+    return { axes[0]*a.x + axes[3]*a.y + axes[6]*a.z, axes[1]*a.x + axes[4]*a.y + axes[7]*a.z,
+             axes[2]*a.x + axes[5]*a.y + axes[8]*a.z };
+}
+
 //! Two unit vectors across d and each other (@cite Duff2017).
 inline void vectorsAcross(const Vector& d, Vector& a, Vector& b)
 {

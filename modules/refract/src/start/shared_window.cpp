@@ -13,11 +13,11 @@ namespace cv { namespace refract {
 namespace {
 
 //! The window of an owner as another camera sees it; the distance is negative beyond it.
-WindowTransfer seenFrom(const Rig& rig, int c)
+GlassWindow seenFrom(const Rig& rig, int c)
 {
-    const GlassWindow window = rig.cameras[rig.owner[c]].window();
-    return WindowTransfer(window.normal, window.distance, TransformWithDerivatives(rig.extrinsics[rig.owner[c]]),
-                          TransformWithDerivatives(rig.extrinsics[c]));
+    const TransformWithDerivatives a(rig.extrinsics[rig.owner[c]]), b(rig.extrinsics[c]);
+    const Matx33d R = b.rotation.R*a.rotation.R.t();
+    return windowInFrame(rig.cameras[rig.owner[c]].window(), R, b.T - R*a.T);
 }
 
 double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
@@ -30,6 +30,12 @@ GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
     const Matx33d R = b.rotation.R*a.rotation.R.t();
     if (hasCenter(window.shape))
         return windowInFrame(window, R, b.T - R*a.T);
+    if (window.shape == WINDOW_BENT)
+    {
+        window = windowInFrame(window, R, b.T - R*a.T);
+        window.distance = std::max(window.distance, 0.);
+        return window;
+    }
     const WindowTransfer transfer(window.normal, window.distance, a, b);
     if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
     {

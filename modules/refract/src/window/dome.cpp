@@ -10,7 +10,8 @@
 
 about S where it comes to the radius of the last term, which is the point's. Each term is an angle that the path passes, and grows
 with l: so does phi up to alpha = 90 degrees. Beyond, l falls. From phi(0) = 0 to phi(180 degrees) = 180 degrees there is a path to
-every point, unless some l are too large to leave the dome: that is so only where a medium is rarer than the camera's. */
+every point, unless some l are too large to leave the dome: that is so only where a medium is rarer than the camera's. Then light that
+goes by the centre may also cross the axis behind it, to points on its other side: phi is more than 180 degrees there. */
 
 namespace cv { namespace refract {
 
@@ -102,6 +103,17 @@ double leastBetween(const AngleAtCenter& angle, double low, double high)
     return high;
 }
 
+//! Light that crosses the axis: between first, where phi is larger, and 180 degrees. NaN: there is none.
+double solveAcross(const AngleAtCenter& angle, double phi, double first)
+{
+    if (!(angle.at(first) >= phi))
+        return std::numeric_limits<double>::quiet_NaN();
+    double far = first, near = CV_PI;
+    for (double middle; (middle = 0.5*(far + near)) > far && middle < near;)
+        (angle.at(middle) >= phi ? far : near) = middle;
+    return far;
+}
+
 } // namespace
 
 uchar findDomePath(const Dome& dome, const Vec3d& X, double w, Vec3d& direction)
@@ -128,7 +140,11 @@ uchar findDomePath(const Dome& dome, const Vec3d& X, double w, Vec3d& direction)
         {
             low = leastBetween(angle, CV_PI - last, CV_PI);
             if (!(angle.at(low) <= phi))
-                return REFRACT_TOTAL_REFLECTION;
+            {
+                const double crossing = solveAcross(angle, 2*CV_PI - phi, CV_PI - last);
+                direction = std::cos(crossing)*axis - (away > 0 ? std::sin(crossing)/away : 0)*across;
+                return std::isnan(crossing) ? REFRACT_TOTAL_REFLECTION : REFRACT_OK;
+            }
         }
     }
     const double alpha = solveBetween(angle, phi, straight, low, high);

@@ -4,6 +4,8 @@
 
 #include "window/layers.hpp"
 #include "math/missing.hpp"
+#include "window/curved.hpp"
+#include "window/curved_path.hpp"
 #include "window/dome.hpp"
 #include "window/parameters.hpp"
 #include "window/path.hpp"
@@ -49,14 +51,19 @@ Layers::Layers(const GlassWindow& window)
     const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
     stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
                NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout(window) };
-    last_ = { { normal_[0], normal_[1], normal_[2] }, total, 0. };
-    isTilted_ = isDome_ = false;
+    last_ = { { normal_[0], normal_[1], normal_[2] }, total, 0., { 0, 0, 0 } };
+    isTilted_ = isDome_ = isCurved_ = false;
     tilted_ = TiltedFaces();
     dome_ = Dome();
-    if (!window.wedge.empty())
+    curved_ = CurvedFaces();
+    if (!window.wedge.empty() || window.shape == WINDOW_BENT)
         setWedge(window);
     if (refracts && window.shape == WINDOW_DOME)
         setDome(window);
+    if (refracts && window.shape == WINDOW_TUBE)
+        setTube(window);
+    if (refracts && window.shape == WINDOW_BENT)
+        setBent(window);
     pointIntoVectors();
 }
 
@@ -73,7 +80,7 @@ void Layers::setWedge(const GlassWindow& window)
     if (!isTilted_)
         return;
     const Vec3d last = axes.t()*Vec3d(faces_.back().normal);
-    last_ = { { last[0], last[1], last[2] }, faces_.back().distance, 0. };
+    last_ = { { last[0], last[1], last[2] }, faces_.back().distance, 0., { 0, 0, 0 } };
 }
 
 void Layers::setDome(const GlassWindow& window)
@@ -94,7 +101,49 @@ void Layers::setDome(const GlassWindow& window)
     dome_.along = normal_.dot(window.center);
     stack_.total = radius - offset;         // to the nearest point of the last surface
     const Vec3d outwards = -window.center/radius;
-    last_ = { { outwards[0], outwards[1], outwards[2] }, 0.5*(radius - offset)*(1 + offset/radius), 1/radius };
+    last_ = { { outwards[0], outwards[1], outwards[2] }, 0.5*(radius - offset)*(1 + offset/radius), 1/radius, { 0, 0, 0 } };
+}
+
+static void setMedia(const Stack& stack, size_t faces, const Matx33d& axes, CurvedFaces& curved)
+{
+    std::copy_n(axes.val, 9, curved.axes);
+    curved.least = -std::numeric_limits<double>::infinity();
+    curved.count = (int)faces;
+    curved.inner = stack.inner;
+    curved.outer = stack.outer;
+    curved.at = stack.at;
+}
+
+void Layers::setTube(const GlassWindow& window)
+{
+    isCurved_ = true;
+    const Matx33d axes = tubeAxes(window.axis);
+    const Vec3d a(axes.val + 6), center = axes*window.center;
+    curvedFaces_ = tubeFaces(window);
+    setMedia(stack_, curvedFaces_.size(), axes, curved_);
+    curved_.third = 0;
+    std::copy_n(center.val, 3, curved_.center);
+    // Ahead, as far as that is across the axis.
+    const Vec3d ahead = Vec3d(0, 0, 1) - a[2]*a;
+    normal_ = normalize(norm(ahead) > 1e-6 ? ahead : Vec3d(1, 0, 0) - a[0]*a);
+    std::copy_n((axes*normal_).val, 2, curved_.normal);
+    std::copy_n(normal_.val, 3, stack_.normal);
+    stack_.total = 1/curvedFaces_.back().curvature - norm(Vec2d(center[0], center[1]));     // to the nearest point of the last surface
+    last_ = surfaceOf(curved_, curvedFaces_.back());
+}
+
+//! With no curvature it is a flat pane, but for the derivative.
+void Layers::setBent(const GlassWindow& window)
+{
+    isCurved_ = window.curvature != 0;
+    curvedFaces_ = bentFaces(window, faces_);
+    setMedia(stack_, curvedFaces_.size(), windowAxes(normal_), curved_);
+    curved_.third = 1;
+    curved_.normal[2] = 1;
+    if (isTilted_)
+        curved_.least = 0;
+    if (isCurved_)
+        last_ = surfaceOf(curved_, curvedFaces_.back());
 }
 
 Layers& Layers::operator=(const Layers& other)
@@ -111,6 +160,9 @@ Layers& Layers::operator=(const Layers& other)
     isDome_ = other.isDome_;
     spheres_ = other.spheres_;
     dome_ = other.dome_;
+    isCurved_ = other.isCurved_;
+    curvedFaces_ = other.curvedFaces_;
+    curved_ = other.curved_;
     pointIntoVectors();
     return *this;
 }
@@ -122,11 +174,15 @@ void Layers::pointIntoVectors()
     stack_.indices = index_.data();
     tilted_.faces = faces_.data();
     dome_.faces = spheres_.data();
+    curved_.faces = curvedFaces_.data();
+    curved_.tangents = faces_.data();
 }
 
 void Layers::traceOut(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
 {
-    rays.hasOffset = isTilted_;
+    rays.hasOffset = hasOffsets();
+    if (isCurved_)
+        return traceOutCurved(n, wx, wy, wz, rays, status);
     if (isTilted_)
         return traceOutTilted(n, wx, wy, wz, rays, status);
     if (isDome_)
@@ -155,12 +211,23 @@ void Layers::traceOutDome(int n, const double* wx, const double* wy, const doubl
         answerMissing(n, rays.tau, status, [](int) { return REFRACT_TOTAL_REFLECTION; });
 }
 
+void Layers::traceOutCurved(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const
+{
+    if (!curvedKernels().traceOut(curved_, n, wx, wy, wz, rays.tau, rays.offsets(), rays.dx, rays.dy, rays.dz))
+        answerMissing(n, rays.tau, status, [=](int i)
+        {
+            Vec3d P, p = Matx33d(curved_.axes)*Vec3d(wx[i], wy[i], wz[i]);
+            const uchar reason = traceCurved(curved_, P, p);
+            return reason != REFRACT_OK ? reason : (uchar)REFRACT_NOT_CONVERGED;
+        });
+}
+
 double Layers::leavingMu(const Rays& rays, int i) const
 {
     const double infinity = std::numeric_limits<double>::infinity();
     if (!stack_.refracts)
         return infinity;
-    if (!isTilted_ && !isDome_)
+    if (!isTilted_ && !isDome_ && !isCurved_)
         return stack_.total > rays.tau[i] ? normal_.dot(rays.direction(i))/(stack_.total - rays.tau[i]) : infinity;
     const Vec3d o = rays.origin(i, normal_), d = rays.direction(i);
     const double length = lengthTo(last_, o[0], o[1], o[2], d[0], d[1], d[2]);
@@ -175,6 +242,8 @@ void Layers::solveIn(int n, const double* x, const double* y, const double* z, c
         std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
         return;
     }
+    if (isCurved_)
+        return solveInCurved(n, x, y, z, w, dx, dy, dz, status);
     if (isTilted_)
         return solveInTilted(n, x, y, z, w, dx, dy, dz, status);
     if (isDome_)
@@ -222,6 +291,35 @@ void Layers::solveInDome(int n, const double* x, const double* y, const double* 
     });
 }
 
+//! The search begins in a tube along the straight way, in a bent pane where planes would have the path.
+void Layers::solveInCurved(int n, const double* x, const double* y, const double* z, const double* w,
+                           double* dx, double* dy, double* dz, uchar* status) const
+{
+    const bool isTube = curved_.third == 0;
+    if (isTube)
+    {
+        std::copy(x, x + n, dx); std::copy(y, y + n, dy); std::copy(z, z + n, dz);
+    }
+    else if (isTilted_)
+        wedgeKernels().solveIn(stack_, tilted_, n, x, y, z, w, dx, dy, dz);
+    else
+        layerKernels().solveIn(stack_, n, x, y, z, w, dx, dy, dz, NULL);
+    if (curvedKernels().solveIn(curved_, n, x, y, z, w, dx, dy, dz))
+        return;
+    answerMissing(n, dx, status, [=](int i)
+    {
+        const double weight = w ? w[i] : 1.;
+        if (!isBeyond(x[i], y[i], z[i], weight))
+            return (uchar)REFRACT_BEHIND_WINDOW;
+        const Matx33d axes(curved_.axes);
+        Vec3d d;
+        const uchar found = (isTube ? findTubePath : findBentPath)(curved_, axes*Vec3d(x[i], y[i], z[i]), weight, d);
+        d = axes.t()*d;
+        dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
+        return found;
+    });
+}
+
 //! Newton's method from a ratio left of the root.
 static uchar climb(const Stack& stack, const Path<double>& path, double& ratio)
 {
@@ -257,11 +355,14 @@ void Layers::chain(int rows, int n, const double* x, const double* y, const doub
 {
     if (isDome_)
         return domeKernels().chain(dome_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
-    if (isTilted_ || (!faces_.empty() && byWindow.data))
+    const bool isBent = stack_.refracts && stack_.at.shape == WINDOW_BENT;
+    if (isCurved_ || (isBent && (isTilted_ || byWindow.data)))
+        curvedKernels().chain(curved_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
+    else if (isTilted_ || (!faces_.empty() && byWindow.data))
         wedgeKernels().chain(tilted_, rows, n, x, y, z, dx, dy, dz, byDirection, byPoint, byWindow);
-    if (isTilted_)
+    if (isTilted_ || isCurved_)
         return;
-    if (stack_.refracts)        // of a wedge of 0, all but by the wedge once more: as without it
+    if (stack_.refracts)        // of a wedge or a curvature of 0, all but by these once more: as without them
     {
         layerKernels().chainWindow(stack_, rows, n, x, y, z, ratio, byDirection, byPoint, byWindow);
         return;

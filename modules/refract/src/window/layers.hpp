@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_LAYERS_HPP
 
 #include "precomp.hpp"
+#include "window/curved_kernels.hpp"
 #include "window/dome_kernels.hpp"
 #include "window/faces.hpp"
 #include "window/layer_kernels.hpp"
@@ -23,8 +24,8 @@ is where the outgoing line meets the axis O + tau n. (A gap whose medium is the 
 the others, what cancels is the rounding of h_i.) The way back is in path.hpp.
 For one pane in air: equations (12) and (16) of Plate2024.
 
-Faces that are not parallel (GlassWindow::wedge) and domes have kernels of their own, chosen once per call: wedge.simd.hpp,
-dome.simd.hpp.
+Faces that are not parallel (GlassWindow::wedge), domes, and tubes with bent panes have kernels of their own, chosen once per call:
+wedge.simd.hpp, dome.simd.hpp, curved.simd.hpp.
 
 The kernels work on blocks of structure-of-arrays. A lane whose status is not REFRACT_OK on entry keeps its status; its
 results are not meaningful. */
@@ -64,12 +65,12 @@ public:
     //! 1/s at which a ray leaves the last surface (infinity without window): it exists for smaller 1/s.
     double leavingMu(const Rays& rays, int i) const;
 
-    //! Along the axis that all rays meet: of a dome, that through its centre.
+    //! Along the axis that all rays meet: of a dome, that through its centre. Those of a tube miss it: across its axis, ahead.
     const Vec3d& normal() const { return normal_; }
     //! The last surface, camera frame; without window it means nothing.
     const Surface& lastSurface() const { return last_; }
-    //! The faces are planes that are not parallel: origins of rays are off the axis.
-    bool isTilted() const { return isTilted_; }
+    //! Origins of rays are off the axis.
+    bool hasOffsets() const { return isTilted_ || isCurved_; }
     const TiltedFaces& tilted() const { return tilted_; }
 
     //! The layers as the kernels see them; it lives as long as this object.
@@ -78,6 +79,8 @@ public:
 private:
     void setWedge(const GlassWindow& window);
     void setDome(const GlassWindow& window);
+    void setTube(const GlassWindow& window);
+    void setBent(const GlassWindow& window);
     void pointIntoVectors();    //!< where stack_ has pointers
     //! One lane that the kernel left without an answer: the answer, or why there is none.
     uchar solveOne(const Vec3d& X, double w, double* d, double& ratio) const;
@@ -88,6 +91,10 @@ private:
     void solveInDome(int n, const double* x, const double* y, const double* z, const double* w,
                      double* dx, double* dy, double* dz, uchar* status) const;
 
+    void traceOutCurved(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
+    void solveInCurved(int n, const double* x, const double* y, const double* z, const double* w,
+                       double* dx, double* dy, double* dz, uchar* status) const;
+
     Vec3d normal_;
     std::vector<double> height_;    //!< inner gap, then the layers
     std::vector<double> index_;     //!< of the same
@@ -96,11 +103,13 @@ private:
     everything written before has reached memory. */
     Stack stack_;
     Surface last_;
-    bool isTilted_, isDome_;
-    std::vector<Face> faces_;       //!< empty where the window's wedge is
+    bool isTilted_, isDome_, isCurved_;
+    std::vector<Face> faces_;       //!< of a bent pane those that touch its faces; else empty where the window's wedge is
     TiltedFaces tilted_;            //!< they as the kernels see them
     std::vector<Sphere> spheres_;   //!< of a dome that refracts
     Dome dome_;                     //!< they as the kernels see them
+    std::vector<CurvedFace> curvedFaces_;   //!< of a tube or a bent pane that refracts
+    CurvedFaces curved_;            //!< they as the kernels see them
 };
 
 }} // namespace

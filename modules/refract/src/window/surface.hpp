@@ -12,22 +12,40 @@
 namespace cv { namespace refract {
 
 /** Points X with normal.X + curvature/2 |X|^2 = distance: a plane of unit normal, or a sphere of radius 1/curvature about
--normal/curvature. The scene is where the left side is larger. */
+-normal/curvature; with a unit axis a, |X|^2 less (a.X)^2: a circular cylinder. The scene is where the left side is larger. Where
+the curvature is negative the sphere's centre is in the scene, and what lies beyond it is beyond the surface, too. */
 struct Surface
 {
     double normal[3], distance, curvature;
+    double axis[3];             //!< 0: a plane or a sphere
 };
 
 namespace {
 
-//! Of homogeneous points; infinitely far ones are beyond every sphere.
+inline bool hasAxis(const Surface& s) { return s.axis[0] != 0 || s.axis[1] != 0 || s.axis[2] != 0; }
+
+//! a.b, of a cylinder without what is along its axis.
+template<typename T>
+inline T dotAcross(const Surface& s, T ax, T ay, T az, T bx, T by, T bz)
+{
+    T product = ax*bx + ay*by + az*bz;
+    if (hasAxis(s))
+        product -= (s.axis[0]*ax + s.axis[1]*ay + s.axis[2]*az)*(s.axis[0]*bx + s.axis[1]*by + s.axis[2]*bz);
+    return product;
+}
+
+//! Of homogeneous points; infinitely far ones are beyond every sphere about the camera.
 template<typename T>
 inline auto isBeyond(const Surface& s, T x, T y, T z, T w)
 {
-    T along = s.normal[0]*x + s.normal[1]*y + s.normal[2]*z;
-    if (s.curvature > 0)
-        along += 0.5*s.curvature*(x*x + y*y + z*z)/w;
-    return along > w*s.distance;
+    const T level = s.normal[0]*x + s.normal[1]*y + s.normal[2]*z;
+    T along = level;
+    if (s.curvature != 0)
+        along += 0.5*s.curvature*dotAcross(s, x, y, z, x, y, z)/w;
+    auto beyond = along > w*s.distance;
+    if (s.curvature < 0)        // or behind the sphere's centre
+        beyond |= -s.curvature*level > (s.normal[0]*s.normal[0] + s.normal[1]*s.normal[1] + s.normal[2]*s.normal[2])*w;
+    return beyond;
 }
 
 //! The s at which the line o + s d, of unit d, goes out.
@@ -36,11 +54,14 @@ inline T lengthTo(const Surface& s, T ox, T oy, T oz, T dx, T dy, T dz)
 {
     T height = s.distance - (s.normal[0]*ox + s.normal[1]*oy + s.normal[2]*oz);
     T slope = s.normal[0]*dx + s.normal[1]*dy + s.normal[2]*dz;
-    if (s.curvature > 0)
+    if (s.curvature != 0)
     {
-        height -= 0.5*s.curvature*(ox*ox + oy*oy + oz*oz);
-        slope += s.curvature*(ox*dx + oy*dy + oz*dz);
-        const T root2 = slope*slope + 2*s.curvature*height;
+        height -= 0.5*s.curvature*dotAcross(s, ox, oy, oz, ox, oy, oz);
+        slope += s.curvature*dotAcross(s, ox, oy, oz, dx, dy, dz);
+        T bend = 2*s.curvature*height;
+        if (hasAxis(s))
+            bend *= dotAcross(s, dx, dy, dz, dx, dy, dz);
+        const T root2 = slope*slope + bend;
         slope = 0.5*(slope + root2*inverseSqrt(root2));
     }
     return height/slope;
@@ -49,9 +70,10 @@ inline T lengthTo(const Surface& s, T ox, T oy, T oz, T dx, T dy, T dz)
 //! Its normal at a point of it, of any length.
 inline void gradientAt(const Surface& s, double x, double y, double z, double* m)
 {
-    m[0] = s.normal[0] + s.curvature*x;
-    m[1] = s.normal[1] + s.curvature*y;
-    m[2] = s.normal[2] + s.curvature*z;
+    const double along = s.axis[0]*x + s.axis[1]*y + s.axis[2]*z;
+    m[0] = s.normal[0] + s.curvature*(x - along*s.axis[0]);
+    m[1] = s.normal[1] + s.curvature*(y - along*s.axis[1]);
+    m[2] = s.normal[2] + s.curvature*(z - along*s.axis[2]);
 }
 
 //! In the frame of X, where X' = R X + t is that of the surface.
@@ -59,10 +81,12 @@ inline Surface inFrame(const Surface& s, const double* R, const double* t)
 {
     double m[3];
     gradientAt(s, t[0], t[1], t[2], m);
-    Surface moved = { { 0, 0, 0 }, s.distance, s.curvature };
+    const double along = s.axis[0]*t[0] + s.axis[1]*t[1] + s.axis[2]*t[2];
+    Surface moved = { { 0, 0, 0 }, s.distance + 0.5*s.curvature*along*along, s.curvature, { 0, 0, 0 } };
     for (int k = 0; k < 3; k++)
     {
         moved.normal[k] = R[k]*m[0] + R[3 + k]*m[1] + R[6 + k]*m[2];
+        moved.axis[k] = R[k]*s.axis[0] + R[3 + k]*s.axis[1] + R[6 + k]*s.axis[2];
         moved.distance -= (s.normal[k] + 0.5*s.curvature*t[k])*t[k];
     }
     return moved;

@@ -58,11 +58,24 @@ std::vector<Face> facesOf(const GlassWindow& window)
         faces.push_back(faceOf(lean, height, before, after, slope));
         if (i == window.thickness.size())
             break;
-        lean += window.wedge[i];
+        lean += window.wedge.empty() ? Vec2d() : window.wedge[i];
         height += window.thickness[i];
         before = after;
     }
     return faces;
+}
+
+//! The spheres stay where they are; the axis is the one through the other camera and their centre. Leaning faces have no common one.
+static GlassWindow bentInFrame(GlassWindow window, const Matx33d& R, const Vec3d& T)
+{
+    if (std::any_of(window.wedge.begin(), window.wedge.end(), [](const Vec2d& w) { return w != Vec2d(); }))
+        CV_Error(Error::StsNotImplemented, "a bent pane with a wedge belongs to one camera; make its curvature or its wedge 0");
+    const double k = window.curvature, side = 1 - k*window.distance;
+    const Vec3d n = R*window.normal, gradient = side*n - k*T;       // at the other camera, of which 1/k times leads to the centre
+    const double length = norm(gradient);
+    window.normal = gradient/length;
+    window.distance = (window.distance*(1 + side) + 2*side*n.dot(T) - k*T.dot(T))/(1 + length);
+    return window;
 }
 
 GlassWindow windowInFrame(GlassWindow window, const Matx33d& R, const Vec3d& T)
@@ -73,6 +86,8 @@ GlassWindow windowInFrame(GlassWindow window, const Matx33d& R, const Vec3d& T)
         window.axis = R*window.axis;
         return window;
     }
+    if (window.shape == WINDOW_BENT)
+        return bentInFrame(window, R, T);
     const Matx33d here = windowAxes(normalize(window.normal));
     std::vector<Face> faces;
     if (!window.wedge.empty())

@@ -18,13 +18,6 @@ and P' = P + s p from one face to the next, s = (distance - m.P)/(m.p) there. */
 
 namespace cv { namespace refract { namespace {
 
-inline Vector intoFrame(const double* axes, const Vector& a) { return { dot(axes, a), dot(axes + 3, a), dot(axes + 6, a) }; }
-inline Vector outOfFrame(const double* axes, const Vector& a)
-{
-    return { axes[0]*a.x + axes[3]*a.y + axes[6]*a.z, axes[1]*a.x + axes[4]*a.y + axes[7]*a.z,
-             axes[2]*a.x + axes[5]*a.y + axes[8]*a.z };
-}
-
 /* The outgoing line goes through P - (s_0 + s_1 + ...) p, which is - sum over the faces of gamma m (s_0 + ... up to there): a sum of
 what is small, without a difference of points; on the axis where all m are one. */
 bool traceOutWedge(const TiltedFaces& window, int n, const double* wx, const double* wy, const double* wz,

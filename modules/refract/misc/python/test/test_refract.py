@@ -104,6 +104,14 @@ class refract_test(NewOpenCVTests):
         with self.assertRaisesRegex(cv.error, 'inside the dome'):
             cv.refract.GlassWindow.dome((0, 0, 60), 50, 7, 1.5)
 
+    def test_tube(self):
+        tube = cv.refract.GlassWindow.tube((1, -2, 3), (0, 2, 0), 50, 7, 1.5, 1.33)
+        self.assertEqual((cv.refract.WINDOW_TUBE, (1, 0, 3), (0, 1, 0), 50), (tube.shape, tube.center, tube.axis, tube.radius))
+        camera = cv.refract.RefractiveCamera.create(np.diag([1000., 1000, 1]), None, tube)
+        self.assertEqual(tube.axis, camera.window().axis)
+        with self.assertRaisesRegex(cv.error, 'inside the tube'):
+            cv.refract.GlassWindow.tube((60, 0, 0), (0, 1, 0), 50, 7, 1.5)
+
     def test_window_defaults(self):
         window = cv.refract.GlassWindow(normal=(0, 0, 2), thickness=10, index=1.5)
         self.assertEqual(((0, 0, 1), 0, 1), (window.normal, window.distance, window.outerIndex))

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// What a dome costs: beside OpenCV's calls without a window.
+// What domes, tubes and bent panes cost: beside OpenCV's calls without a window.
 #include "rows.hpp"
 
 #include <opencv2/calib3d.hpp>
@@ -13,11 +13,22 @@ namespace bench {
 
 namespace {
 
-struct Dome
+GlassWindow makeCurved(WindowShape shape, double outerIndex)
 {
-    Dome(double outerIndex, int count)
-        : scene(FIVE, outerIndex), points(scene, count), exactly(scene.parts<long double>()),
-          window(GlassWindow::dome(Vec3d(3, -2, -9), 60, 8, 1.5168, outerIndex)),
+    if (shape == WINDOW_DOME)
+        return GlassWindow::dome(Vec3d(3, -2, -9), 60, 8, 1.5168, outerIndex);
+    if (shape == WINDOW_TUBE)
+        return GlassWindow::tube(Vec3d(3, -2, -9), Vec3d(0.2, 1, -0.1), 60, 8, 1.5168, outerIndex);
+    GlassWindow window(Vec3d(0.1, -0.05, 1), 20, 1.5168, 60, outerIndex);
+    window.shape = shape;
+    window.curvature = 1/50e3;
+    return window;
+}
+
+struct Curved
+{
+    Curved(WindowShape shape, double outerIndex, int count)
+        : scene(FIVE, outerIndex), points(scene, count), exactly(scene.parts<long double>()), window(makeCurved(shape, outerIndex)),
           camera(RefractiveCamera::create(scene.K, scene.D, window)) {}
     Scene scene;
     Points points;              //!< pixels, depths; the points are those of the scene's own window, and as good
@@ -31,22 +42,27 @@ struct Dome
     Vec3d rvec = Vec3d(0, 0, 0), tvec = Vec3d(0, 0, 0);
 };
 
-typedef std::shared_ptr<Dome> Data;
+typedef std::shared_ptr<Curved> Data;
 
-//! Vector Snell, sphere by sphere.
-reference::Ray<long double> trace(const Dome& a, const Pixel& pixel)
+//! Vector Snell, sphere by sphere or cylinder by cylinder.
+reference::Ray<long double> trace(const Curved& a, const Pixel& pixel)
 {
     const GlassWindow& w = a.window;
-    const Point center = { w.center[0], w.center[1], w.center[2] };
+    const bool isBent = w.shape == WINDOW_BENT;
+    const Vec3d axis = w.axis, n = w.normal;
+    long double radius = isBent ? 1.L/w.curvature : w.radius, medium = w.innerIndex;
+    const long double behind = isBent ? w.distance - radius : 0;
+    const Point center = isBent ? Point{ behind*n[0], behind*n[1], behind*n[2] } : Point{ w.center[0], w.center[1], w.center[2] };
+    const Point along = { axis[0], axis[1], axis[2] };      // 0 but for a tube
+    const auto across = [&](const Point& v) { return reference::add(v, -reference::dot(v, along), along); };
     Point d = a.exactly.lens.unproject(pixel), point = { 0, 0, 0 };
-    long double radius = w.radius, medium = w.innerIndex;
     for (size_t k = 0; k <= w.index.size(); k++)
     {
         const long double next = k < w.index.size() ? w.index[k] : w.outerIndex, ratio = medium/next;
-        const Point off = reference::add(point, -1.L, center);
-        const long double ahead = reference::dot(off, d);
-        point = reference::add(point, -ahead + std::sqrt(ahead*ahead - reference::dot(off, off) + radius*radius), d);
-        const Point from = reference::add(point, -1.L, center), m = { from[0]/radius, from[1]/radius, from[2]/radius };
+        const Point off = across(reference::add(point, -1.L, center)), flat = across(d);
+        const long double square = reference::dot(flat, flat), ahead = reference::dot(off, flat)/square;
+        point = reference::add(point, -ahead + std::sqrt(ahead*ahead - (reference::dot(off, off) - radius*radius)/square), d);
+        const Point from = across(reference::add(point, -1.L, center)), m = { from[0]/radius, from[1]/radius, from[2]/radius };
         d = reference::refracted(d, ratio, m);
         medium = next;
         radius += k < w.index.size() ? w.thickness[k] : 0;
@@ -55,7 +71,7 @@ reference::Ray<long double> trace(const Dome& a, const Pixel& pixel)
 }
 
 //! Pixels between where two rays meet the plane of a depth, as a pinhole sees it.
-double apart(const Dome& a, const reference::Ray<long double>& one, const reference::Ray<long double>& other, double depth)
+double apart(const Curved& a, const reference::Ray<long double>& one, const reference::Ray<long double>& other, double depth)
 {
     return (double)(a.exactly.lens.fx*reference::apart(one, other, (long double)depth));
 }
@@ -67,9 +83,9 @@ Row row(const Data& a, const std::string& key, const std::string& work, const st
     return r;
 }
 
-Row unprojectRow(const Data& a)
+Row unprojectRow(const Data& a, const std::string& key, const std::string& work)
 {
-    Row r = row(a, "dome_unproject", "unproject through a dome", "cv::undistortPoints", 0.35, 65);
+    Row r = row(a, key, work, "cv::undistortPoints", 0.35, 65);
     r.ours = [=] { refractiveUnprojectPoints(a->points.pixels, a->origins, a->directions, a->camera, a->status); };
     r.peer = [=] { undistortPoints(a->points.pixels, a->peerPixels, a->scene.K, a->scene.D); };
     r.error = [=]
@@ -83,7 +99,7 @@ Row unprojectRow(const Data& a)
 Row projectRow(const Data& a, const std::string& key, const std::string& work, bool jacobian)
 {
     Row r = row(a, key, work, jacobian ? "cv::projectPoints with jacobian" : "cv::projectPoints", 1,
-                jacobian ? 24 + 16 + 1 + 2*8*(6 + 9 + 8) : 41);
+                jacobian ? 24 + 16 + 1 + 2*8*(6 + (int)a->camera->parameterNames().size()) : 41);
     r.ours = [=]
     {
         if (jacobian)
@@ -111,14 +127,19 @@ Row projectRow(const Data& a, const std::string& key, const std::string& work, b
 
 } // namespace
 
-void addDomeRows(std::vector<Row>& rows, int count)
+void addCurvedRows(std::vector<Row>& rows, int count)
 {
-    const Data air = std::make_shared<Dome>(1, count), water = std::make_shared<Dome>(1.333, count);
-    rows.push_back(unprojectRow(water));
-    rows.push_back(projectRow(air, "dome_project", "project through a dome, air", false));
-    rows.push_back(projectRow(water, "dome_project_water", "project through a dome, water", false));
-    rows.push_back(projectRow(std::make_shared<Dome>(1.333, std::min(count, 10000)), "dome_jacobian",
-                              "project through a dome with jacobian", true));
+    struct Kind { WindowShape shape; std::string key, name; };
+    for (const Kind& kind : { Kind{ WINDOW_DOME, "dome", "a dome" }, Kind{ WINDOW_TUBE, "tube", "a tube" },
+                              Kind{ WINDOW_BENT, "bent", "a bent pane" } })
+    {
+        const Data air = std::make_shared<Curved>(kind.shape, 1, count), water = std::make_shared<Curved>(kind.shape, 1.333, count);
+        rows.push_back(unprojectRow(water, kind.key + "_unproject", "unproject through " + kind.name));
+        rows.push_back(projectRow(air, kind.key + "_project", "project through " + kind.name + ", air", false));
+        rows.push_back(projectRow(water, kind.key + "_project_water", "project through " + kind.name + ", water", false));
+        rows.push_back(projectRow(std::make_shared<Curved>(kind.shape, 1.333, std::min(count, 10000)), kind.key + "_jacobian",
+                                  "project through " + kind.name + " with jacobian", true));
+    }
 }
 
 } // namespace bench

@@ -1,0 +1,476 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Tubes; against 60-digit references in test_reference.cpp, in every call as two of allWindows().
+#include "kernel_levels.hpp"
+#include "quick_require.hpp"
+#include "scenes.hpp"
+#include "window/curved.hpp"
+#include "window/curved_path.hpp"
+#include "window/layers.hpp"
+#include "window/parameters.hpp"
+#include "window/wedge.hpp"
+
+#include <opencv2/calib3d.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
+
+Vec3d unit(const Vec3d& v) { return v/norm(v); }
+Vec3d across(const Vec3d& v, const Vec3d& axis) { return v - v.dot(axis)*axis; }
+
+/** One to three layers; the axis up to 0.6 radii off.
+@param anyMedia round the camera, too, and the axis up to 0.95 radii off: there may be total reflection and caustics */
+GlassWindow randomTube(Random& random, bool anyMedia)
+{
+    const double radius = random.logUniform(5, 500);
+    const Vec3d axis = unit(random.vector(1)), towards = unit(across(random.vector(1), axis));
+    const double media[] = { 1, 1.333, 1.5 };
+    GlassWindow window = GlassWindow::tube(random.uniform(0, anyMedia ? 0.95 : 0.6)*radius*towards + random.uniform(-9, 9)*axis, axis,
+                                           radius, radius*random.uniform(0.01, 0.5), random.uniform(1.45, 1.8), media[random.below(2)]);
+    window.center += random.uniform(-1, 1)*radius*window.axis;      // without effect
+    for (int layer = random.below(3); layer > 0; layer--)
+    {
+        window.thickness.push_back(radius*random.uniform(0.01, 0.2));
+        window.index.push_back(random.uniform(1.3, 1.7));
+    }
+    if (anyMedia)
+        window.innerIndex = media[random.below(3)];
+    return window;
+}
+
+//! Vector Snell, cylinder by cylinder. @return false: total reflection
+bool trace(const GlassWindow& w, Vec3d& point, Vec3d& direction, double* leastCosine = nullptr)
+{
+    double medium = w.innerIndex, radius = w.radius;
+    point = Vec3d();
+    for (size_t k = 0; k <= w.index.size(); k++)
+    {
+        const double next = k < w.index.size() ? w.index[k] : w.outerIndex, ratio = medium/next;
+        const Vec3d off = across(point - w.center, w.axis), d = across(direction, w.axis);
+        const double ahead = off.dot(d)/d.dot(d);
+        point += (-ahead + std::sqrt(ahead*ahead - (off.dot(off) - radius*radius)/d.dot(d)))*direction;
+        const Vec3d m = across(point - w.center, w.axis)/radius;
+        const double c = m.dot(direction), square = 1 - ratio*ratio*(1 - c*c);
+        if (!(square > 0))
+            return false;
+        direction = ratio*direction + (std::sqrt(square) - ratio*c)*m;
+        if (leastCosine)
+            *leastCosine = std::min(*leastCosine, std::min(c, std::sqrt(square)));
+        medium = next;
+        radius += k < w.index.size() ? w.thickness[k] : 0;
+    }
+    return true;
+}
+
+uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction)
+{
+    uchar status = REFRACT_OK;
+    layers.solveIn(1, &X[0], &X[1], &X[2], &w, &direction[0], &direction[1], &direction[2], &status);
+    return status;
+}
+
+//! What the kernels see, made anew from a window.
+struct Seen
+{
+    explicit Seen(const GlassWindow& window) : faces(tubeFaces(window)), curved()
+    {
+        const Matx33d axes = tubeAxes(window.axis);
+        const Vec3d center = axes*window.center;
+        std::copy_n(axes.val, 9, curved.axes);
+        std::copy_n(center.val, 3, curved.center);
+        curved.normal[0] = 1;
+        curved.least = -INF;
+        curved.faces = faces.data();
+        curved.count = (int)faces.size();
+        curved.inner = window.innerIndex;
+        curved.outer = window.outerIndex;
+        curved.at = windowLayout(window);
+    }
+    std::vector<CurvedFace> faces;
+    CurvedFaces curved;
+};
+
+bool isInnerRarest(const GlassWindow& w)
+{
+    return w.innerIndex <= std::min(w.outerIndex, *std::min_element(w.index.begin(), w.index.end()));
+}
+
+std::string refusal(const std::function<void()>& call, int code)
+{
+    try
+    {
+        call();
+    }
+    catch (const cv::Exception& e)
+    {
+        CHECK(e.code == code);
+        return e.err;
+    }
+    return "no refusal";
+}
+
+GlassWindow changed(const std::function<void(GlassWindow&)>& change)
+{
+    GlassWindow window = GlassWindow::tube(Vec3d(10, 2, 3), Vec3d(0.1, 1, 0), 50, 5, 1.5);
+    change(window);
+    return window;
+}
+
+} // namespace
+
+TEST_CASE("Round trips through tubes, to all sides, of any media", "[tube]")
+{
+    CAPTURE(seed());
+    Random random;
+    double worst = 0;
+    int trips = 0, reflected = 0, several = 0, left[2] = {};      // left: of the usual media, of any
+    for (int i = 0; i < 40000; i++)
+    {
+        const GlassWindow window = randomTube(random, i % 2 == 1);
+        const Layers layers(window);
+        const Vec3d w = unit(random.vector(1));
+        const double size = window.radius, side = norm(across(w, window.axis));
+        if (side < 1e-2)
+            continue;
+        Vec3d point, direction = w, back;
+        double grazing = side;
+        const bool gets = trace(window, point, direction, &grazing);
+        Rays rays;
+        uchar status = REFRACT_OK;
+        layers.traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+        QUICK_REQUIRE(status == (gets ? REFRACT_OK : REFRACT_TOTAL_REFLECTION), i, w, grazing);
+        reflected += !gets;
+        if (!gets || grazing < 1e-2)
+            continue;
+        QUICK_REQUIRE(norm(rays.direction(0) - direction) < 1e-14/(grazing*grazing), i, w);
+        const Vec3d origin = rays.origin(0, layers.normal());
+        QUICK_REQUIRE(norm((origin - point).cross(direction)) < 1e-13*(norm(point) + norm(origin))/(grazing*grazing), i, w);
+        QUICK_REQUIRE(std::abs(origin.dot(window.axis)) < 1e-12*(size + norm(origin)), i, w);
+        const double mu = layers.leavingMu(rays, 0);
+        QUICK_REQUIRE(norm(origin + rays.direction(0)/mu - point) < 1e-12*(norm(point) + norm(origin))/(grazing*grazing), i, w);
+        const Vec3d X = point + size*random.logUniform(1e-2, 1e4)*direction;
+        QUICK_REQUIRE(layers.isBeyond(X[0], X[1], X[2]), i, w);
+        const Vec3d foot = window.center + (point - window.center).dot(window.axis)*window.axis, inside = foot + 0.999*(point - foot);
+        QUICK_REQUIRE(!layers.isBeyond(inside[0], inside[1], inside[2]), i, w);
+        const Seen seen(window);
+        Vec3d kernel = X;
+        left[i % 2] += !curvedKernels().solveIn(seen.curved, 1, &X[0], &X[1], &X[2], NULL, &kernel[0], &kernel[1], &kernel[2]);
+        QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w, X);
+        const double error = norm(unit(back) - w)*grazing*grazing;
+        const bool isRarest = isInnerRarest(window);
+        if (error >= 1e-13 && !isRarest)
+        {
+            // Next to a caustic two directions see the point, and behind it more: any of them is right.
+            Vec3d again, leaving = unit(back);
+            double grazingBack = 1;
+            QUICK_REQUIRE(trace(window, again, leaving, &grazingBack), i, w, X);
+            QUICK_REQUIRE(norm((X - again).cross(leaving))*grazingBack < 1e-10*norm(X), i, w, X, grazingBack);
+            several++;
+            continue;
+        }
+        QUICK_REQUIRE(error < 1e-13, i, w, X, error);
+        worst = std::max(worst, error);
+        // The scalar code and the kernel are two ways to one answer; and homogeneous points.
+        const Matx33d axes(seen.curved.axes);
+        Vec3d scalar;
+        QUICK_REQUIRE(findTubePath(seen.curved, axes*X, 1, scalar) == REFRACT_OK, i, w, X);
+        QUICK_REQUIRE((!isRarest || norm(unit(axes.t()*scalar) - w)*grazing*grazing < 1e-12), i, w, X, norm(unit(axes.t()*scalar) - w));
+        QUICK_REQUIRE(solveIn(layers, X*1e-4, 1e-4, back) == REFRACT_OK, i, w, X);
+        QUICK_REQUIRE((!isRarest || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w, X);
+        QUICK_REQUIRE(solveIn(layers, direction, 0, back) == REFRACT_OK, i, w, grazing, isRarest, (int)solveIn(layers, direction, 0, back));
+        QUICK_REQUIRE((!isRarest || norm(unit(back) - w)*grazing*grazing < 1e-13), i, w);
+        QUICK_REQUIRE(findTubePath(seen.curved, axes*direction, 0, scalar) == REFRACT_OK, i, w, X);
+        trips++;
+    }
+    CHECK(trips > 25000);
+    CHECK(reflected > 100);
+    CHECK(left[0] < trips/1000);
+    CHECK(left[1] < trips/20);
+    printNumber("round trips through tubes", trips, "");
+    printNumber("round trips through tubes, worst angle * cos(grazing angle)^2", worst, "rad");
+    printNumber("points that the kernel leaves to scalar code, camera in the rarest medium", left[0], "");
+    printNumber("points that the kernel leaves to scalar code, any media, next to the wall", left[1], "");
+    printNumber("points with another image than the one they were made from", several, "");
+}
+
+TEST_CASE("In its cross-section a tube is a dome", "[tube]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (int i = 0; i < 2000; i++)
+    {
+        GlassWindow tube = randomTube(random, false), dome = tube;
+        tube.center = across(tube.center, tube.axis);
+        dome = GlassWindow::dome(tube.center, tube.radius, tube.thickness[0], tube.index[0], tube.outerIndex);
+        dome.thickness = tube.thickness;
+        dome.index = tube.index;
+        const Vec3d X = tube.center + 2.5*tube.radius*random.logUniform(1, 100)*unit(across(random.vector(1), tube.axis));
+        Vec3d inTube, inDome;
+        QUICK_REQUIRE(solveIn(Layers(tube), X, 1, inTube) == REFRACT_OK, i, X);
+        QUICK_REQUIRE(solveIn(Layers(dome), X, 1, inDome) == REFRACT_OK, i, X);
+        QUICK_REQUIRE(norm(unit(inTube) - unit(inDome)) < 1e-13, i, X, norm(unit(inTube) - unit(inDome)));
+    }
+}
+
+TEST_CASE("A camera on a tube's axis sees planes of the axis as through a pane", "[tube]")
+{
+    // The plane of a ray and the axis cuts the faces in parallel lines: a pane across the ray's part across the axis.
+    CAPTURE(seed());
+    Random random;
+    for (int i = 0; i < 2000; i++)
+    {
+        GlassWindow tube = randomTube(random, false);
+        tube.center = random.uniform(-1, 1)*tube.radius*tube.axis;
+        const Vec3d n = unit(across(random.vector(1), tube.axis));
+        GlassWindow pane(Vec3d(0, 0, 1), tube.thickness[0], tube.index[0], tube.radius, tube.outerIndex);
+        pane.thickness = tube.thickness;
+        pane.index = tube.index;
+        pane.normal = n[2] > 0 ? n : -n;
+        const double far = 2.5*tube.radius*random.logUniform(1, 100);
+        const Vec3d X = far*pane.normal + far*random.uniform(-3, 3)*tube.axis;
+        Vec3d inTube, behind;
+        QUICK_REQUIRE(solveIn(Layers(tube), X, 1, inTube) == REFRACT_OK, i, X);
+        QUICK_REQUIRE(solveIn(Layers(pane), X, 1, behind) == REFRACT_OK, i, X);
+        QUICK_REQUIRE(norm(unit(inTube) - unit(behind)) < 1e-13, i, X, norm(unit(inTube) - unit(behind)));
+    }
+}
+
+TEST_CASE("A tube becomes a flat window as its radius grows", "[tube]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (double outerIndex : { 1., 1.333 })
+    {
+        const GlassWindow flat(Vec3d(0.1, -0.05, 1), 20, 1.5, 30, outerIndex);
+        std::vector<Point3d> points;
+        for (int i = 0; i < 200; i++)
+            points.push_back(Point3d(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(600, 1000)));
+        std::vector<Point2d> expected;
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), flat, expected);
+        const auto difference = [&](double radius)
+        {
+            const GlassWindow tube = GlassWindow::tube(-(radius - flat.distance)*flat.normal, flat.normal.cross(Vec3d(1, 0, 0)), radius,
+                                                       20, 1.5, outerIndex);
+            std::vector<Point2d> pixels;
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), tube, pixels);
+            return norm(pixels, expected, NORM_INF);
+        };
+        // What is left is the curvature's own: half of it at twice the radius.
+        for (double radius : { 1e5, 1e6, 1e7 })
+            CHECK(difference(radius)/difference(2*radius) == Approx(2).epsilon(1e-2));
+        printNumber(format("tube of radius 1e6 against the flat window, outside %g", outerIndex), difference(1e6), "px");
+    }
+}
+
+TEST_CASE("Thin and thick tubes, far along the axis and next to the wall", "[tube]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (double thickness : { 0., 1e-3, 1e3 })
+        for (double offset : { 0., 49.99 })
+            for (double outerIndex : { 1., 1.333 })
+                for (double up : { 0., 1e-9, 10., 1e5, 1e7 })
+                {
+                    const GlassWindow window = GlassWindow::tube(Vec3d(offset, 0, 0), Vec3d(0, 1, 0), 50, thickness, 1.5, outerIndex);
+                    const Layers layers(window);
+                    const double angle = random.uniform(0, 2*CV_PI), far = (50 + thickness)*random.uniform(1.1, 20);
+                    const Vec3d X(offset + far*std::cos(angle), up, far*std::sin(angle));
+                    CAPTURE(thickness, offset, outerIndex, X);
+                    Vec3d d;
+                    REQUIRE(solveIn(layers, X, 1, d) == REFRACT_OK);
+                    Vec3d point, direction = unit(d);
+                    double grazing = 1;
+                    REQUIRE(trace(window, point, direction, &grazing));
+                    REQUIRE(norm((X - point).cross(direction)) < 1e-15*norm(X)/grazing);
+                    REQUIRE((X - point).dot(direction) > 0);
+                }
+}
+
+TEST_CASE("No light goes along a tube's axis, and none comes from inside it", "[tube]")
+{
+    const GlassWindow window = GlassWindow::tube(Vec3d(5, -4, 12), Vec3d(0.3, -0.2, 1), 50, 7, 1.5, 1.333);
+    const Layers layers(window);
+    Vec3d d;
+    for (double side : { 1., -1. })
+    {
+        const Vec3d w = side*window.axis;
+        Rays rays;
+        uchar status = REFRACT_OK;
+        layers.traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+        CHECK(status == REFRACT_BEHIND_WINDOW);
+        CHECK(std::isnan(rays.tau[0]));
+        CHECK(solveIn(layers, w, 0, d) == REFRACT_BEHIND_WINDOW);
+        CHECK(std::isnan(d[0]));
+        CHECK(solveIn(layers, 1e6*w, 1, d) == REFRACT_BEHIND_WINDOW);
+        CHECK(std::isnan(d[0]));
+    }
+    CAPTURE(seed());
+    Random random;
+    std::vector<Point3d> points;
+    std::vector<uchar> expected, status;
+    for (int i = 0; i < 1000; i++)
+    {
+        const Vec3d at = unit(across(random.vector(1), window.axis));
+        const double radius = i % 3 == 0 ? 57*(1 + 1e-9) : i % 3 == 1 ? 57*(1 - 1e-9) : random.uniform(0, 57);
+        const Vec3d X = window.center + radius*at + random.uniform(-100, 100)*window.axis;
+        if (X[2] < 20 || norm(Vec2d(X[0], X[1])) > 2*X[2])
+            continue;
+        points.push_back(X);
+        expected.push_back(i % 3 == 0 ? REFRACT_OK : REFRACT_BEHIND_WINDOW);
+    }
+    points.push_back(Point3d(NAN, 0, 100));
+    expected.push_back(REFRACT_NOT_FINITE);
+    std::vector<Point2d> exact, none;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), window, exact, status);
+    CHECK(points.size() > 200);
+    CHECK(status == expected);
+    Mat strided(3*(int)points.size(), 2, CV_64FC3);         // every third row of the second column
+    for (size_t i = 0; i < points.size(); i++)
+        strided.at<Point3d>(3*(int)i, 1) = points[i];
+    Mat fromView;
+    refractiveProjectPoints(Mat((int)points.size(), 1, CV_64FC3, strided.ptr(0) + strided.elemSize(), 3*strided.step[0]), Vec3d(),
+                            Vec3d(), K, noArray(), window, fromView);
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        REQUIRE(std::isnan(exact[i].x) == (expected[i] != REFRACT_OK));
+        if (expected[i] == REFRACT_OK)
+            REQUIRE(fromView.at<Point2d>((int)i) == exact[i]);
+    }
+    refractiveProjectPoints(std::vector<Point3d>(), Vec3d(), Vec3d(), K, noArray(), window, none, status);
+    CHECK(none.empty());
+    CHECK(status.empty());
+}
+
+TEST_CASE("Every instruction set gives the same answer behind a tube", "[tube][kernels]")
+{
+    CAPTURE(seed());
+    Random random;
+    const int n = 301;
+    for (int i = 0; i < 20; i++)
+    {
+        const GlassWindow window = randomTube(random, false);
+        const Seen seen(window);
+        std::vector<double> x(n), y(n), z(n), d[3], expected[3], jacobian[2];
+        for (int k = 0; k < n; k++)
+        {
+            const Vec3d X = window.center + 2.5*window.radius*random.logUniform(1, 100)*unit(across(random.vector(1), window.axis))
+                            + window.radius*random.uniform(-9, 9)*window.axis;
+            x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+        }
+        for (const Kernels* level : kernelLevels())
+        {
+            CAPTURE(level->instructions);
+            d[0] = x; d[1] = y; d[2] = z;
+            CHECK(level->curved.solveIn(seen.curved, n, x.data(), y.data(), z.data(), NULL, d[0].data(), d[1].data(), d[2].data()));
+            std::vector<double> byDirection(6*n, 1), byPoint(6*n), byWindow(2*n*seen.curved.at.count);
+            level->curved.chain(seen.curved, 2, n, x.data(), y.data(), z.data(), d[0].data(), d[1].data(), d[2].data(),
+                                { byDirection.data(), 3, n }, { byPoint.data(), 3, n }, { byWindow.data(), seen.curved.at.count, n });
+            if (expected[0].empty())
+            {
+                std::copy(d, d + 3, expected);
+                jacobian[0] = byPoint;
+                jacobian[1] = byWindow;
+            }
+            for (int k = 0; k < n; k++)
+            {
+                const Vec3d one = unit(Vec3d(d[0][k], d[1][k], d[2][k])), other(expected[0][k], expected[1][k], expected[2][k]);
+                REQUIRE(norm(one - unit(other)) < 1e-14);
+            }
+            for (size_t k = 0; k < byPoint.size(); k++)
+                REQUIRE(std::abs(byPoint[k] - jacobian[0][k]) < 1e-11*(1/window.radius + std::abs(byPoint[k])));
+            for (size_t k = 0; k < byWindow.size(); k++)
+                REQUIRE(std::abs(byWindow[k] - jacobian[1][k]) < 1e-11*(1 + std::abs(byWindow[k])));
+        }
+    }
+}
+
+TEST_CASE("What is no tube is refused, and the text says why", "[tube]")
+{
+    const auto text = [](const std::function<void(GlassWindow&)>& change, int code)
+    { return refusal([&] { changed(change).check(); }, code); };
+    const int range = Error::StsOutOfRange, bad = Error::StsBadArg;
+    CHECK_THAT(text([](GlassWindow& w) { w.center = Vec3d(0, 7, 50); }, range), Contains("the camera must be inside the tube"));
+    CHECK_THAT(text([](GlassWindow& w) { w.center = 100*w.axis; }, range), Contains("no refusal"));
+    CHECK_THAT(text([](GlassWindow& w) { w.radius = 0; }, range), Contains("window.radius is 0; it must be positive"));
+    CHECK_THAT(text([](GlassWindow& w) { w.radius = INF; }, range), Contains("window.radius is inf"));
+    CHECK_THAT(text([](GlassWindow& w) { w.center[1] = NAN; }, bad), Contains("nan"));
+    CHECK_THAT(text([](GlassWindow& w) { w.axis = Vec3d(1, 1, 0); }, bad), Contains("window.axis is (1, 1, 0) with length 1.41421"));
+    CHECK_THAT(text([](GlassWindow& w) { w.axis[0] = NAN; }, bad), Contains("window.axis"));
+    CHECK_THAT(text([](GlassWindow& w) { w.normal = Vec3d(0, 1, 0); }, bad), Contains("window.normal is set, but the window is a tube"));
+    CHECK_THAT(text([](GlassWindow& w) { w.distance = 5; }, bad), Contains("window.distance is set, but the window is a tube"));
+    CHECK_THAT(text([](GlassWindow& w) { w.wedge.push_back(Vec2d()); }, bad), Contains("window.wedge is set, but the window is a tube"));
+    CHECK_THAT(text([](GlassWindow& w) { w.curvature = 1; }, bad), Contains("window.curvature is set, but the window is a tube"));
+    CHECK_THAT(text([](GlassWindow& w) { w.shape = WINDOW_DOME; }, bad), Contains("window.axis is set, but the window is a dome"));
+    CHECK_THAT(text([](GlassWindow& w) { w.thickness[0] = -1; }, range), Contains("window.thickness[0] is -1"));
+    CHECK_THAT(refusal([] { GlassWindow::tube(Vec3d(60, 9, 0), Vec3d(0, 2, 0), 50, 5, 1.5); }, range), Contains("60 from the camera"));
+    CHECK_THAT(refusal([] { GlassWindow::tube(Vec3d(), Vec3d(), 50, 5, 1.5); }, bad), Contains("axisDirection is (0, 0, 0)"));
+}
+
+TEST_CASE("A tube is the same after its file", "[tube][file]")
+{
+    const GlassWindow tube = GlassWindow::tube(Vec3d(1.25, -2.5, 3.0625), Vec3d(0.1, 1, 0.3), 50.1, 7.3, 1.5168, 1.333);
+    FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    out << "glass_window" << tube;
+    const String text = out.releaseAndGetString();
+    CHECK_THAT(text, Contains("shape: tube"));
+    FileStorage in(text, FileStorage::READ | FileStorage::MEMORY);
+    GlassWindow back;
+    in["glass_window"] >> back;
+    CHECK(back.shape == WINDOW_TUBE);
+    CHECK(back.center == tube.center);
+    CHECK(norm(back.axis - tube.axis) < 1e-15);
+    CHECK(back.radius == tube.radius);
+    CHECK(back.thickness == tube.thickness);
+    CHECK(back.outerIndex == tube.outerIndex);
+    const auto parse = [](const String& map)
+    {
+        return refusal([&]
+        {
+            GlassWindow window;
+            FileStorage fs("%YAML:1.0\nglass_window: {" + map + "}\n", FileStorage::READ | FileStorage::MEMORY);
+            fs["glass_window"] >> window;
+        }, Error::StsParseError);
+    };
+    CHECK_THAT(parse("shape: tube, radius: 5, center: [0, 0, 1]"), Contains("glass_window.axis has 0 numbers"));
+    CHECK_THAT(parse("shape: dome, axis: [0, 0, 1], radius: 50"), Contains("glass_window has 'axis', but its shape is dome"));
+    CHECK_THAT(parse("shape: tube, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is tube"));
+    CHECK_THAT(parse("normal: [0, 0, 1], curvature: 1"), Contains("glass_window has 'curvature', but its shape is flat"));
+}
+
+TEST_CASE("A tube's parameters are its centre, its axis and its radius", "[tube][parameters]")
+{
+    const GlassWindow tube = GlassWindow::tube(Vec3d(1, 2, 3), Vec3d(0, 2, 0), 50, 7, 1.5, 1.333);
+    CHECK(windowParameterNames(windowLayout(tube)) == std::vector<String>{ "center[0]", "center[1]", "center[2]", "axis[0]", "axis[1]",
+          "axis[2]", "radius", "thickness[0]", "index[0]", "innerIndex", "outerIndex" });
+    CHECK(windowParameters(tube) == std::vector<double>{ 1, 0, 3, 0, 1, 0, 50, 7, 1.5, 1, 1.333 });
+}
+
+TEST_CASE("Two cameras may look out of one tube, or one dome", "[tube][dome]")
+{
+    CAPTURE(seed());
+    Random random;
+    for (int i = 0; i < 200; i++)
+    {
+        const bool isTube = i % 2 == 0;
+        GlassWindow window = randomTube(random, false);
+        if (!isTube)
+            window = GlassWindow::dome(across(window.center, window.axis), window.radius, window.thickness[0], window.index[0]);
+        Matx33d R;
+        Rodrigues(random.vector(1), R);
+        const Vec3d T = random.vector(0.1*window.radius);
+        const GlassWindow other = windowInFrame(window, R, T);
+        const Layers here(window), there(other);
+        const Vec3d X = 3*window.radius*unit(random.vector(1)), Y = R*X + T;
+        const Surface moved = inFrame(there.lastSurface(), R.val, T.val);
+        CHECK(moved.distance == Approx(here.lastSurface().distance).epsilon(1e-12));
+        CHECK(norm(Vec3d(moved.normal) - Vec3d(here.lastSurface().normal)) < 1e-12);
+        CHECK(here.isBeyond(X[0], X[1], X[2]) == there.isBeyond(Y[0], Y[1], Y[2]));
+    }
+}
