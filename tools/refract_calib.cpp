@@ -161,9 +161,9 @@ Options parseOptions(Command& command)
     app.add_option("--window", o.shape, "shape of the windows: flat, bent (flat with --bow-std), dome or tube")
         ->check(CLI::IsMember(namesOf(SHAPES)))->capture_default_str();
     app.add_option("--radius", o.radius, "of a dome's or tube's inner face")->check(moreThanZero());
-    app.add_option("--center", o.center, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame (default: "
-        "0,0,0, the camera itself)");
-    app.add_option("--axis", o.axis, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 for an upright one");
+    app.add_option("--center", o.center, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame "
+        "(default: 0,0,0, the camera itself)");
+    app.add_option("--axis", o.axis, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 if upright");
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
         "or N-BK7,PMMA,N-BK7");
@@ -342,7 +342,8 @@ cv::Vec3d parseVector(const std::string& text, const char* option)
 {
     const std::vector<double> numbers = parseNumbers(text, option);
     if (numbers.size() != 3)
-        throw Failure(std::string(option) + "=" + text + ": give three numbers, X,Y,Z in the camera's frame (x to the right, y down, z ahead)");
+        throw Failure(std::string(option) + "=" + text + ": give three numbers, X,Y,Z in the camera's frame (x to the right, y down, "
+                      "z ahead)");
     return cv::Vec3d(numbers.data());
 }
 
@@ -396,8 +397,8 @@ void takePlace(const Options& o, GlassWindow& window)
     }
     const double offset = offsetOf(window);
     if (!(offset < window.radius))
-        throw Failure("--center=" + o.center + format(": there the camera would be %g from the %s of the %s, outside its radius of %g: give "
-                      "the centre in the camera's frame, nearer than the radius", offset, o.shape == "dome" ? "centre" : "axis",
+        throw Failure("--center=" + o.center + format(": there the camera would be %g from the %s of the %s, outside its radius of %g: "
+                      "give the centre in the camera's frame, nearer than the radius", offset, o.shape == "dome" ? "centre" : "axis",
                       o.shape.c_str(), window.radius));
 }
 

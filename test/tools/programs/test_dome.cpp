@@ -27,7 +27,8 @@ std::string scene(const std::string& center1 = "[ 3., -2., 6. ]")
           "   air: { count: 8, distance: [ 400., 600. ], tilt_deg: [ 10., 35. ], roll_deg: 30., margin: 8. }\n"
           "   pair: { count: 6, distance: [ 380., 650. ], tilt_deg: [ 5., 30. ], roll_deg: 20., margin: 8. }\n"
           "   test: { count: 3, distance: [ 380., 650. ], tilt_deg: [ 0., 30. ], roll_deg: 20., margin: 8. }\n"
-          "sets:\n   direct: { window: 0, poses: [ air, pair ] }\n   glass: { window: 1, poses: [ pair ], motion: { rvec: [ 0., 0., 0. ], tvec: [ 0.02, -0.015, 0.02 ] } }\n"
+          "sets:\n   direct: { window: 0, poses: [ air, pair ] }\n   glass: { window: 1, poses: [ pair ], "
+          "motion: { rvec: [ 0., 0., 0. ], tvec: [ 0.02, -0.015, 0.02 ] } }\n"
           "   measure: { window: 1, poses: [ test ] }\n";
 }
 
@@ -51,10 +52,34 @@ struct Rendered
         return " --direct" + option + "=" + set("direct" + camera) + " --glass" + option + "=" + set("glass" + camera);
     }
     std::string calib() const { return "refract_calib" + std::string(BOARD) + pairsOf("1", "") + pairsOf("2", "2"); }
+    //! Of a rig of one camera.
+    std::string one() const
+    {
+        return "refract_calib" + std::string(BOARD) + pairsOf("", "");
+    }
     std::string out(const std::string& name) const { return folder / name; }
 };
 
 const char* const DOME = " --window=dome --radius=50 --thickness=5 --index=1.49 --outer-index=1.333 ";
+
+//! One camera, its window as in files.
+std::string oneCamera(const std::string& window)
+{
+    return "%YAML:1.0\n---\ntarget: { pattern: chessboard, size: \"9x6\", square: 25. }\nimage_width: 800\nimage_height: 640\n"
+           "camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ 720., 0., 404., 0., 720., 316., 0., 0., 1. ] }\n"
+           "distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: [ -0.1, 0.05, 0.0005, -0.0005 ] }\n"
+           "glass_window: " + window + "\nexposure: { noise: 2., blur: 0.7 }\nseed: 7\nposes:\n"
+           "   air: { count: 8, distance: [ 350., 600. ], tilt_deg: [ 10., 35. ], roll_deg: 30., margin: 8. }\n"
+           "   pair: { count: 6, distance: [ 350., 600. ], tilt_deg: [ 5., 30. ], roll_deg: 20., margin: 8. }\n"
+           "sets:\n   direct: { window: 0, poses: [ air, pair ] }\n   glass: { window: 1, poses: [ pair ] }\n";
+}
+
+void readWindows(const Rendered& rig, cv::refract::GlassWindow& found, cv::refract::GlassWindow& truth)
+{
+    const cv::FileStorage file(rig.out("calib.yml"), cv::FileStorage::READ), given(rig.out("img/truth.yml"), cv::FileStorage::READ);
+    file["glass_window"] >> found;
+    given["glass_window"] >> truth;
+}
 
 } // namespace
 
@@ -108,12 +133,14 @@ TEST_CASE("Two cameras in domes, from images to points, with errors as stated", 
         count++;
     }
     REQUIRE(count == 3*54);
-    std::cout << "[numbers] points through domes: RMS error " << std::sqrt(squares/count) << " mm, of stated " << std::sqrt(inSigma/count) << '\n';
+    std::cout << "[numbers] points through domes: RMS error " << std::sqrt(squares/count) << " mm, of stated "
+              << std::sqrt(inSigma/count) << '\n';
     CHECK(std::sqrt(squares/count) < 0.5);
     CHECK(std::sqrt(inSigma/count) < 2.);           // calibration errors are common to all points
     CHECK(std::sqrt(inSigma/count) > 0.2);
 
-    const std::string check = "refract_check " + rig.out("calib.yml") + BOARD + rig.pairsOf("1", "") + rig.pairsOf("2", "2") + " --detect=1";
+    const std::string check = "refract_check " + rig.out("calib.yml") + BOARD + rig.pairsOf("1", "") + rig.pairsOf("2", "2")
+        + " --detect=1";
     const ToolResult same = runTool(check);
     INFO(same.out << same.err);
     CHECK(same.code == 0);
@@ -172,10 +199,68 @@ TEST_CASE("A dome that is given wrongly is refused, or told", "[tools][dome]")
     CHECK(mentions(r.err, "is that given of the outer face?"));
 }
 
+TEST_CASE("A camera in a tube, from images to the tube", "[tools][dome]")
+{
+    const Rendered rig(oneCamera("{ shape: tube, center: [ 4., 0., 6. ], axis: [ 0.05, 0.99812, 0.03533 ], radius: 60.05, "
+                                 "thickness: [ 3.95 ], index: [ 1.4904 ], outer_index: 1.3334 }"));
+    const ToolResult r = runTool(rig.one() + " --window=tube --radius=60 --axis=0,1,0 --thickness=4 --index=1.49 --outer-index=1.333 "
+                                 "--verbose --no-cross-validation --report=" + rig.out("r.html") + " --out=" + rig.out("calib.yml"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "camera off the axis, mm"));
+    CHECK(mentions(readFile(rig.out("r.html")), "Where the camera sits"));
+    cv::refract::GlassWindow is, expected;
+    readWindows(rig, is, expected);
+    CHECK(is.shape == cv::refract::WINDOW_TUBE);
+    const cv::FileStorage file(rig.out("calib.yml"), cv::FileStorage::READ);
+    std::vector<double> center, axis;
+    file["glass_window_std"]["center"] >> center;
+    file["glass_window_std"]["axis_deg"] >> axis;
+    REQUIRE(center.size() == 3);
+    REQUIRE(axis.size() == 2);
+    // Centres are compared where they are nearest to the camera.
+    const auto nearest = [](const cv::refract::GlassWindow& w) { return w.center - w.axis.dot(w.center)*w.axis; };
+    const double turned = std::asin(cv::norm(is.axis.cross(expected.axis)))*180/CV_PI;
+    const cv::Vec3d moved = nearest(is) - nearest(expected);
+    std::cout << "[numbers] tube: axis off by " << turned << " degrees, stated " << axis[0] << "; centre off by " << moved << ", stated "
+              << center[0] << ", " << center[1] << ", " << center[2] << '\n';
+    CHECK(turned < 4*axis[0]);
+    CHECK(std::abs(moved[0]) < 4*center[0]);
+    CHECK(std::abs(moved[2]) < 4*center[2]);
+    CHECK(cv::norm(moved) < 1);
+}
+
+TEST_CASE("A pane that is bent is found to be, within what is said of it", "[tools][dome]")
+{
+    const Rendered rig(oneCamera("{ shape: bent, normal: [ 0.1, -0.05, 0.993731 ], distance: 40., curvature: 2.4e-5, thickness: [ 20. ], "
+                                 "index: [ 1.52 ] }"));
+    const std::string call = rig.one() + " --thickness=20 --index=1.52 --thickness-std=0 --index-std=0 --wedge-std=0 --no-cross-validation "
+                             "--verbose --out=" + rig.out("calib.yml");
+    const ToolResult r = runTool(call + " --bow-std=3");
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    CHECK(mentions(r.out, "bow, mm of sag per m"));
+    cv::refract::GlassWindow is, expected;
+    readWindows(rig, is, expected);
+    CHECK(is.shape == cv::refract::WINDOW_BENT);
+    const cv::FileStorage file(rig.out("calib.yml"), cv::FileStorage::READ);
+    const double std = (double)file["glass_window_std"]["curvature"];
+    std::cout << "[numbers] bent pane: curvature off by " << is.curvature - expected.curvature << ", stated " << std << '\n';
+    CHECK(std > 0.);
+    CHECK(std < 8.*3.*1.01/1e6);
+    CHECK(std::abs(is.curvature - expected.curvature) < 3*std);
+    const ToolResult flat = runTool(call);
+    INFO(flat.err);
+    cv::refract::GlassWindow without, same;
+    readWindows(rig, without, same);
+    CHECK(without.shape == cv::refract::WINDOW_FLAT);
+}
+
 TEST_CASE("Tools that only use a calibration take a dome", "[tools][dome]")
 {
     const Rendered rig(scene());
-    const std::string truth = rig.out("img/truth.yml"), first = rig.out("img/measure1/test1.png"), second = rig.out("img/measure2/test1.png");
+    const std::string truth = rig.out("img/truth.yml"), first = rig.out("img/measure1/test1.png");
+    const std::string second = rig.out("img/measure2/test1.png");
     for (const std::string& command : {"refract_undistort " + truth + " " + first + " --depth=500 --out-dir=" + rig.out("undistorted"),
                                        "refract_epilines " + truth + " " + first + " " + second + BOARD + " --out=" + rig.out("lines.png"),
                                        "refract_export " + truth + " --to=colmap --range=380,650 --out-dir=" + rig.out("model")})

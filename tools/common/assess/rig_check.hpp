@@ -20,8 +20,8 @@ struct WindowCheck
     int camera;
     cv::Vec3d normal;           //!< as it is now
     cv::Vec3d center;           //!< of a dome or tube, as it is now
-    /** Between the calibrated normal and this; NaN: it is not what changed. Of a dome or tube the motion of its centre, as an angle: so large
-    as it is seen from a radius away. */
+    /** Between the calibrated normal and this; NaN: it is not what changed. Of a dome or tube the motion of its centre, as an angle: as
+    large as it is seen from a radius away. */
     double tiltDeg;
     double stdDeg[2];           //!< of the tilt, two principal ones, larger first
     double lengthPerDegree;     //!< of a centre; 0: it is a tilt

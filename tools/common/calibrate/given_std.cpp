@@ -67,8 +67,8 @@ void GivenStdOptions::addTo(CLI::App& app, bool all)
     {
         add("--radius-std", RADIUS, "the same of --radius (default: 0.1 mm)");
         add("--center-std", CENTER, "the same of each coordinate of --center, with --window=dome (default: nothing is known of it)");
-        add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; its "
-            "curvature is then estimated within it (default: 0, flat)");
+        add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; "
+            "its curvature is then estimated within it (default: 0, flat)");
         add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");

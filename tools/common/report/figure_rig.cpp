@@ -270,8 +270,8 @@ Figure drawRig(const RigCalibration& c, double azimuthDeg)
          << "$names using 1:2:3 with labels offset 0,1 font ',12' textcolor rgb '#0f172a' notitle, "
          << "$bar with lines linewidth 2 linecolor rgb '#475569' notitle\n";
     const GlassWindow window = c.fit.rig.cameras[0]->window();
-    return {plot.svg(), !isRound(window) && window.innerIndex == window.outerIndex ? "the windows' distances do not show in the images, they are drawn "
-                                                                 "as given" : ""};
+    const bool isHidden = !isRound(window) && window.innerIndex == window.outerIndex;
+    return {plot.svg(), isHidden ? "the windows' distances do not show in the images, they are drawn as given" : ""};
 }
 
 } // namespace tools

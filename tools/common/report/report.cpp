@@ -137,7 +137,7 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
     page.set("behind", window.shape == WINDOW_FLAT ? std::string("behind a flat window")
                        : isRound(window) ? std::string("in a ") + nameOfShape(window) : std::string("behind a ") + nameOfShape(window));
     page.set("place_heading", isRound(window) ? "centre ±, " + c.unit : std::string("normal ±, °"));
-    page.set("place_note", isRound(window) ? "The centre is where it is from the camera" : "The normal points from the camera to the scene");
+    page.set("place_note", isRound(window) ? "The centre is seen from the camera" : "The normal points from the camera to the scene");
     page.set("headline", headline(c));
     page.set("windows", windows);
     data limits{data::type::list};

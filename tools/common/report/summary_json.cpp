@@ -64,8 +64,8 @@ Json otherMinimumJson(const RigCalibration& c, int camera)
     const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (!other)
         return nullptr;
-    return {{other->of == "normal" ? "normal" : "center", listOf(other->normal)}, {"rms_px", other->rms}, {"standard_deviations_worse", other->excess},
-            {"excluded", other->isExcluded()}};
+    return {{other->of == "normal" ? "normal" : "center", listOf(other->normal)}, {"rms_px", other->rms},
+            {"standard_deviations_worse", other->excess}, {"excluded", other->isExcluded()}};
 }
 
 //! Where the window is.
