@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The manual: what --help prints first.
-static const char MANUAL[] = R"(Calibrates the flat windows in front of one camera, a stereo pair or a rig of up to 16 cameras.
+static const char MANUAL[] = R"(Calibrates the windows in front of one camera, a stereo pair or a rig of up to 16 cameras.
 
   refract_calib --pattern=chessboard --size=6x5 --square=39
       --direct='direct/*.png' --glass='glass/*.png' --thickness=20 --index=1.5437 --out=calib.yml --report=report.html
@@ -33,6 +33,10 @@ should show. Copies and files that cannot be read are named and left out. Then i
 --watch-pairs pairs, when --max-error-at and --max-normal-std are met by what came so far, when the best next pair would gain less than
 --watch-gain percent, or when no image has come for --watch-quiet seconds.
 
+A window is flat unless --window says dome or tube, with --radius of its inner face: --window=dome --radius=50 --thickness=5 --index=PMMA
+--outer-index=water. Its centre is estimated in place of a flat window's normal; --center says where to start, in the camera's frame (x to
+the right, y down, z ahead), if the camera is not near the middle. A tube needs --axis, roughly. --bow-std lets a flat window be bent.
+
 Where an index stands, a material may stand: N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate,
 of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=101325,RH=50 (C, Pa, %). The result then says which
 index it took; the wrong value that it tries is what the colours of light and the kinds of the material change it by.
@@ -54,6 +58,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/lines.hpp"
@@ -84,6 +89,8 @@ struct Options
     PerCamera<std::string> camera;
     std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
     std::string innerIndex = "1", outerIndex = "1";
+    std::string shape = "flat", center, axis;
+    double radius = 0.;
     std::string channel;
     double wavelength = 0., distance = 0., watchGain = 0.;
     GivenStdOptions std;
@@ -98,7 +105,10 @@ struct Options
 
 const std::map<std::string, int> FREE = {
     {"thickness", GLASS_FREE_THICKNESS}, {"index", GLASS_FREE_INDEX}, {"distance", GLASS_FREE_DISTANCE},
-    {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}, {"wedge", GLASS_FREE_WEDGE}};
+    {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}, {"wedge", GLASS_FREE_WEDGE},
+    {"radius", GLASS_FREE_RADIUS}, {"curvature", GLASS_FREE_CURVATURE}};
+
+const std::map<std::string, int> SHAPES = {{"flat", WINDOW_FLAT}, {"dome", WINDOW_DOME}, {"tube", WINDOW_TUBE}, {"bent", WINDOW_BENT}};
 
 template<typename T> std::vector<std::string> namesOf(const std::map<std::string, T>& map)
 {
@@ -148,6 +158,12 @@ Options parseOptions(Command& command)
     app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
                    "cv::fisheye's four, or auto: as many as held-out images support")->check(CLI::IsMember(lensNames()))
         ->capture_default_str();
+    app.add_option("--window", o.shape, "shape of the windows: flat, bent (flat with --bow-std), dome or tube")
+        ->check(CLI::IsMember(namesOf(SHAPES)))->capture_default_str();
+    app.add_option("--radius", o.radius, "of a dome's or tube's inner face")->check(moreThanZero());
+    app.add_option("--center", o.center, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame "
+        "(default: 0,0,0, the camera itself)");
+    app.add_option("--axis", o.axis, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 if upright");
     app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
     app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
         "or N-BK7,PMMA,N-BK7");
@@ -162,7 +178,7 @@ Options parseOptions(Command& command)
         "610, green 540, blue 465)")->check(moreThanZero());
     CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
         "where it is needed and not given, it is estimated");
-    app.add_option("--free", o.free, "what to estimate beside the normal")->delimiter(',')
+    app.add_option("--free", o.free, "what to estimate beside the normal, or the centre")->delimiter(',')
         ->check(CLI::IsMember(namesOf(FREE)));
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
@@ -322,6 +338,70 @@ void takeIndices(const Options& o, RigOptions& rig)
     rig.window.materials.push_back(rig.outer.material);
 }
 
+cv::Vec3d parseVector(const std::string& text, const char* option)
+{
+    const std::vector<double> numbers = parseNumbers(text, option);
+    if (numbers.size() != 3)
+        throw Failure(std::string(option) + "=" + text + ": give three numbers, X,Y,Z in the camera's frame (x to the right, y down, "
+                      "z ahead)");
+    return cv::Vec3d(numbers.data());
+}
+
+//! Options and flags of what windows of this shape do not have.
+void requireShape(const Options& o, int flags)
+{
+    const bool isRoundWindow = o.shape == "dome" || o.shape == "tube";
+    const std::string shape = "--window=" + o.shape;
+    if (!isRoundWindow)
+    {
+        if (o.radius > 0. || flags & GLASS_FREE_RADIUS)
+            throw Failure("--radius and --free=radius are of a dome or tube, and --window is " + o.shape + ": add --window=dome or "
+                          "--window=tube, or leave them out");
+        if (!o.center.empty() || !o.axis.empty())
+            throw Failure("--center and --axis are of a dome or tube, and --window is " + o.shape + ": add --window=dome or --window=tube, "
+                          "or leave them out");
+        return;
+    }
+    if (!(o.radius > 0.))
+        throw Failure(shape + " needs --radius, of its inner face");
+    if (o.distanceGiven || flags & GLASS_FREE_DISTANCE)
+        throw Failure("--distance is of a flat window: where a " + o.shape + " is, its centre says, which is estimated (--center: where to "
+                      "start); leave it out");
+    if (flags & GLASS_FREE_WEDGE)
+        throw Failure("--free=wedge is of a flat window: the faces of a " + o.shape + " have one centre; leave it out");
+    if (flags & GLASS_FREE_CURVATURE)
+        throw Failure("--free=curvature is of a flat window; for a " + o.shape + " say --free=radius");
+    if (o.limits.normalStdDeg > 0.)
+        throw Failure("--max-normal-std is of a flat window, and a " + o.shape + " has no normal: limit the error of points, "
+                      "--max-error-at");
+    if (o.shape == "tube" && o.axis.empty())
+        throw Failure("--window=tube needs --axis, roughly the direction of its axis in the camera's frame: 0,1,0 if it is upright");
+    if (o.shape == "dome" && !o.axis.empty())
+        throw Failure("--axis is of a tube; a dome has none: leave it out");
+}
+
+//! Where a dome or tube is, to start from.
+void takePlace(const Options& o, GlassWindow& window)
+{
+    if (!isRound(window))
+        return;
+    window.radius = o.radius;
+    if (!o.center.empty())
+        window.center = parseVector(o.center, "--center");
+    if (!o.axis.empty())
+    {
+        const cv::Vec3d axis = parseVector(o.axis, "--axis");
+        if (!(cv::norm(axis) > 0.))
+            throw Failure("--axis=" + o.axis + ": that is no direction; give 0,1,0 for an upright tube");
+        window.axis = cv::normalize(axis);
+    }
+    const double offset = offsetOf(window);
+    if (!(offset < window.radius))
+        throw Failure("--center=" + o.center + format(": there the camera would be %g from the %s of the %s, outside its radius of %g: "
+                      "give the centre in the camera's frame, nearer than the radius", offset, o.shape == "dome" ? "centre" : "axis",
+                      o.shape.c_str(), window.radius));
+}
+
 //! Standard deviations of what is given.
 void takeStd(const Options& o, const Target* target, RigOptions& rig)
 {
@@ -330,23 +410,33 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.outer = rig.outer;
     given.equalMedia = rig.window.innerIndex == rig.window.outerIndex;
     given.distance = o.distanceGiven;
+    given.shape = rig.window.shape;
     given.square = target ? target->square() : 0.;
     given.millimetre = 1./millimetresIn(o.unit);
     given.flags = rig.flags;
     rig.std = o.std.of(given);
     if (rig.std.wedge > 0. || rig.flags & GLASS_FREE_WEDGE)
         rig.window.wedge.assign(rig.window.thickness.size(), cv::Vec2d());
+    const bool isBowed = rig.std.curvature > 0. || rig.flags & GLASS_FREE_CURVATURE;
+    if (isBowed)
+        rig.window.shape = WINDOW_BENT;
+    if (o.shape == "bent" && !isBowed)
+        throw Failure("--window=bent: say how much it may be bent, --bow-std=2 for 2 mm of sag per metre (tempered plate), or "
+                      "--free=curvature");
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
 void readWindow(const Options& o, RigOptions& rig)
 {
     GlassWindow& window = rig.window;
+    window.shape = o.shape == "bent" ? (int)WINDOW_FLAT : SHAPES.at(o.shape);       // takeStd() bends it
     if (!o.thickness.empty())
         window.thickness = parseNumbers(o.thickness, "--thickness");
     takeIndices(o, rig);
     for (const std::string& name : o.free)
         rig.flags |= FREE.at(name);
+    requireShape(o, rig.flags);
+    takePlace(o, window);
     rig.windows = readWindowsOfCameras(o);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
@@ -364,7 +454,7 @@ void readWindow(const Options& o, RigOptions& rig)
     if (equalMedia && (rig.flags & GLASS_FREE_DISTANCE))
         throw Failure("--free=distance: with the same medium on both sides of the window the distance has exactly no effect "
                       "on the image and cannot be found; leave it out");
-    if (!equalMedia && !o.distanceGiven)
+    if (!equalMedia && !o.distanceGiven && !isRound(window))
         rig.flags |= GLASS_FREE_DISTANCE;
     window.distance = o.distance;
     window.check();

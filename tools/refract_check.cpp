@@ -30,6 +30,7 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 
 #include "assess/new_pane.hpp"
 #include "assess/rig_check.hpp"
+#include "calibrate/window_face.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
@@ -213,6 +214,12 @@ int imagesNeeded(const WindowCheck& window, const CheckResult& result, double de
     return 0;
 }
 
+//! --detect of a centre, as a length.
+std::string detected(const WindowCheck& window, const Options& o)
+{
+    return format("%.3g (%g deg, as seen from a radius away)", o.detect*window.lengthPerDegree, o.detect);
+}
+
 //! Empty, or why the images do not tell.
 std::string whyNot(const CheckResult& result, const Options& o, const CheckInput& input)
 {
@@ -230,8 +237,10 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
         const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times,
             pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
-        return noisy + format("camera %d: these images would show a tilt of %g deg with a probability of only %.0f %%, so 'unchanged' "
-                              "cannot be said; ", window.camera + 1, o.detect, 100.*power) + more + "ask for a larger --detect";
+        const std::string change = window.lengthPerDegree > 0. ? "a motion of the centre by " + detected(window, o)
+                                                               : format("a tilt of %g deg", o.detect);
+        return noisy + format("camera %d: these images would show %s with a probability of only %.0f %%, so 'unchanged' "
+                              "cannot be said; ", window.camera + 1, change.c_str(), 100.*power) + more + "ask for a larger --detect";
     }
     if (result.windows.empty())
         return "the images do not tell where any window is: take a pair without and with the window, or more images";
@@ -270,10 +279,18 @@ nlohmann::ordered_json jsonOf(const CheckResult& result, const Options& o, const
 {
     nlohmann::ordered_json windows = nlohmann::ordered_json::array(), changes = nlohmann::ordered_json::array();
     for (const WindowCheck& w : result.windows)
-        windows.push_back({{"camera", w.camera + 1}, {"moved", w.moved}, {"tilt_deg", numberOrNull(w.tiltDeg)},
-                           {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}}, {"probability_if_unchanged", w.probability},
-                           {"normal", {w.normal[0], w.normal[1], w.normal[2]}},
-                           {"detection_probability", powerOf(w, result, o.detect)}});
+    {
+        nlohmann::ordered_json json = {{"camera", w.camera + 1}, {"moved", w.moved}};
+        if (w.lengthPerDegree > 0.)
+            json.update({{"center_moved_by", numberOrNull(w.lengthPerDegree*w.tiltDeg)},
+                         {"center_std", {w.lengthPerDegree*w.stdDeg[0], w.lengthPerDegree*w.stdDeg[1]}},
+                         {"center", {w.center[0], w.center[1], w.center[2]}}});
+        else
+            json.update({{"tilt_deg", numberOrNull(w.tiltDeg)}, {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}},
+                         {"normal", {w.normal[0], w.normal[1], w.normal[2]}}});
+        json.update({{"probability_if_unchanged", w.probability}, {"detection_probability", powerOf(w, result, o.detect)}});
+        windows.push_back(json);
+    }
     for (const NamedChange& change : result.changes)
         changes.push_back(jsonOf(change));
     return {
@@ -303,13 +320,19 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
 {
     if (result.changed)
         printCause(result);
-    Table table({"", "tilt, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect), ""},
-                SCREEN);
+    const bool anyCentre = std::any_of(result.windows.begin(), result.windows.end(), [](const auto& w) { return w.lengthPerDegree > 0.; });
+    Table table({"", anyCentre ? "moved" : "tilt, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect),
+                 ""}, SCREEN);
     for (const WindowCheck& w : result.windows)
-        table.add({format("window of camera %d", w.camera + 1), w.tiltDeg == w.tiltDeg ? format("%.4f", w.tiltDeg) : "-",
-                   format("%.2g, %.2g", w.stdDeg[0], w.stdDeg[1]), format("%.2g", w.probability),
+    {
+        const bool isCentre = w.lengthPerDegree > 0.;
+        const double factor = isCentre ? w.lengthPerDegree : 1.;
+        table.add({format("%s of camera %d", isCentre ? nameOfShape(input.rig.cameras[w.camera]->window()) : "window", w.camera + 1),
+                   w.tiltDeg == w.tiltDeg ? format("%.4f", factor*w.tiltDeg) : "-",
+                   format("%.2g, %.2g", factor*w.stdDeg[0], factor*w.stdDeg[1]), format("%.2g", w.probability),
                    format("%.1f %%", 100.*powerOf(w, result, o.detect)),
                    w.moved ? "moved" : result.changed ? "not the cause" : "no sign of it"});
+    }
     if (!result.windows.empty())
         table.print(std::cout);
     std::cout << '\n';

@@ -14,7 +14,7 @@
 #include <map>
 #include <memory>
 
-static const char MANUAL[] = R"(Renders images of a calibration target or a textured scene seen through flat windows, and the truth.
+static const char MANUAL[] = R"(Renders images of a calibration target or a textured scene seen through windows, and the truth.
 
   refract_simulate RIG.yml --out-dir=DIR
 
@@ -35,6 +35,8 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
   camera1: { image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window }
   camera2: { ... }       # as in calib.yml, up to camera16; one camera: its keys at top level instead
   R, T                   # camera 1 -> camera 2; R3, T3: camera 1 -> camera 3; ...
+                         # a window that is not flat: glass_window: { shape: dome, center: [3., 0., 5.], radius: 50., thickness: [5.],
+                         # index: [1.49] }, { shape: tube, ..., axis: [0., 1., 0.] }, or { shape: bent, curvature: 1.6e-5, normal ... }
   exposure: { dark: 35., light: 205., background: 110., blur: 0.7, noise: 2., vignetting: 0.2 }
   seed: 1
   channels: [610., 540., 465.]   # wavelengths of red, green and blue, nm: colour images, each colour bent as the window's

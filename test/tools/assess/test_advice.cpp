@@ -31,5 +31,5 @@ TEST_CASE("No image is advised where a board would be before the window", "[advi
     const Advice advice = adviseImages(c);
     CHECK_FALSE(advice.pairs.empty());
     for (const PlannedImage& image : advice.pairs)
-        CHECK(image.quality.normalStdDeg[0] <= advice.now.normalStdDeg[0]);
+        CHECK(image.quality.placeStd[0] <= advice.now.placeStd[0]);
 }

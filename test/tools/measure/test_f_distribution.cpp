@@ -17,7 +17,10 @@ TEST_CASE("The tail of F agrees with its tables", "[f_distribution]")
     CHECK(upperTailF(600, 1e8, 1e6) == 0.);
     for (double v : {3., 40., 2744., 1e8})
         for (double p : {0.5, 0.01, 1e-9})
-            CHECK(upperTailF(1, v, quantileF2(v, p)) == Approx(p).epsilon(1e-6));
+        {
+            CHECK(upperTailF(1, v, quantileF(2, v, p)) == Approx(p).epsilon(1e-6));
+            CHECK(upperTailAnyF(3, v, quantileF(3, v, p)) == Approx(p).epsilon(1e-6));
+        }
 }
 
 TEST_CASE("The tail of F with an odd number of degrees of freedom agrees with its tables", "[f_distribution]")
@@ -38,7 +41,7 @@ TEST_CASE("The tail of the noncentral F agrees with a simulation", "[f_distribut
     std::cout << "seed " << scenes::seed() << '\n';
     const int v = 20, trials = 40000;
     const double lambda = 6., x = 3.;
-    int above = 0;
+    int above = 0, aboveOfThree = 0;
     for (int i = 0; i < trials; i++)
     {
         double chi = 0.;
@@ -46,8 +49,10 @@ TEST_CASE("The tail of the noncentral F agrees with a simulation", "[f_distribut
             chi += std::pow(random.normal(1), 2);
         const double a = random.normal(1) + std::sqrt(lambda), b = random.normal(1);
         above += 0.5*(a*a + b*b) > x*chi/v;
+        aboveOfThree += (a*a + b*b + std::pow(random.normal(1), 2))/3. > x*chi/v;
     }
-    CHECK(upperTailNoncentralF2(v, lambda, x) == Approx((double)above/trials).margin(0.01));
-    CHECK(upperTailNoncentralF2(v, 0., x) == Approx(upperTailF(1, v, x)));
-    CHECK(upperTailNoncentralF2(1e8, 1e4, x) == Approx(1.));
+    CHECK(upperTailNoncentralF(2, v, lambda, x) == Approx((double)above/trials).margin(0.01));
+    CHECK(upperTailNoncentralF(3, v, lambda, x) == Approx((double)aboveOfThree/trials).margin(0.01));
+    CHECK(upperTailNoncentralF(2, v, 0., x) == Approx(upperTailF(1, v, x)));
+    CHECK(upperTailNoncentralF(2, 1e8, 1e4, x) == Approx(1.));
 }

@@ -355,25 +355,6 @@ TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][
                   + TARGET + " --pixel-sigma=0.014").code == 0);
 }
 
-TEST_CASE("A camera behind a dome is refused by the tools, which take flat windows only", "[tools][measure]")
-{
-    const TemporaryFolder folder;
-    std::ofstream(folder / "dome.yml") << "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 1024\n"
-        "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 1000., 0., 640., 0., 1000., 512., 0., 0., 1. ]\n"
-        "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n   data: [ 0., 0., 0., 0. ]\nlens_model: opencv\n"
-        "glass_window: { shape: dome, center: [ 1., 2., 3. ], radius: 50., thickness: 7., index: 1.5, outer_index: 1.333 }\n";
-    const std::string file = folder / "dome.yml", first = image("measure1/z600_1");
-    for (const std::string& command : { "refract_measure " + file + " " + first + TARGET,
-                                        "refract_undistort " + file + " " + first + " --depth=600 --out-dir=" + (folder / "out"),
-                                        "refract_check " + file + TARGET + " --pixel-sigma=0.014 --glass=" + first })
-    {
-        const ToolResult r = runTool(command);
-        INFO(command << "\n" << r.out << r.err);
-        CHECK(r.code == 1);
-        CHECK(mentions(r.err, "has a camera behind a dome; the tools take flat windows only"));
-    }
-}
-
 TEST_CASE("A calibration that lacks something is not taken silently", "[tools][measure]")
 {
     const TemporaryFolder folder;

@@ -47,7 +47,7 @@ public:
         const MatrixXd covariance = withTargets.topLeftCorner(parameters, parameters);
         Quality quality;
         for (int k = 0; k < c_.data.cameraCount; k++)
-            quality.normalStdDeg.push_back(normalStdDeg(toMat(covariance), c_.fit.rig, k)[0]);
+            quality.placeStd.push_back(placeStd(toMat(covariance), c_.fit.rig, k));
         Calibration calibration = calibrationOf(c_.fit.rig);
         calibration.covariance = toMat(covariance);
         const Vec3d depth = workingDepth(c_, 0);

@@ -13,7 +13,7 @@ namespace tools {
 //! The quality of a calibration, in two numbers.
 struct Quality
 {
-    std::vector<double> normalStdDeg;   //!< of each window, larger principal one
+    std::vector<double> placeStd;       //!< of each window: of its normal, degrees, or of its centre; larger principal one
     double worstPoint = NONE;           //!< expected error of the worst point of the working volume, see point_error.hpp
     double calibrationPart = NONE;      //!< the part of it that better calibration removes, RMS over the volume
 };

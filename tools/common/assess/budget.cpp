@@ -68,8 +68,15 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     };
     add("thickness", std.thickness.text(length), own.thickness, own.layers);
     add("index", indices, own.index, own.layers);
-    add("wedge", std.wedge.text("'", 1./ARC_MINUTE), own.wedge, own.end - own.wedge);
-    add("distance", std.distance.text(length), own.distance, 1);
+    add("wedge", std.wedge.text("'", 1./ARC_MINUTE), own.wedge, own.curvature - own.wedge);
+    const auto addIf = [&](const std::string& name, const std::string& given, int column, int count) {
+        if (own.has(column))
+            add(name, given, column, count);
+    };
+    addIf("distance", std.distance.text(length), own.distance, 1);
+    addIf("radius", std.radius.text(length), own.radius, 1);
+    addIf("centre", std.center.text(length), own.center, 3);
+    addIf("bow", std.bow.text(" mm per m"), own.curvature, 1);
     add(INDEX_OF_MEDIUM, std.outerIndex.text(""), own.outerIndex, 1);
     return sources;
 }

@@ -4,6 +4,7 @@
 #include "assess/change.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,24 @@ void moveWindow(RigModel& rig, int owner, double tilt1, double tilt2, double nea
                 window.distance = std::max(0., window.distance + nearer - (n - n0).dot(centre));
             });
         }
+}
+
+/* A centre moves as a point of its first camera's frame; of a tube, whose axis turns about it, across the axis. */
+void moveCentre(RigModel& rig, int owner, const Vec3d& by)
+{
+    for (int k = 0; k < (int)rig.cameras.size(); k++)
+        if (rig.sharesWindow(owner, k))
+            changeWindow(rig, k, [&](GlassWindow& window) {
+                window.center += fromTo(rig.extrinsics[owner], rig.extrinsics[k]).R*by; });
+}
+
+void turnAxis(RigModel& rig, int owner, const Vec3d& by)
+{
+    const Vec3d axis = rig.cameras[owner]->window().axis;
+    for (int k = 0; k < (int)rig.cameras.size(); k++)
+        if (rig.sharesWindow(owner, k))
+            changeWindow(rig, k, [&](GlassWindow& window) {
+                window.axis = normalize(fromTo(rig.extrinsics[owner], rig.extrinsics[k]).R*(axis + by)); });
 }
 
 bool hasTwoMedia(const RigModel& rig, int c)
@@ -112,7 +131,7 @@ private:
         rows.back().chartFactor = sign*rows.back().quantities[0].factor;
     }
 
-    //! "window", or "window of camera 2", or "window of cameras 1, 2".
+    //! "window", or "window of camera 2", or "dome of cameras 1, 2".
     std::string windowName(int c) const
     {
         std::string cameras;
@@ -120,7 +139,8 @@ private:
         for (int k = 0; k < count_; k++)
             if (rig_.sharesWindow(c, k))
                 cameras += (sharing++ ? ", " : "") + std::to_string(k + 1);
-        return count_ == 1 ? "window" : "window of camera" + std::string(sharing > 1 ? "s " : " ") + cameras;
+        const std::string window = isRound(rig_.cameras[c]->window()) ? nameOfShape(rig_.cameras[c]->window()) : "window";
+        return count_ == 1 ? window : window + " of camera" + std::string(sharing > 1 ? "s " : " ") + cameras;
     }
 
     void addWindow(int c)
@@ -129,6 +149,11 @@ private:
             return;
         const GlassWindow window = rig_.cameras[c]->window();
         const std::string name = windowName(c);
+        if (isRound(window))
+        {
+            addRound(c, window, name);
+            return;
+        }
         add(name + " tilted by", c, {angle(2)}, [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], 0.); });
         rows.back().isTilt = true;
         chart(name + ": tilt", {"x", "y"}, -1.);        // moveWindow's axes point against the image's
@@ -148,6 +173,27 @@ private:
                                                 [&](int w) { return w == rig_.windows[c]; }) <= 1;
         if (!window.wedge.empty() && isAlone)
             addWedge(c, name);
+    }
+
+    //! A dome's centre along the camera's axes, a tube's across its own.
+    void addRound(int c, const GlassWindow& window, const std::string& name)
+    {
+        const bool isTube = window.shape == WINDOW_TUBE;
+        const Vec3d u = isTube ? normalize(std::abs(window.axis[0]) < 0.7 ? Vec3d(1, 0, 0) - window.axis[0]*window.axis
+                                                                         : Vec3d(0, 1, 0) - window.axis[1]*window.axis) : Vec3d(1, 0, 0);
+        const Vec3d v = isTube ? window.axis.cross(u) : Vec3d(0, 1, 0);
+        const auto shift = [=](const VectorXd& d) { return d[0]*u + d[1]*v + (isTube ? 0. : d[2])*Vec3d(0, 0, 1); };
+        add(name + (isTube ? " moved across its axis by" : " moved by"), c, {length(isTube ? 2 : 3, WIDE*window.radius)},
+            [c, shift](RigModel& rig, const VectorXd& d) { moveCentre(rig, c, shift(d)); });
+        rows.back().isShift = true;
+        chart(name + ": centre", isTube ? std::vector<std::string>{"1", "2"} : std::vector<std::string>{"x", "y", "z"});
+        if (isTube)
+            add("axis of the " + name + " turned by", c, {angle(2)}, [c, u, v](RigModel& rig, const VectorXd& d) {
+                turnAxis(rig, c, d[0]*u + d[1]*v); });
+        add("radius of the " + name + " changed by", c, {length(1, WIDE*window.radius)},
+            [c](RigModel& rig, const VectorXd& d) { changePane(rig, c, [&](GlassWindow& w) { w.radius += d[0]; }); });
+        for (size_t i = 0; i < window.thickness.size(); i++)
+            addLayer(c, i, window, name);
     }
 
     void addLayer(int c, size_t i, const GlassWindow& window, const std::string& name)

@@ -4,6 +4,7 @@
 #include "assess/check_input.hpp"
 #include "measure/measurement.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 
 using namespace cv;
@@ -15,7 +16,7 @@ namespace {
 
 const double EXACT = 1e8;       // degrees of freedom of a noise level that is given
 
-//! Where each column of one rig is in another that has wedges: these are the last of a camera.
+//! Where each column of one rig is in another that has wedges: after these a camera has only its curvature.
 std::vector<int> columnsIn(const RigModel& from, const RigModel& to)
 {
     std::vector<int> columns;
@@ -23,41 +24,13 @@ std::vector<int> columnsIn(const RigModel& from, const RigModel& to)
     {
         const ParameterColumns old = columnsOf(from, k), now = columnsOf(to, k);
         for (int i = old.lens; i < old.end; i++)
-            columns.push_back(now.lens + i - old.lens);
+            columns.push_back(i < old.curvature ? now.lens + i - old.lens : now.curvature);
     }
     for (int i = 0; i < 6*((int)from.cameras.size() - 1); i++)
         columns.push_back(extrinsicsColumn(to, 1) + i);
     for (int i = 0; i < TARGET_ERRORS && !from.targetCovariance.empty(); i++)
         columns.push_back(columnCount(to) + i);
     return columns;
-}
-
-VectorXd windowParameters(const GlassWindow& window)
-{
-    std::vector<double> p(window.normal.val, window.normal.val + 3);
-    p.push_back(window.distance);
-    p.insert(p.end(), window.thickness.begin(), window.thickness.end());
-    p.insert(p.end(), window.index.begin(), window.index.end());
-    p.insert(p.end(), {window.innerIndex, window.outerIndex});
-    for (const Vec2d& wedge : window.wedge)
-        p.insert(p.end(), {wedge[0], wedge[1]});
-    return Eigen::Map<VectorXd>(p.data(), p.size());
-}
-
-GlassWindow withWindowParameters(GlassWindow window, const double* p)
-{
-    window.normal = normalize(Vec3d(p));
-    window.distance = p[3];
-    p += 4;
-    for (std::vector<double>* values : {&window.thickness, &window.index})
-        for (double& value : *values)
-            value = *p++;
-    window.innerIndex = *p++;
-    window.outerIndex = *p++;
-    for (Vec2d& wedge : window.wedge)
-        for (double& angle : wedge.val)
-            angle = *p++;
-    return window;
 }
 
 VectorXd motionParameters(const RigidTransform& transform)
@@ -96,6 +69,8 @@ CheckInput withWedges(const CheckInput& input)
     for (const Ptr<RefractiveCamera>& camera : result.rig.cameras)
     {
         GlassWindow window = camera->window();
+        if (isRound(window))
+            continue;
         window.wedge.resize(window.thickness.size());
         camera->setWindow(window);
     }
@@ -129,7 +104,7 @@ VectorXd parametersOf(const RigModel& rig)
     {
         const ParameterColumns at = columnsOf(rig, c);
         p.segment(at.lens, at.lensCount) = toEigen(rig.cameras[c]->lensParameters());
-        p.segment(at.normal, at.end - at.normal) = windowParameters(rig.cameras[c]->window());
+        putWindow(rig.cameras[c]->window(), at, p.data());
         if (c > 0)
             p.segment(extrinsicsColumn(rig, c), 6) = motionParameters(rig.extrinsics[c]);
     }
@@ -145,7 +120,7 @@ void setParameters(RigModel& rig, const VectorXd& p)
         const ParameterColumns at = columnsOf(rig, c);
         const VectorXd lens = p.segment(at.lens, at.lensCount);
         rig.cameras[c]->setLensParameters(toMat(lens));
-        rig.cameras[c]->setWindow(withWindowParameters(rig.cameras[c]->window(), p.data() + at.normal));
+        rig.cameras[c]->setWindow(windowOf(rig.cameras[c]->window(), at, p.data()));
         if (c > 0)
             rig.extrinsics[c] = motionOf(p.data() + extrinsicsColumn(rig, c));
     }

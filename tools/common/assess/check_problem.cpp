@@ -181,8 +181,9 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
         fit.covariance = directions*inverse.solve(MatrixXd::Identity(n + k, n + k)).bottomRightCorner(k, k)*directions.transpose();
         const CheckFit last = fit;
         const VectorXd lastEta = eta;
+        bool isBetter = false;
         double share = 1.;
-        for (int halving = 0; halving < HALVINGS; halving++, share *= 0.5)
+        for (int halving = 0; !isBetter && halving < HALVINGS; halving++, share *= 0.5)
         {
             fit = last;
             eta = lastEta + share*step.tail(k);
@@ -199,8 +200,13 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
             {
                 rows.squares = std::numeric_limits<double>::infinity();
             }
-            if (rows.isFinite() && objective(rows, fit.q) <= before)
-                break;
+            isBetter = rows.isFinite() && objective(rows, fit.q) <= before;
+        }
+        if (!isBetter && !rows.isFinite())      // beyond what can be: no farther than here
+        {
+            fit = last;
+            fit.chiSquare = before;
+            return fit;
         }
         fit.chiSquare = after;
         if (before - after < CONVERGED + 1e-9*before)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/findings.hpp"
+#include "assess/round_window.hpp"
+#include "calibrate/window_face.hpp"
 #include "measure/f_distribution.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -21,6 +23,7 @@ namespace {
 
 // Where a finding begins. They only choose words; no number depends on them.
 const double WEAK_NORMAL_DEG = 0.1;
+const double WEAK_CENTRE = 0.01;            // of a dome's radius
 const double WEAK_RELATIVE = 0.1;           // of thickness or distance
 const double WEAK_INDEX = 0.01;
 const double TELLING_RATIO = 1.5;           // of the normal's deviation to that of the noise alone
@@ -105,11 +108,23 @@ double normalStdOfNoise(const RigCalibration& c, int camera)
 {
     const ParameterColumns at = columnsOf(c.fit.rig, camera);
     std::vector<int> known;
-    for (int i = at.wedge; i < at.end; i++)
+    for (int i = at.wedge; i < at.curvature; i++)
         known.push_back(i);
     for (int i = c.fit.covariance.rows + 1; i < c.fit.withTargets.rows; i++)
         known.push_back(i);
     return normalStdDeg(conditional(c.fit, known), c.fit.rig, camera)[0];
+}
+
+//! What its faces are taken to be.
+std::string shapeWords(const RigCalibration& c)
+{
+    switch (c.fit.rig.cameras[0]->window().shape)
+    {
+    case WINDOW_DOME: return "spherical";
+    case WINDOW_TUBE: return "cylindrical";
+    case WINDOW_BENT: return "flat or bent like a sphere";
+    default: return "flat";
+    }
 }
 
 void checkTilt(const RigCalibration& c, int camera, Collected& f)
@@ -133,12 +148,34 @@ void checkTilt(const RigCalibration& c, int camera, Collected& f)
                                ofNoise));
 }
 
+//! Of a dome or tube.
+void checkCentre(const RigCalibration& c, int camera, Collected& f)
+{
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const RoundWindow round = *roundWindowOf(c, camera);
+    const std::string middle = round.shape == "dome" ? "centre" : "axis";
+    const double std = placeStd(c.fit.covariance, c.fit.rig, camera);
+    if (round.isNeedless())
+        f.cannotTell.push_back(of(c, camera) + round.needless(c.unit));
+    else if (std > WEAK_CENTRE*window.radius)
+        f.add(A_PARAMETER, of(c, camera) + format("the %s's %s is uncertain by %.2g %s: ", round.shape.c_str(), middle.c_str(), std,
+                                                  c.unit.c_str())
+              + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
+                 : "take pairs (the board not moved between an image without and one with the " + round.shape + ")"));
+    if (c.options.flags & GLASS_FREE_RADIUS && windowStd(c.fit, camera).radius > WEAK_RELATIVE*window.radius)
+        f.add(A_PARAMETER, of(c, camera) + format("the radius is weakly determined: %.4g +- %.2g %s; give that of the drawing by --radius",
+                                                  window.radius, windowStd(c.fit, camera).radius, c.unit.c_str()));
+}
+
 void checkWindow(const RigCalibration& c, int camera, Collected& f)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const WindowStd std = windowStd(c.fit, camera);
-    checkTilt(c, camera, f);
-    if (std.distance > WEAK_RELATIVE*window.distance)
+    if (isRound(window))
+        checkCentre(c, camera, f);
+    else
+        checkTilt(c, camera, f);
+    if (!isRound(window) && std.distance > WEAK_RELATIVE*window.distance)
         f.add(A_PARAMETER, of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
                                                 "strongly tilted boards at the image's border help",
                                                 window.distance, std.distance, c.unit.c_str()));
@@ -155,7 +192,7 @@ void checkWindow(const RigCalibration& c, int camera, Collected& f)
     const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (other && !other->isExcluded())
         f.add(THE_DATA, of(c, camera) + other->sentence());
-    if (equalMedia(window))
+    if (equalMedia(window) && !isRound(window))
         f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
                                "has exactly no effect on the image (and is not needed)");
 }
@@ -181,7 +218,7 @@ bool isWedge(const RigCalibration& c, const EstimatedParameter& p)
     for (int k = 0; k < c.data.cameraCount; k++)
     {
         const ParameterColumns at = columnsOf(c.fit.rig, k);
-        if (p.column >= at.wedge && p.column < at.end)
+        if (p.column >= at.wedge && p.column < at.curvature)
             return true;
     }
     return false;
@@ -231,7 +268,7 @@ void checkFit(const RigCalibration& c, int camera, Collected& f)
     if (c.data.countPairs(camera) && std::max(glass.px, direct.px) > MISFIT_RATIO*alone)
         f.add(THE_FIT, of(c, camera) + format("direct images and images through the window do not agree (%.3f and %.3f px "
                          "together, direct alone %.3f px): check thickness and index, whether the board moved within a pair, "
-                         "and whether the window is flat", direct.px, glass.px, alone));
+                         "and whether the window is %s", direct.px, glass.px, alone, shapeWords(c).c_str()));
     const double through = c.baselines.throughGlass[camera];
     if (glass.px > MISFIT_RATIO*through)
         f.add(THE_FIT, of(c, camera) + format("a pinhole camera calibrated through the window fits these images better "
@@ -279,12 +316,13 @@ void checkViews(const RigCalibration& c, int camera, Collected& f)
                                  "the image, leave it out if corners are wrong", c.data.views[view.second].stem.c_str(),
                                  glass ? "through the window" : "direct", view.first, median));
     }
-    const double sigma = windowStd(c.fit, camera).normalDeg[0];
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const double sigma = placeStd(c.fit.covariance, c.fit.rig, camera);
     for (const Influence& influence : c.influences)
-        if (influence.turnDeg[camera] > INFLUENTIAL*sigma)
-            f.add(AN_IMAGE, of(c, camera) + format("view '%s' alone turns the normal by %.3f deg, %.1f standard deviations",
-                             c.data.views[influence.view].stem.c_str(), influence.turnDeg[camera],
-                             influence.turnDeg[camera]/sigma));
+        if (influence.change[camera] > INFLUENTIAL*sigma)
+            f.add(AN_IMAGE, of(c, camera) + format("view '%s' alone %s by %.3f %s, %.1f standard deviations",
+                             c.data.views[influence.view].stem.c_str(), isRound(window) ? "moves the centre" : "turns the normal",
+                             influence.change[camera], placeUnit(window, c.unit).c_str(), influence.change[camera]/sigma));
 }
 
 bool isLensFree(const RigCalibration& c, int camera)
@@ -324,7 +362,7 @@ void checkHeldOut(const RigCalibration& c, Collected& f)
     if (upperTailF(pairsOfDirections, c.fit.dof, perDirection) < HELD_OUT_CHANCE)
         f.add(THE_STATED_ERROR, format("the errors on held-out boards are %.1f times as large as the calibration's +- says: the stated "
                                 "uncertainties are too small. A given value, the lens model or the target may be wrong, or "
-                                "the window not flat", std::sqrt(perDirection)));
+                                "the window not %s", std::sqrt(perDirection), shapeWords(c).c_str()));
 }
 
 //! What a tape measure can tell.
@@ -353,6 +391,17 @@ std::string listOf(const std::vector<double>& values)
     return text;
 }
 
+std::string shapeAssumed(const GlassWindow& window)
+{
+    switch (window.shape)
+    {
+    case WINDOW_DOME: return ", a dome of spheres about one centre";
+    case WINDOW_TUBE: return ", a tube of cylinders about one axis";
+    case WINDOW_BENT: return ", a window bent like a sphere";
+    default: return window.wedge.empty() ? ", a flat window with parallel surfaces" : ", a flat window";
+    }
+}
+
 void checkAssumptions(const RigCalibration& c, Findings& f)
 {
     for (int k = 0; k < c.data.cameraCount; k++)
@@ -376,7 +425,9 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
     for (const GivenIndex& index : indices)
         if (index.isNamed() && std::find(f.assumed.begin(), f.assumed.end(), index.sentence()) == f.assumed.end())
             f.assumed.push_back(index.sentence());
-    if (!equalMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.)
+    if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS) && c.options.std.radius == 0.)
+        f.assumed.push_back("the radius, " + listOf({window.radius}) + " " + c.unit);
+    if (!equalMedia(window) && !isRound(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.)
         f.assumed.push_back("the distance, " + listOf({window.distance}) + " " + c.unit);
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.data.countPairs(k) && c.options.std.placement == 0.)
@@ -385,7 +436,7 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
     if (!c.outliers.fault.empty())
         f.assumed.push_back("that no point is wrong: they could not be looked for, as " + c.outliers.fault);
     f.assumed.push_back(std::string(c.square > 0 ? "a flat board with even spacing" : "a rigid target that is as its coordinates say")
-                        + (c.fit.rig.cameras[0]->window().wedge.empty() ? ", a flat window with parallel surfaces" : ", a flat window")
+                        + shapeAssumed(c.fit.rig.cameras[0]->window())
                         + ", and independent corner noise");
 }
 

@@ -38,7 +38,7 @@ CheckInput withNewPanes(const CheckInput& input, const PaneStd& std)
             replaceVariance(result.covariance, at.thickness + i, 2.*std.thickness*std.thickness);
             replaceVariance(result.covariance, at.index + i, 2.*std.index*std.index);
         }
-        for (int i = at.wedge; i < at.end; i++)
+        for (int i = at.wedge; i < at.curvature; i++)
             replaceVariance(result.covariance, i, std.wedge*std.wedge);
     }
     return result;

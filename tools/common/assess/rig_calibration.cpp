@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/rig_calibration.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -55,9 +56,9 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera)
 
 std::string SecondSolution::sentence() const
 {
-    return format("a second solution fits nearly as well: normal (%.4f, %.4f, %.4f), RMS %.4f px against %.4f px (%.1f standard "
-                  "deviations worse; below 3 the data do not exclude it). Take a pair, or boards at other tilts", normal[0],
-                  normal[1], normal[2], rms, fitRms, excess);
+    return format("a second solution fits nearly as well: %s (%.4f, %.4f, %.4f), RMS %.4f px against %.4f px (%.1f standard "
+                  "deviations worse; below 3 the data do not exclude it). Take a pair, or boards at other tilts", of.c_str(),
+                  normal[0], normal[1], normal[2], rms, fitRms, excess);
 }
 
 std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, int camera)
@@ -67,17 +68,18 @@ std::optional<SecondSolution> secondSolution(const RigCalibration& calibration, 
     if (std::isnan(excess))
         return std::nullopt;
     const Vec3d normal(row.ptr<double>());
+    const std::string of = placeName(calibration.fit.rig.cameras[camera]->window());
     const auto rmsWith = [&](double rms, double dof) { return rms*std::sqrt(1. + excess*excess/dof); };
     // The search that knows of it had all images where none is direct;
     const Fit& fit = calibration.fit;
     if (std::none_of(calibration.residuals.begin(), calibration.residuals.end(), [](const Residual& r) { return !r.glass; }))
-        return SecondSolution{normal, excess, rmsWith(fit.rms, fit.dof), fit.rms};
+        return SecondSolution{normal, of, excess, rmsWith(fit.rms, fit.dof), fit.rms};
     // else those of one camera, that with most points, and their poses and the normal to fit.
     Rms seen = rmsOf(calibration, camera, true);
     for (int other = 0; other < calibration.data.cameraCount; other++)
         if (fit.rig.sharesWindow(camera, other) && rmsOf(calibration, other, true).points > seen.points)
             seen = rmsOf(calibration, other, true);
-    return SecondSolution{normal, excess, rmsWith(seen.px, 2.*seen.points - 6.*seen.views - 2.), seen.px};
+    return SecondSolution{normal, of, excess, rmsWith(seen.px, 2.*seen.points - 6.*seen.views - 2.), seen.px};
 }
 
 double coverage(const RigCalibration& calibration, int camera)

@@ -81,7 +81,8 @@ Rms rmsOfCamera(const RigCalibration& calibration, int camera);
 //! Another tilt of a window that has a minimum of its own: its images through the window alone do not exclude it.
 struct SecondSolution
 {
-    cv::Vec3d normal;
+    cv::Vec3d normal;           //!< of a dome or tube its centre
+    std::string of;             //!< "normal", "centre"
     double excess;              //!< root of the difference of the squared errors, in standard deviations of a pixel
     double rms;                 //!< px, through the window, where the fit has rmsOf
     double fitRms;

@@ -186,8 +186,17 @@ private:
 
     void fitOf(Tested& tested)
     {
-        if (!std::isfinite(tested.fit.chiSquare))
-            tested.fit = problem_->fit(*tested.change, tested.change->ranges().asDiagonal()*tested.at.directions, unchanged_);
+        if (std::isfinite(tested.fit.chiSquare))
+            return;
+        const MatrixXd directions = tested.change->ranges().asDiagonal()*tested.at.directions;
+        tested.fit = problem_->fit(*tested.change, directions, unchanged_);
+        // Where all else was bent far to explain a large change, the way back may be barred.
+        const double FAR = 5.;          // standard deviations
+        if (unchanged_.q.squaredNorm() < FAR*FAR*unchanged_.q.size())
+            return;
+        const CheckFit other = problem_->fit(*tested.change, directions, problem_->asCalibrated());
+        if (other.chiSquare < tested.fit.chiSquare)
+            tested.fit = other;
     }
 
     void addCandidate(const Tested& tested)
@@ -299,7 +308,7 @@ private:
     {
         for (Tested& tested : tested_)
         {
-            if (!tested.change->isTilt || tested.at.count() < 2)
+            if (!(tested.change->isTilt || tested.change->isShift) || tested.at.count() < tested.change->size())
                 continue;
             fitOf(tested);
             result_.windows.push_back(windowOf(tested));
@@ -315,17 +324,24 @@ private:
         check.probability = tested.probability;
         check.moved = result_.changed && isNamed(tested);
         check.tiltDeg = NOT_KNOWN;
-        check.normal = input_.rig.cameras[c]->window().normal;
+        const GlassWindow window = input_.rig.cameras[c]->window();
+        check.normal = window.normal;
+        check.center = window.center;
+        check.parameters = tested.at.count();
+        check.lengthPerDegree = tested.change->isShift ? window.radius/DEGREES : 0.;
+        const double degrees = tested.change->isShift ? DEGREES/window.radius : DEGREES;
         // The covariance of the linear test, which holds whatever was found.
         const MatrixXd ranges = tested.change->ranges().asDiagonal();
-        const Eigen::Matrix2d V = ranges*information_.G.block(tested.at.first, tested.at.first, 2, 2).inverse()*ranges;
-        const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(V).eigenvalues();
-        check.stdDeg[0] = std::sqrt(variances[1])*DEGREES;
-        check.stdDeg[1] = std::sqrt(variances[0])*DEGREES;
+        const int n = check.parameters;
+        const MatrixXd V = ranges*information_.G.block(tested.at.first, tested.at.first, n, n).inverse()*ranges;
+        const VectorXd variances = Eigen::SelfAdjointEigenSolver<MatrixXd>(V).eigenvalues();
+        check.stdDeg[0] = std::sqrt(variances[n - 1])*degrees;
+        check.stdDeg[1] = std::sqrt(variances[n - 2])*degrees;
         if (!isSeen || !std::isfinite(tested.fit.chiSquare))
             return check;
         check.normal = tested.fit.rig.cameras[c]->window().normal;
-        check.tiltDeg = std::atan(tested.fit.delta.norm())*DEGREES;
+        check.center = tested.fit.rig.cameras[c]->window().center;
+        check.tiltDeg = tested.change->isShift ? tested.fit.delta.norm()*degrees : std::atan(tested.fit.delta.norm())*DEGREES;
         return check;
     }
 
@@ -379,7 +395,7 @@ std::string causesOf(const Calibration& calibration, const std::vector<View>& vi
 double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share)
 {
     const double lambda = tiltDeg*tiltDeg/(share*window.stdDeg[0]*window.stdDeg[0]);
-    return upperTailNoncentralF2(result.dof, lambda, quantileF2(result.dof, result.critical));
+    return upperTailNoncentralF(window.parameters, result.dof, lambda, quantileF(window.parameters, result.dof, result.critical));
 }
 
 } // namespace tools

@@ -19,8 +19,13 @@ struct WindowCheck
 {
     int camera;
     cv::Vec3d normal;           //!< as it is now
-    double tiltDeg;             //!< between the calibrated normal and this; NaN: it is not what changed
+    cv::Vec3d center;           //!< of a dome or tube, as it is now
+    /** Between the calibrated normal and this; NaN: it is not what changed. Of a dome or tube the motion of its centre, as an angle: as
+    large as it is seen from a radius away. */
+    double tiltDeg;
     double stdDeg[2];           //!< of the tilt, two principal ones, larger first
+    double lengthPerDegree;     //!< of a centre; 0: it is a tilt
+    int parameters;             //!< of the change
     double probability;         //!< of so large a tilt or a larger one if nothing moved
     bool moved;                 //!< this explains the images, and nothing that is not a window does so better
 };

@@ -4,6 +4,7 @@
 #include "assess/rig_checks.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include <algorithm>
 #include <cmath>
@@ -26,11 +27,6 @@ Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RefractiveCamera&
     {
         return Ptr<RefractiveCamera>();     // too few images, or no such lens
     }
-}
-
-double angleDeg(const Vec3d& a, const Vec3d& b)
-{
-    return std::atan2(norm(a.cross(b)), a.dot(b))*180./CV_PI;
 }
 
 //! RMS px between the two images of each corner of a pair: what ignoring the glass costs if the board cannot give way.
@@ -113,8 +109,7 @@ std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flag
         {
             const Fit without = fitImages(data, fit.rig, others, flags);
             for (int c = 0; c < data.cameraCount; c++)
-                influence.turnDeg[c] = angleDeg(fit.rig.cameras[c]->window().normal,
-                                                without.rig.cameras[c]->window().normal);
+                influence.change[c] = placeChange(fit.rig.cameras[c]->window(), without.rig.cameras[c]->window());
         }
         catch (const cv::Exception&) {}     // the others alone do not determine the window: stays NaN
         progress.step();

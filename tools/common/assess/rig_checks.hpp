@@ -40,11 +40,11 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
 //! The largest RMS of what was fitted to one camera: the pinhole through the glass, or the lens. 0: there is none.
 double rmsOfSeparateFits(const Baselines& baselines, const std::vector<LensSource>& lensSources);
 
-//! How far the normal of each camera turns (degrees) if one view is left out.
+//! How far the window of each camera turns (degrees), or a dome's centre moves, if one view is left out: see placeChange.
 struct Influence
 {
     int view;
-    std::vector<double> turnDeg;    //!< of each camera's window; NaN: not determined without it
+    std::vector<double> change;     //!< of each camera's window; NaN: not determined without it
 };
 
 //! Views with a glass image; empty if there are fewer than three.

@@ -7,6 +7,7 @@
 #include "assess/wedge.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
@@ -23,6 +24,7 @@ namespace {
 
 const double THICKNESS_MM = 0.1;
 const double INDEX = 0.001;            // of a given number
+const double RADIUS_MM = 0.1;
 const double NUDGE_MM = 0.1;
 const double SQUARE = 0.001;            // share of it
 const double BOW_MM = 0.1;
@@ -314,7 +316,11 @@ std::vector<Cause> causesOf(const RigCalibration& c, double millimetre)
                 w.index[layer] += deviationOf(given);
             }, {Vec3d()}});
         }
-        if (!window.wedge.empty())
+        if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS) && c.options.std.radius == 0.)
+            causes.push_back({"radius wrong by 0.1 mm" + whose, k, true, [=](GlassWindow& w) {
+                w.radius += RADIUS_MM*millimetre;
+            }, {Vec3d()}});
+        if (!window.wedge.empty() || window.shape != WINDOW_FLAT)
             continue;
         const Vec3d across = normalize(window.normal.cross(Vec3d(0, 1, 0)));
         causes.push_back({"wedge of 1 arc minute between the faces" + whose, k, true, nullptr,

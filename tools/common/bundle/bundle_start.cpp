@@ -4,6 +4,7 @@
 #include "bundle/bundle_start.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
 
@@ -54,7 +55,7 @@ std::vector<int> columnsOfName(const ParameterColumns& at, const std::string& na
         {"normal", {at.normal, at.normal + 3}}, {"intrinsics", {at.lens, at.lens + at.lensCount}},
         {"thickness", {at.thickness, at.thickness + at.layers}}, {"index", {at.index, at.index + at.layers}},
         {"distance", {at.distance, at.distance + 1}}, {"outer-index", {at.outerIndex, at.outerIndex + 1}},
-        {"wedge", {at.wedge, at.end}}};
+        {"wedge", {at.wedge, at.curvature}}};
     std::vector<int> columns;
     const auto range = ranges.find(name);
     for (int i = range == ranges.end() ? 0 : range->second.first; range != ranges.end() && i < range->second.second; i++)
@@ -143,7 +144,7 @@ cv::Mat covarianceOfGiven(const BundleOptions& options, double millimetre, int f
         }
         set(at.distance, owner.second.distance);
         set(at.outerIndex, owner.second.outerIndex);
-        for (int i = at.wedge; i < at.end; i++)
+        for (int i = at.wedge; i < at.curvature; i++)
             set(i, owner.second.wedge);
     }
     return covariance;
@@ -205,6 +206,9 @@ BundleStart startOf(const Calibration& file, const std::string& path, const Bund
     for (const CameraCalibration& camera : file.cameras)
     {
         const GlassWindow window = camera.camera->window();
+        if (window.shape != WINDOW_FLAT)
+            throw Failure("'" + path + "' has a camera behind a " + nameOfShape(window) + "; refract_bundle takes flat windows. Calibrate "
+                          "it with refract_calib, or call refractiveBundleAdjust (opencv2/refract.hpp)");
         if (window.innerIndex == window.outerIndex && (start.flags & (GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX)))
             throw Failure("--free=distance and --free=outer-index: '" + path + "' has a window with the same medium on both sides; "
                           "there the distance has no effect on the image, and that medium is what indices are relative to. Leave "

@@ -48,22 +48,34 @@ void readEstimate(const FileNode& node, CameraCalibration& calibration)
     WindowStd& result = calibration.windowStd;
     result.normalDeg = readList(window["normal_deg"]);
     result.distance = readNumber(window["distance"], 0.);
+    result.center = readList(window["center"]);
+    result.axisDeg = readList(window["axis_deg"]);
+    result.radius = readNumber(window["radius"], 0.);
     result.thickness = readList(window["thickness"]);
     result.index = readList(window["index"]);
     result.outerIndex = readNumber(window["outer_index"], 0.);
     result.wedge = readList(window["wedge"]);
+    result.curvature = readNumber(window["curvature"], 0.);
 }
 
 void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
 {
     calibration.camera->write(fs);
     const WindowStd& window = calibration.windowStd;
-    if (!window.normalDeg.empty())
+    if (window.isKnown())
     {
-        fs << "glass_window_std" << "{" << "normal_deg" << window.normalDeg << "distance" << window.distance
-           << "thickness" << window.thickness << "index" << window.index << "outer_index" << window.outerIndex;
+        fs << "glass_window_std" << "{";
+        if (window.center.empty())
+            fs << "normal_deg" << window.normalDeg << "distance" << window.distance;
+        else
+            fs << "center" << window.center << "radius" << window.radius;
+        if (!window.axisDeg.empty())
+            fs << "axis_deg" << window.axisDeg;
+        fs << "thickness" << window.thickness << "index" << window.index << "outer_index" << window.outerIndex;
         if (!window.wedge.empty())
             fs << "wedge" << window.wedge;
+        if (calibration.camera->window().shape == cv::refract::WINDOW_BENT)
+            fs << "curvature" << window.curvature;
         fs << "}";
     }
     if (calibration.rms >= 0)
@@ -141,12 +153,6 @@ Rig readRig(const std::string& filename)
     }
     if (rig.cameras.size() > MAX_CAMERAS)
         throw Failure(format("'%s' has %zu cameras; the tools are for up to %d", filename.c_str(), rig.cameras.size(), MAX_CAMERAS));
-    const char* const shapes[] = { "a flat window", "a dome", "a tube", "a bent pane" };
-    for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
-        if (camera->window().shape != cv::refract::WINDOW_FLAT)
-            throw Failure("'" + filename + "' has a camera behind " + shapes[camera->window().shape] + "; the tools take flat windows "
-                          "only. The library takes all shapes: refractiveProjectPoints, triangulateRefractive and the other calls of "
-                          "opencv2/refract.hpp");
     return rig;
 }
 

@@ -16,11 +16,12 @@
 and so on; window_of_camera where some share a window: equal numbers look through the same one.
 
 Per camera: image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window {normal, distance, thickness,
-index, inner_index, outer_index, wedge, wavelength, materials}, glass_window_std {normal_deg, distance, thickness, index, outer_index,
-wedge}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and target_square (of the
-board), channel (of colour images, that it is for), verdict, contradictions (what the data say against what was given, a sentence each),
-weak_points (a sentence each), window_serial, notes {key: text}, what provenance.hpp names, and command, refract_version,
-opencv_version, calibration_time. */
+index, inner_index, outer_index, wedge, curvature, wavelength, materials; of a dome or tube center, axis, radius in place of normal and
+distance}, glass_window_std {normal_deg, distance, center, axis_deg, radius, thickness, index, outer_index, wedge, curvature, each where
+the window has it}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and
+target_square (of the board), channel (of colour images, that it is for), verdict, contradictions (what the data say against what
+was given, a sentence each), weak_points (a sentence each), window_serial, notes {key: text}, what provenance.hpp names, and command,
+refract_version, opencv_version, calibration_time. */
 namespace tools {
 
 class Command;
@@ -28,11 +29,17 @@ class Command;
 //! One standard deviation of what was estimated; 0 where it was fixed, empty where nothing is known.
 struct WindowStd
 {
-    std::vector<double> normalDeg;      //!< two principal ones, larger first, degrees
+    std::vector<double> normalDeg;      //!< two principal ones, larger first, degrees; empty: it has a centre
     double distance = 0.;
+    std::vector<double> center;         //!< of a dome or tube, x, y, z; of a flat window empty
+    std::vector<double> axisDeg;        //!< of a tube, as normalDeg
+    double radius = 0.;
     std::vector<double> thickness, index;
     double outerIndex = 0.;
     std::vector<double> wedge;          //!< radians, two a layer
+    double curvature = 0.;
+
+    bool isKnown() const { return !normalDeg.empty() || !center.empty(); }
 };
 
 struct CameraCalibration

@@ -22,19 +22,55 @@ static void append(std::vector<EstimatedParameter>& list, const Fit& fit, const 
 WindowStd windowStd(const Fit& fit, int camera)
 {
     const ParameterColumns at = columnsOf(fit.rig, camera);
-    auto std = [&fit](int column) { return fit.stdDeviations.at<double>(column); };
+    const auto std = [&](int column) { return at.has(column) ? fit.stdDeviations.at<double>(column) : 0.; };
     WindowStd result;
     result.normalDeg = normalStdDeg(fit.covariance, fit.rig, camera);
     result.distance = std(at.distance);
+    for (int i = at.center; at.has(at.center) && i < at.center + 3; i++)
+        result.center.push_back(std(i));
+    if (at.has(at.axis))
+    {
+        const std::vector<double> axis = principalStd(fit.covariance, at.axis);
+        result.axisDeg = {axis[0]*180./CV_PI, axis[1]*180./CV_PI};
+    }
+    result.radius = std(at.radius);
     for (int i = 0; i < at.layers; i++)
     {
         result.thickness.push_back(std(at.thickness + i));
         result.index.push_back(std(at.index + i));
     }
     result.outerIndex = std(at.outerIndex);
-    for (int i = at.wedge; i < at.end; i++)
+    for (int i = at.wedge; i < at.curvature; i++)
         result.wedge.push_back(std(i));
+    result.curvature = std(at.curvature);
     return result;
+}
+
+//! Of a unit vector two numbers are told: the third follows. They are those that its direction changes most.
+static void appendDirection(std::vector<EstimatedParameter>& list, const Fit& fit, const std::string& name, int column, const Vec3d& unit)
+{
+    const int follows = std::abs(unit[2]) >= std::max(std::abs(unit[0]), std::abs(unit[1])) ? 2 : std::abs(unit[1]) >= std::abs(unit[0]);
+    for (int i = 0; i < 3; i++)
+        if (i != follows)
+            append(list, fit, name + " " + "xyz"[i], column + i, unit[i], true);
+}
+
+//! Where the window is: the first surface.
+static void appendPlace(std::vector<EstimatedParameter>& list, const Fit& fit, const std::string& prefix, const ParameterColumns& at,
+                        const GlassWindow& window)
+{
+    if (at.has(at.normal))
+    {
+        append(list, fit, prefix + "normal x", at.normal, window.normal[0], true);
+        append(list, fit, prefix + "normal y", at.normal + 1, window.normal[1], true);
+        append(list, fit, prefix + "distance", at.distance, window.distance);
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        append(list, fit, prefix + "centre " + "xyz"[i], at.center + i, window.center[i]);
+    if (at.has(at.axis))
+        appendDirection(list, fit, prefix + "axis", at.axis, window.axis);
+    append(list, fit, prefix + "radius", at.radius, window.radius);
 }
 
 std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit)
@@ -47,9 +83,7 @@ std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit)
         const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
         const GlassWindow window = fit.rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(fit.rig, c);
-        append(list, fit, prefix + "normal x", at.normal, window.normal[0], true);
-        append(list, fit, prefix + "normal y", at.normal + 1, window.normal[1], true);
-        append(list, fit, prefix + "distance", at.distance, window.distance);
+        appendPlace(list, fit, prefix, at, window);
         for (int i = 0; i < at.layers; i++)
         {
             const std::string layer = at.layers == 1 ? "" : format(" %d", i + 1);
@@ -57,12 +91,14 @@ std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit)
             append(list, fit, prefix + "index" + layer, at.index + i, window.index[i]);
         }
         append(list, fit, prefix + "outer index", at.outerIndex, window.outerIndex);
-        for (int i = at.wedge; i < at.end; i++)
+        for (int i = at.wedge; i < at.curvature; i++)
         {
             const int layer = (i - at.wedge)/2, axis = (i - at.wedge) % 2;
             append(list, fit, prefix + "wedge " + "xy"[axis] + (at.layers == 1 ? "" : format(" %d", layer + 1)), i,
                    window.wedge[layer][axis]);
         }
+        if (at.has(at.curvature))
+            append(list, fit, prefix + "curvature", at.curvature, window.curvature);
     }
     return list;
 }

@@ -15,7 +15,7 @@ struct EstimatedParameter
     std::string name;
     int column;                 //!< of Fit::covariance
     double value, std;
-    bool isNormal;
+    bool isNormal;              //!< or a tube's axis
 };
 
 //! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.

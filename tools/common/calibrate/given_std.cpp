@@ -20,6 +20,7 @@ const double THICKNESS_MM = 0.1;            // a data sheet's tolerance, or a ca
 const double INDEX = 0.001;                 // of a number; a material's name tells its own
 const double DISTANCE_MM = 1.;              // a ruler to where the centre of projection is thought to be
 const double WEDGE_MINUTES = 1.;            // plate glass
+const double RADIUS_MM = 0.1;               // a drawing's tolerance
 const double SQUARE_RELATIVE = 5e-4;        // a printed board
 const double PLACEMENT_MM = 0.02;           // a board on a stand, a camera on its mount, while the window goes in
 
@@ -46,10 +47,10 @@ bool GivenStd::ofIndices() const
 
 bool GivenStd::ofWindow() const
 {
-    return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0.;
+    return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0. || radius > 0. || center > 0. || curvature > 0.;
 }
 
-void GivenStdOptions::addTo(CLI::App& app, bool ofTarget)
+void GivenStdOptions::addTo(CLI::App& app, bool all)
 {
     std::fill(said_, said_ + COUNT, std::numeric_limits<double>::quiet_NaN());
     const auto add = [&](const char* name, int which, const std::string& about) {
@@ -62,8 +63,12 @@ void GivenStdOptions::addTo(CLI::App& app, bool ofTarget)
     add("--distance-std", DISTANCE, "the same of --distance (default: 1 mm)");
     add("--wedge-std", WEDGE, "the same of the angle between the faces of each layer, about 0, in arc minutes: polished optics 0.2, plate "
         "glass 1 to 3 (default: 1)");
-    if (ofTarget)
+    if (all)
     {
+        add("--radius-std", RADIUS, "the same of --radius (default: 0.1 mm)");
+        add("--center-std", CENTER, "the same of each coordinate of --center, with --window=dome (default: nothing is known of it)");
+        add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; "
+            "its curvature is then estimated within it (default: 0, flat)");
         add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");
@@ -76,10 +81,30 @@ bool GivenStdOptions::isSaid() const
     return exact_ || std::any_of(said_, said_ + COUNT, [](double std) { return !std::isnan(std); });
 }
 
+//! Deviations of what windows of this shape have.
+void GivenStdOptions::requireShape(const GivenValues& v) const
+{
+    const bool isFlat = v.shape == WINDOW_FLAT || v.shape == WINDOW_BENT;
+    if (!isFlat && isMoreThanZero(WEDGE))
+        throw Failure("--wedge-std is of a flat window: the faces of a dome or tube have one centre; leave it out");
+    if (!isFlat && isMoreThanZero(DISTANCE))
+        throw Failure("--distance-std is of a flat window: where a dome or tube is, its centre says, which is estimated; leave it out");
+    if (!isFlat && isMoreThanZero(BOW))
+        throw Failure("--bow-std is of a flat window; how well a dome's or tube's radius is known is --radius-std");
+    if (isFlat && isMoreThanZero(RADIUS))
+        throw Failure("--radius-std is of a dome or tube: add --window=dome and --radius, or leave it out");
+    if (v.shape != WINDOW_DOME && isMoreThanZero(CENTER))
+        throw Failure("--center-std is of a dome: add --window=dome and --radius, or leave it out");
+}
+
 GivenStd GivenStdOptions::of(const GivenValues& v) const
 {
+    const bool isFlat = v.shape == WINDOW_FLAT || v.shape == WINDOW_BENT;
     const bool layers = !v.layers.empty();
-    const auto isSaid = [this](int which) { return said_[which] > 0.; };
+    const auto isSaid = [this](int which) { return isMoreThanZero(which); };
+    requireShape(v);
+    if (!layers && isSaid(BOW))
+        throw Failure("--bow-std is of a pane: give --thickness and --index");
     if (!layers && (isSaid(THICKNESS) || isSaid(INDEX) || isSaid(WEDGE)))
         throw Failure("--thickness-std, --index-std and --wedge-std are of layers: give --thickness and --index");
     if (v.equalMedia && (isSaid(DISTANCE) || isSaid(OUTER_INDEX)))
@@ -102,7 +127,12 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     std.outerIndex = choose(OUTER_INDEX, 1., usualStdOf(v.outer), !v.equalMedia && !isFree(GLASS_FREE_OUTER_INDEX));
     std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT),
                           !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
-    std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && !isFree(GLASS_FREE_WEDGE));
+    std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && isFlat && !isFree(GLASS_FREE_WEDGE));
+    std.radius = choose(RADIUS, 1., Std(RADIUS_MM*v.millimetre, DEFAULT), !isFlat && !isFree(GLASS_FREE_RADIUS));
+    std.center = choose(CENTER, 1., Std(), false);
+    std.bow = choose(BOW, 1., Std(), false);
+    // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
+    std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
     std.scale = choose(SQUARE, v.square > 0. ? 1./v.square : 0., Std(SQUARE_RELATIVE, DEFAULT), v.square > 0.);
     std.placement = choose(PLACEMENT, 1., Std(PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;

@@ -33,6 +33,10 @@ struct GivenStd
     Std thickness, outerIndex, distance;
     std::vector<Std> index = {};        //!< of each layer; empty: exact
     Std wedge;                          //!< of each of its two angles, radians
+    Std radius;                         //!< of a dome's or tube's inner face
+    Std center;                         //!< of a dome's centre, per axis; 0: nothing is known of it
+    Std bow;                            //!< of a pane, mm of sag per metre
+    double curvature = 0.;              //!< the same, over the unit of lengths
     Std scale;                          //!< of the targets (a board's square), relative
     Std placement;                      //!< by how much all boards moved between direct and glass, per axis
 
@@ -48,6 +52,7 @@ struct GivenValues
     GivenIndex outer;
     bool equalMedia = true;             //!< on both sides of the window
     bool distance = false;              //!< was given
+    int shape = cv::refract::WINDOW_FLAT;
     double square = 0.;                 //!< of a board; 0: there is none
     double millimetre = 1.;             //!< in the unit of lengths
     int flags = 0;                      //!< GLASS_FREE_...: what is estimated from the images alone has no default
@@ -57,14 +62,16 @@ struct GivenValues
 class GivenStdOptions
 {
 public:
-    //! @param ofTarget also what is known of a board and its placement
-    void addTo(CLI::App& app, bool ofTarget = true);
+    //! @param all also what is known of windows that are not flat, of a board and its placement
+    void addTo(CLI::App& app, bool all = true);
     bool isSaid() const;                //!< any of them
     //! What was said; of all else what is usual. Throws Failure where a deviation is said of what there is not.
     GivenStd of(const GivenValues& values) const;
 
 private:
-    enum { THICKNESS, INDEX, OUTER_INDEX, DISTANCE, WEDGE, SQUARE, PLACEMENT, COUNT };
+    enum { THICKNESS, INDEX, OUTER_INDEX, DISTANCE, WEDGE, RADIUS, CENTER, BOW, SQUARE, PLACEMENT, COUNT };
+    void requireShape(const GivenValues& values) const;
+    bool isMoreThanZero(int which) const { return said_[which] > 0.; }
     double said_[COUNT];                //!< NaN: not
     bool exact_ = false;
 };

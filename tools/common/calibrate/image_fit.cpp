@@ -53,20 +53,27 @@ void startAtKnown(RigModel& rig)
             continue;
         GlassWindow window = rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(*rig.cameras[c]);
-        const auto isKnown = [&](int column) { return known.covariance.at<double>(column, column) > 0; };
+        const auto isKnown = [&](int column) { return at.has(column) && known.covariance.at<double>(column, column) > 0; };
         for (int i = 0; i < at.layers; i++)
         {
             if (isKnown(at.thickness + i))
                 window.thickness[i] = known.window.thickness[i];
             if (isKnown(at.index + i))
                 window.index[i] = known.window.index[i];
-            if (at.wedge < at.end && isKnown(at.wedge + 2*i))
+            if (at.wedge < at.curvature && isKnown(at.wedge + 2*i))
                 window.wedge[i] = known.window.wedge[i];
         }
         if (isKnown(at.outerIndex))
             window.outerIndex = known.window.outerIndex;
         if (isKnown(at.distance))
             window.distance = known.window.distance;
+        if (isKnown(at.radius))
+            window.radius = known.window.radius;
+        for (int i = 0; i < 3; i++)
+            if (isKnown(at.center) && isKnown(at.center + i))
+                window.center[i] = known.window.center[i];
+        if (isKnown(at.curvature))
+            window.curvature = known.window.curvature;
         rig.cameras[c]->setWindow(window);
     }
 }

@@ -19,13 +19,18 @@ ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
     const auto find = [&](const char* name)
     { return first + int(std::find(columns.names.begin(), columns.names.end(), name) - columns.names.begin()); };
     columns.lens = first;
+    columns.window = first + columns.lensCount;
     columns.normal = find("normal[0]");
     columns.distance = find("distance");
+    columns.center = find("center[0]");
+    columns.axis = find("axis[0]");
+    columns.radius = find("radius");
     columns.thickness = find("thickness[0]");
     columns.index = find("index[0]");
     columns.innerIndex = find("innerIndex");
     columns.outerIndex = find("outerIndex");
-    columns.wedge = find("wedge[0][0]");
+    columns.curvature = find("curvature");
+    columns.wedge = std::min(find("wedge[0][0]"), columns.curvature);
     columns.end = first + (int)columns.names.size();
     return columns;
 }
@@ -40,8 +45,19 @@ ParameterColumns columnsOf(const RigModel& rig, int camera)
 
 void putWindow(const GlassWindow& window, const ParameterColumns& at, double* numbers)
 {
-    std::copy_n(window.normal.val, 3, numbers + at.normal);
-    numbers[at.distance] = window.distance;
+    const auto put = [&](const Vec3d& vector, int column) {
+        if (at.has(column))
+            std::copy_n(vector.val, 3, numbers + column);
+    };
+    const auto putOne = [&](double number, int column) {
+        if (at.has(column))
+            numbers[column] = number;
+    };
+    put(window.normal, at.normal);
+    putOne(window.distance, at.distance);
+    put(window.center, at.center);
+    put(window.axis, at.axis);
+    putOne(window.radius, at.radius);
     for (int i = 0; i < at.layers; i++)
     {
         numbers[at.thickness + i] = window.thickness[i];
@@ -49,23 +65,35 @@ void putWindow(const GlassWindow& window, const ParameterColumns& at, double* nu
     }
     numbers[at.innerIndex] = window.innerIndex;
     numbers[at.outerIndex] = window.outerIndex;
-    for (int i = at.wedge; i < at.end; i++)
+    for (int i = at.wedge; i < at.curvature; i++)
         numbers[i] = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2];
+    putOne(window.curvature, at.curvature);
 }
 
 GlassWindow windowOf(GlassWindow window, const ParameterColumns& at, const double* numbers)
 {
-    window.normal = normalize(Vec3d(numbers + at.normal));
-    window.distance = numbers[at.distance];
+    const auto takeOne = [&](double& number, int column) {
+        if (at.has(column))
+            number = numbers[column];
+    };
+    if (at.has(at.normal))
+        window.normal = normalize(Vec3d(numbers + at.normal));
+    if (at.has(at.center))
+        window.center = Vec3d(numbers + at.center);
+    if (at.has(at.axis))
+        window.axis = normalize(Vec3d(numbers + at.axis));
+    takeOne(window.distance, at.distance);
+    takeOne(window.radius, at.radius);
     for (int i = 0; i < at.layers; i++)
     {
         window.thickness[i] = numbers[at.thickness + i];
         window.index[i] = numbers[at.index + i];
-        if (at.wedge < at.end)
+        if (at.wedge < at.curvature)
             window.wedge[i] = Vec2d(numbers + at.wedge + 2*i);
     }
     window.innerIndex = numbers[at.innerIndex];
     window.outerIndex = numbers[at.outerIndex];
+    takeOne(window.curvature, at.curvature);
     return window;
 }
 
@@ -85,16 +113,38 @@ Mat partOf(const Mat& matrix, const std::vector<int>& rows, const std::vector<in
     return result;
 }
 
+std::vector<double> principalStd(const Mat& covariance, int column)
+{
+    Mat eigenvalues;
+    eigen(covariance(Rect(column, column, 3, 3)), eigenvalues);
+    std::vector<double> result;
+    for (int i = 0; i < 3; i++)
+        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i))));
+    return result;
+}
+
 std::vector<double> normalStdDeg(const Mat& covariance, const RigModel& rig, int camera)
 {
-    const int at = columnsOf(rig, camera).normal;
-    // Rank 2: the third eigenvalue, along the normal itself, is zero.
-    Mat eigenvalues;
-    eigen(covariance(Rect(at, at, 3, 3)), eigenvalues);
-    std::vector<double> result;
-    for (int i = 0; i < 2; i++)
-        result.push_back(std::sqrt(std::max(0., eigenvalues.at<double>(i)))*180./CV_PI);
-    return result;
+    const ParameterColumns at = columnsOf(rig, camera);
+    if (!at.has(at.normal))
+        return {};
+    std::vector<double> std = principalStd(covariance, at.normal);
+    std.pop_back();             // rank 2: along the normal itself it is zero
+    for (double& s : std)
+        s *= 180./CV_PI;
+    return std;
+}
+
+std::vector<double> centerStd(const Mat& covariance, const RigModel& rig, int camera)
+{
+    const ParameterColumns at = columnsOf(rig, camera);
+    return at.has(at.center) ? principalStd(covariance, at.center) : std::vector<double>();
+}
+
+double placeStd(const Mat& covariance, const RigModel& rig, int camera)
+{
+    const std::vector<double> normal = normalStdDeg(covariance, rig, camera);
+    return normal.empty() ? centerStd(covariance, rig, camera)[0] : normal[0];
 }
 
 } // namespace tools

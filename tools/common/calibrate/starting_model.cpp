@@ -216,9 +216,12 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
     set(at.thickness, at.layers, options.std.thickness);
     for (int i = 0; i < at.layers; i++)
         set(at.index + i, 1, options.std.indexOf(i));
-    set(at.wedge, at.end - at.wedge, options.std.wedge);
+    set(at.wedge, at.curvature - at.wedge, options.std.wedge);
     const bool equalMedia = options.window.innerIndex == options.window.outerIndex;
-    set(at.distance, equalMedia ? 0 : 1, options.std.distance);
+    set(at.distance, at.has(at.distance) && !equalMedia ? 1 : 0, options.std.distance);
+    set(at.radius, at.has(at.radius) ? 1 : 0, options.std.radius);
+    set(at.center, at.has(at.center) ? 3 : 0, options.std.center);
+    set(at.curvature, at.has(at.curvature) ? 1 : 0, options.std.curvature);
     set(at.outerIndex, 1, options.std.outerIndex);
     known.covariance = covariance;
     return known;

@@ -30,6 +30,10 @@ double millimetresIn(const std::string& unit)
     return MILLIMETRES.at(unit);
 }
 
+double bowOf(double curvature, const std::string& unit) { return curvature/curvatureOf(1., unit); }
+
+double curvatureOf(double bow, const std::string& unit) { return 8.*bow/(1000.*1000.)*millimetresIn(unit); }
+
 bool isRatioOfUnits(double ratio)
 {
     for (double unit : {10., 25.4, 1000., 2.54, 100.})

@@ -16,6 +16,10 @@ std::vector<std::string> unitNames();
 
 double millimetresIn(const std::string& unit);
 
+/** The sag of a bent pane, mm per metre, by its curvature, which is over a unit of lengths: over a length L it is L^2/8 times that. */
+double bowOf(double curvature, const std::string& unit);
+double curvatureOf(double bow, const std::string& unit);
+
 //! One length over another is nearly 10, 25.4, 1000, 2.54 or 100, or one over that: as if they were in two units.
 bool isRatioOfUnits(double ratio);
 

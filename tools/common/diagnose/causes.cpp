@@ -6,6 +6,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,7 @@ struct GivenValue
 std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
-    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex;
+    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex, round = isRound(window);
     std::vector<double> indices;
     for (size_t i = 0; i < window.index.size(); i++)
         indices.push_back(options.std.indexOf(i));
@@ -108,8 +109,10 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
         {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers, window.thickness,
          std::vector<double>(window.thickness.size(), options.std.thickness), [](const ParameterColumns& at) { return at.thickness; }},
         {GLASS_FREE_INDEX, "index", "--index", layers, window.index, indices, [](const ParameterColumns& at) { return at.index; }},
-        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia, {window.distance}, {options.std.distance},
+        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && !round, {window.distance}, {options.std.distance},
          [](const ParameterColumns& at) { return at.distance; }},
+        {GLASS_FREE_RADIUS, "radius", "--radius", round, {window.radius}, {options.std.radius},
+         [](const ParameterColumns& at) { return at.radius; }},
         {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia, {window.outerIndex},
          {options.std.outerIndex}, [](const ParameterColumns& at) { return at.outerIndex; }}};
     values.erase(std::remove_if(values.begin(), values.end(), [&](const GivenValue& value) {
@@ -129,6 +132,13 @@ std::string typed(const RigOptions& options, const GivenValue& given)
 
 std::string unitHint(double ratio) { return isRatioOfUnits(ratio) ? " (a wrong unit?)" : ""; }
 
+//! A drawing may say the outer one.
+std::string outerRadiusHint(double given, double found, double glass)
+{
+    const double NEARLY = 0.3;
+    return std::abs(given - glass - found) < NEARLY*glass ? " (is that given of the outer face? --radius is of the inner one)" : "";
+}
+
 /** Of some windows together. Of several layers, which images hardly distinguish, each takes its part of what their sum changes by. */
 Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vector<int>& owners)
 {
@@ -145,6 +155,7 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
         }
     const std::string where = owners.size() == 1 ? ofWindow(rig, owners[0]) : std::string(" of all windows");
     const std::string value = typed(rig.options, given);
+    const double glass = glassOf(rig.options.window);
     return {format("%s %d", given.option, owners.size() == 1 ? owners[0] : -1), {shift},
             [=](const Relaxed& found, double deviations) {
         const std::string estimate = plusMinus(sumOf(found, numbers), stdOfSum(found, numbers));
@@ -153,7 +164,9 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
                 + estimate + format(" and not %.5g", given.sum()) + howFar(deviations);
         return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, value.c_str(),
                       given.std() > 0. ? format(" +- %.2g", given.std()).c_str() : "", given.word, where.c_str())
-            + estimate + unitHint(sumOf(found, numbers)/given.sum()) + howFar(deviations); }};
+            + estimate + unitHint(sumOf(found, numbers)/given.sum())
+            + (given.flag == GLASS_FREE_RADIUS ? outerRadiusHint(given.sum(), sumOf(found, numbers), glass) : std::string())
+            + howFar(deviations); }};
 }
 
 //! All windows together, as one option gives them; and each alone.
@@ -185,7 +198,7 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
     for (int c : rig.windowOwners())
     {
         const ParameterColumns at = columnsOf(rig.fit.rig, c);
-        if (at.wedge == at.end || ((rig.options.flags & GLASS_FREE_WEDGE) && !(rig.options.std.wedge > 0.)))
+        if (at.wedge == at.curvature || ((rig.options.flags & GLASS_FREE_WEDGE) && !(rig.options.std.wedge > 0.)))
             continue;
         const std::string where = ofWindow(rig, c);
         const double known = rig.options.std.wedge;
@@ -197,6 +210,23 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
             const auto angle = [&](int i) { return plusMinus(values[i]/ARC_MINUTE, stdOfSum(found, {i})/ARC_MINUTE); };
             return format("the images contradict --wedge-std=%.3g: set free, the wedge%s would be (", known/ARC_MINUTE, where.c_str())
                 + angle(at.wedge) + ", " + angle(at.wedge + 1) + ") arc minutes" + howFar(deviations); }});
+    }
+}
+
+//! The curvature of a window that is taken to be flat within --bow-std.
+void addBows(const FittedRig& rig, std::vector<Cause>& causes)
+{
+    for (int c : rig.windowOwners())
+    {
+        const ParameterColumns at = columnsOf(rig.fit.rig, c);
+        if (!at.has(at.curvature) || !(rig.options.std.curvature > 0.))
+            continue;
+        const std::string where = ofWindow(rig, c);
+        const double known = rig.options.std.bow, sag = known/rig.options.std.curvature;
+        causes.push_back({format("bow %d", c), {{{{at.curvature, 1.}}}}, [=](const Relaxed& found, double deviations) {
+            return format("the images contradict --bow-std=%.2g: set free, the bow%s would be ", known, where.c_str())
+                + plusMinus(sag*toVector(found.glass)[at.curvature], sag*stdOfSum(found, {at.curvature})) + " mm per metre"
+                + howFar(deviations); }});
     }
 }
 
@@ -377,6 +407,7 @@ std::vector<Cause> causesOf(const RigData& data, const RigOptions& options, cons
     std::vector<Cause> causes;
     addValues(rig, causes);
     addWedges(rig, causes);
+    addBows(rig, causes);
     addMotion(rig, causes);
     addLenses(rig, causes);
     addPlaces(rig, causes);

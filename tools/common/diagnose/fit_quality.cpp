@@ -50,10 +50,12 @@ double largestSoundError(const RigData& data)
 
 double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result, int maxIterations)
 {
-    // What is known of a value does not matter to pixels; a wedge that is free makes each iteration slow.
+    // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
     RigOptions options = given;
     options.std = GivenStd();
     options.window.wedge.clear();
+    if (options.window.shape == WINDOW_BENT)
+        options.window.shape = WINDOW_FLAT;
     try
     {
         std::vector<LensSource> sources;

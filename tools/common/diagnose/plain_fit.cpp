@@ -23,6 +23,8 @@ RigOptions exactly(RigOptions options)
 {
     options.std = GivenStd();
     options.window.wedge.clear();
+    if (options.window.shape == WINDOW_BENT)
+        options.window.shape = WINDOW_FLAT;
     return options;
 }
 
@@ -37,6 +39,7 @@ Fit withKnown(const RigData& data, const Fit& exact, const RigOptions& options)
         const ParameterColumns before = columnsOf(exact.rig, c);
         GlassWindow window = exact.rig.cameras[c]->window();
         window.wedge = options.window.wedge;
+        window.shape = options.window.shape;
         fit.rig.cameras[c]->setWindow(window);
         const Mat lens = exact.rig.known.empty() ? Mat() : exact.rig.known[c].lens;
         KnownCamera known = knownOf(*fit.rig.cameras[c], options, c);

@@ -70,6 +70,14 @@ MatrixXd freeOf(const Fit& fit)
             if (fit.stdDeviations.at<double>(i) > 0.)
                 add(i);
     };
+    const auto addAcross = [&](const Vec3d& axis, int first) {
+        const Eigen::Matrix<double, 3, 2> basis = across(axis);
+        for (int k = 0; k < 2; k++)
+        {
+            columns.push_back(VectorXd::Zero(size));
+            columns.back().segment<3>(first) = basis.col(k);
+        }
+    };
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(rig, c);
@@ -78,13 +86,18 @@ MatrixXd freeOf(const Fit& fit)
             addFree(extrinsicsColumn(rig, c), extrinsicsColumn(rig, c) + 6);
         if (!rig.ownsWindow(c))
             continue;
-        const Eigen::Matrix<double, 3, 2> basis = across(rig.cameras[c]->window().normal);
-        for (int k = 0; k < 2; k++)
+        const GlassWindow window = rig.cameras[c]->window();
+        const Vec3d* const axis = at.has(at.normal) ? &window.normal : at.has(at.axis) ? &window.axis : nullptr;
+        if (at.has(at.normal))
+            addAcross(*axis, at.normal);
+        else if (axis)          // a tube's centre moves along its axis without effect
         {
-            columns.push_back(VectorXd::Zero(size));
-            columns.back().segment<3>(at.normal) = basis.col(k);
+            addAcross(*axis, at.center);
+            addAcross(*axis, at.axis);
         }
-        addFree(at.distance, at.end);
+        else
+            addFree(at.center, at.center + 3);
+        addFree(at.thickness - 1, at.end);          // from the distance or the radius on
     }
     for (int i = 0; i < TARGET_ERRORS && !rig.targetCovariance.empty(); i++)
         if (rig.targetCovariance.at<double>(i, i) > 0.)
@@ -176,8 +189,13 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
         RigModel given = rig_.clone();
         given.cameras[c]->setLensParameters(known.lens);
         GlassWindow window = known.window;
-        window.wedge.resize(rig_.cameras[c]->window().wedge.size());
-        window.normal = rig_.cameras[c]->window().normal;
+        const GlassWindow now = rig_.cameras[c]->window();
+        window.shape = now.shape;
+        window.wedge.resize(now.wedge.size());
+        window.normal = now.normal;
+        window.axis = now.axis;
+        if (window.shape == WINDOW_TUBE)
+            window.center = now.center;
         given.cameras[c]->setWindow(window);
         known_.segment(at.lens, at.end - at.lens) = toVector(given).segment(at.lens, at.end - at.lens);
         MatrixXd covariance = toEigen(known.covariance);

@@ -3,6 +3,7 @@
 
 #include "diagnose/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -41,6 +42,12 @@ Matx33d axesOf(const Vec3d& normal)
 distance will do, or with a wedge nearly so: that of a camera that is taken to be beyond it is 0, whatever the others do. */
 GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
 {
+    if (isRound(window))
+    {
+        window.center = there*window.center;
+        window.axis = there.R*window.axis;
+        return window;
+    }
     const Matx33d before = axesOf(window.normal), after = axesOf(there.R*window.normal), turn = after*there.R*before.t();
     window.normal = there.R*window.normal;
     window.distance += window.normal.dot(there.T);
@@ -75,7 +82,7 @@ VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const Vecto
     const ParameterColumns at = columnsOf(*rig.cameras[camera]);
     VectorXd window = VectorXd::Zero(at.end);
     putWindow(seenFrom(shared, there), at, window.data());
-    return window.tail(at.end - at.normal);
+    return window.tail(at.end - at.window);
 }
 
 } // namespace
@@ -138,16 +145,20 @@ MatrixXd consistentChanges(const RigModel& rig)
         const ParameterColumns at = columnsOf(rig, c);
         if (rig.ownsWindow(c))
         {
-            const Eigen::Vector3d normal = numbers.segment<3>(at.normal);
-            changes.block<3, 3>(at.normal, at.normal) -= normal*normal.transpose();
+            for (int column : {at.normal, at.axis})         // unit vectors
+                if (at.has(column))
+                {
+                    const Eigen::Vector3d unit = numbers.segment<3>(column);
+                    changes.block<3, 3>(column, column) -= unit*unit.transpose();
+                }
             continue;
         }
         // Only the rows of this camera's window, which is a few products of the rest: by differences.
         const double STEP = 1e-6;
         const int owner = ownerOf(rig, c);
-        changes.middleRows(at.normal, at.end - at.normal).setZero();
+        changes.middleRows(at.window, at.end - at.window).setZero();
         std::vector<int> columns;
-        for (int i = columnsOf(rig, owner).normal; i < columnsOf(rig, owner).end; i++)
+        for (int i = columnsOf(rig, owner).window; i < columnsOf(rig, owner).end; i++)
             columns.push_back(i);
         for (int camera : {owner, c})
             for (int i = 0; i < 6 && camera > 0; i++)
@@ -157,7 +168,7 @@ MatrixXd consistentChanges(const RigModel& rig)
             VectorXd more = numbers, less = numbers;
             more[column] += STEP;
             less[column] -= STEP;
-            changes.block(at.normal, column, at.end - at.normal, 1) =
+            changes.block(at.window, column, at.end - at.window, 1) =
                 (windowNumbersOf(rig, owner, c, more) - windowNumbersOf(rig, owner, c, less))/(2.*STEP);
         }
     }

@@ -4,6 +4,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <numeric>
 
@@ -44,6 +45,8 @@ Explanation wrongScale(const CalibrationInput& input)
 {
     RigOptions options = input.options;
     options.flags = (options.flags | GLASS_FREE_THICKNESS) & ~GLASS_FREE_INDEX;
+    if (isRound(options.window))        // a dome has two lengths of its own, and no simple pane that does as much
+        return {"", NO_FIT};
     const GlassWindow pane = onePane(input.options.window);
     if (!(pane.index[0] > 1.))
         return {"", NO_FIT};
@@ -110,7 +113,7 @@ Explanation wrongMedium(const CalibrationInput& input)
     window.outerIndex = air ? 1.333 : 1.;
     if (window.outerIndex == window.innerIndex)
         options.flags &= ~GLASS_FREE_DISTANCE;
-    else
+    else if (!isRound(window))
     {
         options.flags |= GLASS_FREE_DISTANCE;
         if (window.distance == 0.)

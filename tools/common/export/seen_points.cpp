@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/seen_points.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 
 #include <cmath>
-#include <numeric>
 
 namespace tools {
 
@@ -18,8 +18,7 @@ using cv::refract::RefractiveCamera;
 //! Nearly all pixels see z beyond the window; not all of a wide lens do, which looks along a tilted one.
 static bool isBeyondWindow(const Ptr<RefractiveCamera>& camera, const std::vector<Point2d>& pixels, double z)
 {
-    const cv::refract::GlassWindow window = camera->window();
-    const double lastSurface = std::accumulate(window.thickness.begin(), window.thickness.end(), window.distance);
+    const WindowFace last = WindowFace::last(camera->window());
     std::vector<Vec3d> origins, directions;
     cv::refract::refractiveUnprojectPoints(pixels, origins, directions, camera);
     size_t forward = 0, within = 0;
@@ -28,7 +27,7 @@ static bool isBeyondWindow(const Ptr<RefractiveCamera>& camera, const std::vecto
         {
             const Vec3d X = origins[i] + (z - origins[i][2])/directions[i][2]*directions[i];
             forward++;
-            within += window.normal.dot(X) < lastSurface;
+            within += last.isBefore(X);
         }
     return 10*within <= forward;
 }
@@ -68,7 +67,8 @@ cv::Mat startingMatrix(const RefractiveCamera& camera)
 {
     const cv::refract::GlassWindow window = camera.window();
     cv::Mat K = camera.cameraMatrix().clone();
-    K.rowRange(0, 2).colRange(0, 2) *= window.outerIndex/window.innerIndex;
+    if (!isRound(window))           // a dome magnifies nothing, seen from its centre
+        K.rowRange(0, 2).colRange(0, 2) *= window.outerIndex/window.innerIndex;
     return K;
 }
 

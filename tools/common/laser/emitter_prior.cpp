@@ -4,6 +4,7 @@
 #include "laser/emitter_prior.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rigid_transform.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include <opencv2/core/persistence.hpp>
 #include <Eigen/QR>
@@ -82,6 +83,9 @@ void EmitterPrior::addWindow(const Keys& keys)
 {
     keys.allowOnly({"normal_deg", "distance", "thickness", "index", "outer_index"});
     const ParameterColumns at = columnsOf(*emitter_.camera);
+    if (!at.has(at.normal))
+        throw Failure(keys.name() + ": the emitter is in a " + nameOfShape(emitter_.camera->window()) + ", and only what is known of flat "
+                      "windows can be told here. Leave glass_window_std out: the window is then exact");
     const Vec3d n = emitter_.camera->window().normal, other = std::abs(n[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     const Vec3d b1 = normalize(n.cross(other)), b2 = n.cross(b1);
     const auto one = [&](const char* key) { return keys.number(key, 0., MOST, 0.); };

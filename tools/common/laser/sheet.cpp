@@ -35,6 +35,9 @@ std::vector<double> parametersOf(const RefractiveCamera& camera, size_t* outerIn
     values.insert(values.end(), w.index.begin(), w.index.end());
     for (const Vec2d& wedge : w.wedge)
         values.insert(values.end(), {wedge[0], wedge[1]});
+    if (w.shape != WINDOW_FLAT)
+        values.insert(values.end(), {(double)w.shape, w.center[0], w.center[1], w.center[2], w.axis[0], w.axis[1], w.axis[2], w.radius,
+                                     w.curvature});
     return values;
 }
 

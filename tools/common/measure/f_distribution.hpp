@@ -18,11 +18,11 @@ double upperTailF(int m, double v, double x);
 approximation (Annals of Mathematical Statistics 30, 1959), and goes on as the sum does: within 1e-3 of itself from v = 20 on. */
 double upperTailAnyF(int k, double v, double x);
 
-//! The x that F with 2 and v degrees of freedom exceeds with this probability.
-double quantileF2(double v, double probability);
+//! The x that F with k and v degrees of freedom exceeds with this probability.
+double quantileF(int k, double v, double probability);
 
-//! The same as upperTailF(1, v, x) where the numerator has the noncentrality lambda.
-double upperTailNoncentralF2(double v, double lambda, double x);
+//! The same as upperTailAnyF where the numerator has the noncentrality lambda.
+double upperTailNoncentralF(int k, double v, double lambda, double x);
 
 } // namespace tools
 

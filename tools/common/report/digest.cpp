@@ -3,7 +3,7 @@
 
 #include "report/digest.hpp"
 #include "assess/next_step.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "assess/round_window.hpp"
 #include "console/lines.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -78,20 +78,27 @@ std::string heldOutBoards(const RigCalibration& c)
         + (std::isnan(h.lengthRms) ? "" : format(", lengths right within %.2g %s", h.lengthRms, c.unit.c_str()));
 }
 
-std::string tilts(const RigCalibration& c)
+//! Tilts of windows, or how far cameras are from the centres of domes.
+std::string places(const RigCalibration& c)
 {
     const size_t FEW = 4;
     Lines windows;
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.fit.rig.ownsWindow(k))
-        {
-            const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2]))*180./CV_PI;
-            windows.push_back(plusMinus(tilt, windowStd(c.fit, k).normalDeg[0]));
-        }
-    std::string text = windows.size() == 1 ? "The window is tilted by " : "The windows are tilted by ";
+            windows.push_back(placeInWords(c, k));
+    const bool isOne = windows.size() == 1;
+    std::string text = isOne ? "The window is tilted by " : "The windows are tilted by ";
+    if (const std::optional<RoundWindow> round = roundWindowOf(c, 0))
+    {
+        const std::string middle = round->shape == "dome" ? "centre" : "axis";
+        if (isOne && c.data.cameraCount == 1)
+            return "The " + round->shape + "'s " + middle + " is " + round->offsetWords(c.unit);
+        text = isOne ? "The " + round->shape + "'s " + middle + ": " + "camera 1 is off it by "
+                     : "The cameras are off the " + middle + "s of their " + round->shape + "s by ";
+    }
     for (size_t i = 0; i < std::min(FEW, windows.size()); i++)
         text += (i ? ", " : "") + windows[i];
-    return text + (windows.size() > FEW ? ", ..." : "") + " degrees";
+    return text + (windows.size() > FEW ? ", ..." : "");
 }
 
 std::string leftOut(const RigCalibration& c)
@@ -133,7 +140,7 @@ void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a
         append(tail, broken("A measured point: +- " + errorAtThreeRanges(c, a)));
         append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "plane square to the camera")
                             + ", worst point of the image)"));
-        facts = {metLimits(f), heldOutBoards(c), leftOut(c), tilts(c)};
+        facts = {metLimits(f), heldOutBoards(c), leftOut(c), places(c)};
     }
     append(tail, firstOf(broken("Next: " + nextStep(c, a, f) + "."), 3, DIGEST_COLUMNS));
     append(tail, firstOf(broken("More: --verbose, " + (report.empty() ? "--report=report.html" : report)), 1, DIGEST_COLUMNS));

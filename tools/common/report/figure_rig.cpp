@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/plot.hpp"
@@ -114,15 +115,17 @@ public:
                     through.push_back(ray[2]);
         if (through.size() < 3)
             return {};
-        const Vec3d n = rig_.extrinsics[owner].R.t()*rig_.cameras[owner]->window().normal;
+        const GlassWindow window = rig_.cameras[owner]->window();
+        const Vec3d n = rig_.extrinsics[owner].R.t()*(isRound(window) ? Vec3d(0, 0, 1) : window.normal);
         const Vec3d u = normalize(n.cross(std::abs(n[1]) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0))), v = n.cross(u);
-        std::vector<Point2f> flat, hull;
+        std::vector<Point2f> flat;
+        std::vector<int> hull;
         for (const Vec3d& X : through)
             flat.emplace_back((float)u.dot(X - through[0]), (float)v.dot(X - through[0]));
         convexHull(flat, hull);
         Line outline;
-        for (const Point2f& p : hull)
-            outline.push_back(through[0] + u*p.x + v*p.y);
+        for (int i : hull)
+            outline.push_back(through[i]);
         outline.push_back(outline[0]);
         return outline;
     }
@@ -147,10 +150,7 @@ private:
     std::vector<Line> rays(int camera, const std::vector<Point2d>& pixels) const
     {
         const Ptr<RefractiveCamera> through = rig_.cameras[camera], bare = copyWithWindow(through, GlassWindow());
-        const GlassWindow window = through->window();
-        double glass = 0.;
-        for (double thickness : window.thickness)
-            glass += thickness;
+        const WindowFace first = WindowFace::first(through->window()), last = WindowFace::last(through->window());
         std::vector<Vec3d> origins, directions, innerOrigins, inner;
         refractiveUnprojectPoints(pixels, origins, directions, through);
         refractiveUnprojectPoints(pixels, innerOrigins, inner, bare);
@@ -160,8 +160,9 @@ private:
         {
             if (directions[i] != directions[i] || inner[i] != inner[i])
                 continue;
-            const Vec3d enters = inner[i]*(window.distance/inner[i].dot(window.normal));
-            const double s = (window.distance + glass - origins[i].dot(window.normal))/directions[i].dot(window.normal);
+            // A camera without a window has its centre in place of both faces.
+            const Vec3d enters = inner[i]*std::max(0., first.along(Vec3d(), inner[i]));
+            const double s = std::max(0., last.along(origins[i], directions[i]));
             const double far = std::max(s, (end - origins[i]).dot(directions[i]));
             lines.push_back({centre(camera), inFirst(camera, enters), inFirst(camera, origins[i] + s*directions[i]),
                              inFirst(camera, origins[i] + far*directions[i])});
@@ -269,8 +270,8 @@ Figure drawRig(const RigCalibration& c, double azimuthDeg)
          << "$names using 1:2:3 with labels offset 0,1 font ',12' textcolor rgb '#0f172a' notitle, "
          << "$bar with lines linewidth 2 linecolor rgb '#475569' notitle\n";
     const GlassWindow window = c.fit.rig.cameras[0]->window();
-    return {plot.svg(), window.innerIndex == window.outerIndex ? "the windows' distances do not show in the images, they are drawn "
-                                                                 "as given" : ""};
+    const bool isHidden = !isRound(window) && window.innerIndex == window.outerIndex;
+    return {plot.svg(), isHidden ? "the windows' distances do not show in the images, they are drawn as given" : ""};
 }
 
 } // namespace tools

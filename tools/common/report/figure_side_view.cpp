@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/plot.hpp"
@@ -27,12 +28,9 @@ class SideView
 public:
     SideView(const RigCalibration& calibration, int camera, int axis)
         : c_(calibration), camera_(camera), axis_(axis), through_(calibration.fit.rig.cameras[camera]),
-          window_(through_->window()), farthest_(workingDepth(calibration, camera)[2])
-    {
-        glass_ = 0.;
-        for (double thickness : window_.thickness)
-            glass_ += thickness;
-    }
+          window_(through_->window()), first_(WindowFace::first(window_)), last_(WindowFace::last(window_)),
+          farthest_(workingDepth(calibration, camera)[2])
+    {}
 
     Path onPaper(const std::vector<Vec3d>& points) const
     {
@@ -58,9 +56,7 @@ public:
         {
             if (directions[i] != directions[i])     // the border sees nothing through this window
                 continue;
-            const Vec3d enters = inner[i]*(window_.distance/inner[i].dot(window_.normal));
-            const double s = (window_.distance + glass_ - origins[i].dot(window_.normal))/directions[i].dot(window_.normal);
-            const Vec3d leaves = origins[i] + s*directions[i];
+            const Vec3d enters = first_.meets(Vec3d(), inner[i]), leaves = last_.meets(origins[i], directions[i]);
             const Vec3d end = origins[i] + directions[i]*((1.1*farthest_ - origins[i][2])/directions[i][2]);
             rays.push_back(onPaper({Vec3d(), enters, leaves, end}));
         }
@@ -87,8 +83,11 @@ public:
     }
 
     //! The section of the layers with the plane of the paper, long enough for the field of view.
-    Path section(double from, double to, double halfLength) const
+    Path section(double halfLength) const
     {
+        if (window_.shape != WINDOW_FLAT)
+            return curvedSection();
+        const double from = window_.distance, to = from + glass();
         const Vec2d n(window_.normal[2], window_.normal[axis_]);
         const double length = std::sqrt(n.dot(n));
         const Vec2d unit = n/length, along(-unit[1], unit[0]);
@@ -100,6 +99,26 @@ public:
             path.emplace_back(p[0], p[1]);
         }
         return path;
+    }
+
+    //! Of faces that are met by all lines of the paper's plane through the camera: from one side of the image to the other, and more.
+    Path curvedSection() const
+    {
+        const Size size = c_.data.imageSize[camera_];
+        const Matx33d K = through_->cameraMatrix();
+        const double WIDER = 1.3, half = std::min(80.*CV_PI/180., WIDER*std::atan2(0.5*(axis_ == 0 ? size.width : size.height),
+                                                                                  K(axis_, axis_)));
+        const int STEPS = 40;
+        std::vector<Vec3d> inside, outside;
+        for (int i = 0; i <= STEPS; i++)
+        {
+            Vec3d along(0, 0, std::cos(half*(2.*i/STEPS - 1.)));
+            along[axis_] = std::sin(half*(2.*i/STEPS - 1.));
+            inside.push_back(first_.meets(Vec3d(), along));
+            outside.insert(outside.begin(), last_.meets(Vec3d(), along));
+        }
+        inside.insert(inside.end(), outside.begin(), outside.end());
+        return onPaper(inside);
     }
 
     //! Angle of the normal on paper and its standard deviation.
@@ -115,8 +134,10 @@ public:
                                  + 2*gAxis*gZ*cov.at<double>(axis_, 2)));
     }
 
-    double distance() const { return window_.distance; }
-    double glass() const { return glass_; }
+    const GlassWindow& window() const { return window_; }
+    double glass() const { return glassOf(window_); }
+    //! To the last face.
+    double depth() const { return isRound(window_) ? last_.along(Vec3d(), Vec3d(0, 0, 1)) : window_.distance + glass(); }
     double farthest() const { return farthest_; }
 
 private:
@@ -133,7 +154,8 @@ private:
     int camera_, axis_;
     Ptr<RefractiveCamera> through_;
     GlassWindow window_;
-    double glass_, farthest_;
+    WindowFace first_, last_;
+    double farthest_;
 };
 
 void draw(Plot& plot, const std::string& name, const std::vector<Path>& paths)
@@ -172,30 +194,38 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
         half = std::max({half, std::abs(ray[1].y), std::abs(ray[2].y)});
     half = std::max(1.6*half, 0.08*view.farthest());
 
-    double angle, std;
-    view.normalAngle(angle, std);
+    const bool hasNormal = !isRound(view.window());
+    double angle = 0., std = 0.;
+    if (hasNormal)
+        view.normalAngle(angle, std);
     const double widened = std > 0 ? std::max(1., std::pow(10., std::ceil(std::log10(2./(std*180./CV_PI))))) : 1.;
-    const double length = std::max(0.4*view.farthest(), 1.3*(view.distance() + view.glass()));
+    const double length = std::max(0.4*view.farthest(), 1.3*view.depth());
 
     Plot plot(640, 420);
     draw(plot, "rays", rays);
     draw(plot, "boards", view.boards());
     // A surface without thickness (bare water) is a line.
-    draw(plot, "glass", {view.section(view.distance(), view.distance() + view.glass(), half)});
-    draw(plot, "cone", {cone(angle, widened*std, length)});
-    draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
+    draw(plot, "glass", {view.section(half)});
+    if (hasNormal)
+    {
+        draw(plot, "cone", {cone(angle, widened*std, length)});
+        draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
+    }
     plot << "set size ratio -1\nset xlabel " << Plot::quoted("z, away from the camera, " + calibration.unit) << "\nset ylabel "
          << Plot::quoted((axis == 0 ? "x, to the right, " : "y, downwards, ") + calibration.unit) << "\nset yrange [*:*] " << "reverse\n"
          << "set key outside top center horizontal maxrows 1 samplen 1.5\n"
-         << "plot $boards with lines linecolor rgb '#94a3b8' title 'boards', "
-         << "$cone with filledcurves closed fillcolor rgb '#dc2626' fillstyle solid 0.25 noborder title 'normal, +- std x "
-         << widened << "', $normal with lines linewidth 1.5 linecolor rgb '#dc2626' notitle, "
-         << "$rays with lines linewidth 1.5 linecolor rgb '#f59e0b' title 'field of view', "
+         << "plot $boards with lines linecolor rgb '#94a3b8' title 'boards', ";
+    if (hasNormal)
+        plot << "$cone with filledcurves closed fillcolor rgb '#dc2626' fillstyle solid 0.25 noborder title 'normal, +- std x "
+             << widened << "', $normal with lines linewidth 1.5 linecolor rgb '#dc2626' notitle, ";
+    plot << "$rays with lines linewidth 1.5 linecolor rgb '#f59e0b' title 'field of view', "
          << (view.glass() > 0 ? "$glass with filledcurves closed fillcolor rgb '#0284c7' fillstyle solid 0.3 border rgb '#0284c7'"
                               : "$glass with lines linewidth 2 linecolor rgb '#0284c7'")
          << " title 'window', '+' using (0):(0) every ::0::0 with points pointtype 7 pointsize 1 linecolor rgb '#0f172a' "
          << "title 'camera'\n";
-    const GlassWindow window = calibration.fit.rig.cameras[camera]->window();
+    const GlassWindow& window = view.window();
+    if (!hasNormal)
+        return {plot.svg(), ""};
     std::string note = widened > 1 ? format("the cone of the normal is widened %g times", widened)
                                    : std::string("the cone of the normal is drawn as it is");
     if (window.innerIndex == window.outerIndex)

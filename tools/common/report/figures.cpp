@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/figures.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
@@ -222,13 +223,16 @@ Figure drawInfluence(const RigCalibration& c, int camera)
     Rows rows;
     for (const Influence& influence : c.influences)
     {
-        rows.push_back({(double)rows.size(), influence.turnDeg[camera]});
+        rows.push_back({(double)rows.size(), influence.change[camera]});
         views.push_back(influence.view);
     }
-    const double sigma = windowStd(c.fit, camera).normalDeg[0];
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const double sigma = placeStd(c.fit.covariance, c.fit.rig, camera);
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
-    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel 'turn of the normal, deg'\nset yrange [0:*]\n"
+    plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel "
+         << Plot::quoted((isRound(window) ? "motion of the centre, " : "turn of the normal, ") + placeUnit(window, c.unit))
+         << "\nset yrange [0:*]\n"
          << "set xrange [-0.7:" << rows.size() - 0.3 << "]\nset style fill solid 0.9 noborder\nset boxwidth 0.6\n"
          << "set key outside top center horizontal maxrows 1 samplen 2\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"
          << "plot $views using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'without this view', "

@@ -18,6 +18,9 @@ struct Figure
 //! Section through camera, window and boards: axis 0 = seen from above (x-z), 1 = from the side (y-z). To scale.
 Figure drawSideView(const RigCalibration& calibration, int camera, int axis);
 
+//! A dome or tube, and where the camera is in it: the section through the camera, the centre and the direction in which it looks. To scale.
+Figure drawDome(const RigCalibration& calibration, int camera);
+
 //! All cameras, windows and points from one side, obliquely from above. @param azimuthDeg 0: from behind the cameras, 90: from the right
 Figure drawRig(const RigCalibration& calibration, double azimuthDeg);
 

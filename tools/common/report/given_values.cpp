@@ -3,6 +3,7 @@
 
 #include "report/given_values.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 
 using namespace cv;
@@ -53,8 +54,24 @@ void addLayers(const RigCalibration& c, GivenRows& rows)
             rows.add("index" + layer, format("%.6g", window.index[i]),
                      i < c.options.layers.size() ? ofIndex(c.options.layers[i], std.indexOf(i)) : std.indexOf(i), "");
     }
-    if (!window.thickness.empty() && !(c.options.flags & GLASS_FREE_WEDGE))
+    if (!window.thickness.empty() && !isRound(window) && !(c.options.flags & GLASS_FREE_WEDGE))
         rows.add("wedge of each layer", "0'", std.wedge, "'", 1./ARC_MINUTE);
+}
+
+//! Of the first surface.
+void addShape(const RigCalibration& c, GivenRows& rows)
+{
+    const GlassWindow& window = c.options.window;
+    const GivenStd& std = c.options.std;
+    if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS))
+        rows.add("radius of the inner face", format("%g %s", window.radius, c.unit.c_str()), std.radius, " " + c.unit);
+    if (std.center > 0.)
+        rows.add("centre", format("(%g, %g, %g) %s", window.center[0], window.center[1], window.center[2], c.unit.c_str()), std.center,
+                 " " + c.unit);
+    if (window.shape == WINDOW_BENT && !(c.options.flags & GLASS_FREE_CURVATURE))
+        rows.add("bow", "0 mm per m", std.bow, " mm per m");
+    if (!isRound(window) && window.innerIndex != window.outerIndex && !(c.options.flags & GLASS_FREE_DISTANCE))
+        rows.add("distance to the window", format("%g %s", window.distance, c.unit.c_str()), std.distance, " " + c.unit);
 }
 
 void addMedia(const RigCalibration& c, GivenRows& rows)
@@ -64,8 +81,6 @@ void addMedia(const RigCalibration& c, GivenRows& rows)
         rows.add("index of the camera's medium", format("%.6g", window.innerIndex), ofIndex(c.options.inner, Std()), "");
     if (!(c.options.flags & GLASS_FREE_OUTER_INDEX))
         rows.add("index of the scene's medium", format("%.6g", window.outerIndex), ofIndex(c.options.outer, c.options.std.outerIndex), "");
-    if (window.innerIndex != window.outerIndex && !(c.options.flags & GLASS_FREE_DISTANCE))
-        rows.add("distance to the window", format("%g %s", window.distance, c.unit.c_str()), c.options.std.distance, " " + c.unit);
 }
 
 void addLenses(const RigCalibration& c, GivenRows& rows)
@@ -89,6 +104,7 @@ std::vector<SummaryRow> givenRows(const RigCalibration& c)
         rows.add("scale of the targets", "1", scale, " %", 100.);
     addLayers(c, rows);
     addMedia(c, rows);
+    addShape(c, rows);
     if (c.data.countPairs() > 0)
         rows.add("motion of all boards, direct to glass", "0 " + c.unit, c.options.std.placement, " " + c.unit);
     addLenses(c, rows);

@@ -3,7 +3,9 @@
 
 #include "report/report.hpp"
 #include "assess/next_step.hpp"
+#include "assess/round_window.hpp"
 #include "calibrate/estimated_parameters.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
@@ -17,6 +19,7 @@
 #include <cstdlib>
 
 using namespace cv;
+using namespace cv::refract;
 using namespace kainjow::mustache;
 
 namespace tools {
@@ -104,6 +107,19 @@ void setSheet(data& page, const RigCalibration& c, const Assessment& a, const Fi
     page.set("next_step", nextStep(c, a, f));
 }
 
+//! Where a window is, and what that does.
+std::string windowSentence(const RigCalibration& c, int k)
+{
+    const GlassWindow window = c.fit.rig.cameras[k]->window();
+    const std::string which = format("%sThe %s", k ? " " : "", nameOfShape(window))
+        + (c.data.cameraCount == 1 ? "" : format(" of camera %d", k + 1));
+    if (const std::optional<RoundWindow> round = roundWindowOf(c, k))
+        return which + (round->shape == "dome" ? " has its centre " : " has its axis ") + round->offsetWords(c.unit)
+            + (round->shape == "dome" ? "; in its centre it would not refract." : ".");
+    const double tilt = std::acos(std::min(1., window.normal[2]))*180./CV_PI;
+    return which + format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+}
+
 //! Verdict in plain words: the class colours the card.
 void setVerdict(data& page, const RigCalibration& c, const Findings& f)
 {
@@ -115,10 +131,13 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
     {
         if (c.data.cameraCount > FEW && !c.fit.rig.ownsWindow(k))
             continue;
-        const double tilt = std::acos(std::min(1., c.fit.rig.cameras[k]->window().normal[2]))*180./CV_PI;
-        windows += c.data.cameraCount == 1 ? "The window" : format("%sThe window of camera %d", k ? " " : "", k + 1);
-        windows += format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+        windows += windowSentence(c, k);
     }
+    const GlassWindow window = c.fit.rig.cameras[0]->window();
+    page.set("behind", window.shape == WINDOW_FLAT ? std::string("behind a flat window")
+                       : isRound(window) ? std::string("in a ") + nameOfShape(window) : std::string("behind a ") + nameOfShape(window));
+    page.set("place_heading", isRound(window) ? "centre ±, " + c.unit : std::string("normal ±, °"));
+    page.set("place_note", isRound(window) ? "The centre is seen from the camera" : "The normal points from the camera to the scene");
     page.set("headline", headline(c));
     page.set("windows", windows);
     data limits{data::type::list};
@@ -165,6 +184,10 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
         "To scale: the camera at the left, its rays bending at the window, the boards where they were seen");
     add(drawSideView(c, camera, 1), "Seen from the side",
         "The same with y pointing down; a window that is not where you mounted it shows here");
+    if (isRound(c.fit.rig.cameras[camera]->window()))
+        add(drawDome(c, camera), "Where the camera sits",
+            "To scale, cut through the camera and the centre: rays that pass the centre go straight, the others bend at the glass, "
+            "the more the farther the camera is from the centre");
     add(drawDisplacement(c, camera), "What the window does",
         "Each arrow leads from where a point would be seen without the window to where it is seen");
     add(drawCoverage(c, camera), "Where the board was seen",
@@ -173,7 +196,7 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
         "All bars should be about equally high; one that stands out has wrong corners or a board that moved");
     if (!c.influences.empty())
         add(drawInfluence(c, camera), "Which view pulls",
-            "How far the normal turns if a view is left out; a bar far above the line means that the result hangs on that view");
+            "How far the window turns or moves if a view is left out; a bar far above the line means that the result hangs on that view");
     add(drawResidualVectors(c, camera), "Residuals through the window",
         "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
     add(drawResidualMap(c, camera), "Mean residual over the image",
@@ -377,7 +400,9 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
 
     const bool isRig = c.data.cameraCount > 1;
     const std::vector<Photo> photos = photosToShow(c);
-    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + (isRig ? 2 : 0)
+    const int domes = (int)std::count_if(c.fit.rig.cameras.begin(), c.fit.rig.cameras.end(), [](const auto& camera) {
+        return isRound(camera->window()); });
+    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + domes + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
     data onSheet{data::type::list}, after{data::type::list};
     (hasRoom(findings) ? onSheet : after) << errorOverRange(c, assessment, progress);

@@ -3,8 +3,10 @@
 
 #include "report/summary.hpp"
 #include "report/given_values.hpp"
+#include "assess/round_window.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/colour.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -123,7 +125,8 @@ static std::string lightText(const RigOptions& options)
     return format("%g nm", options.window.wavelength) + (channel.empty() ? "" : ", " + channel);
 }
 
-std::vector<SummaryRow> windowRows(const RigCalibration& c)
+//! Where a flat window is.
+static std::vector<SummaryRow> normalRows(const RigCalibration& c)
 {
     const auto window = [&c](int k) { return c.fit.rig.cameras[k]->window(); };
     const auto deviation = [&c](int k) { return windowStd(c.fit, k); };
@@ -142,7 +145,53 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
         const GlassWindow w = window(k);
         return w.innerIndex == w.outerIndex ? std::string("no effect") : estimateOr(w.distance, deviation(k).distance, "given");
     }));
+    const double toBow = bowOf(1., c.unit);
+    if (window(0).shape == WINDOW_BENT)
+        rows.push_back(row(c, "bow, mm of sag per m",
+                           [&](int k) { return estimateOr(toBow*window(k).curvature, toBow*deviation(k).curvature, "given"); }));
+    return rows;
+}
+
+//! Where a dome or tube is.
+static std::vector<SummaryRow> centreRows(const RigCalibration& c)
+{
+    const auto window = [&c](int k) { return c.fit.rig.cameras[k]->window(); };
+    const auto deviation = [&c](int k) { return windowStd(c.fit, k); };
+    const bool isTube = window(0).shape == WINDOW_TUBE;
+    std::vector<SummaryRow> rows;
+    rows.push_back(row(c, isTube ? "point of the axis, " + c.unit : "centre, " + c.unit, [&](int k) {
+        const Vec3d x = window(k).center;
+        return format("(%.4g, %.4g, %.4g)", x[0], x[1], x[2]);
+    }));
+    rows.push_back(row(c, "  +- (x, y, z), " + c.unit, [&](int k) {
+        const std::vector<double> std = deviation(k).center;
+        return format("%.2g, %.2g, %.2g", std[0], std[1], std[2]);
+    }));
+    if (isTube)
+        rows.push_back(row(c, "axis; +- (two principal), deg", [&](int k) {
+            const Vec3d a = window(k).axis;
+            const std::vector<double> std = deviation(k).axisDeg;
+            return format("(%.4f, %.4f, %.4f); %.2g, %.2g", a[0], a[1], a[2], std[0], std[1]);
+        }));
+    rows.push_back(row(c, std::string("camera off the ") + (isTube ? "axis, " : "centre, ") + c.unit, [&](int k) {
+        const RoundWindow round = *roundWindowOf(c, k);
+        return plusMinus(round.offset, round.offsetStd);
+    }));
+    rows.push_back(row(c, "  moves points by up to, px (" + c.unit + ")", [&](int k) {
+        const RoundWindow round = *roundWindowOf(c, k);
+        return format("%.3g (%.3g at z = %.4g)", round.px, round.length, round.depth);
+    }));
+    rows.push_back(row(c, "radius of the inner face, " + c.unit, [&](int k) {
+        return estimateOr(window(k).radius, deviation(k).radius, "given"); }));
+    return rows;
+}
+
+std::vector<SummaryRow> windowRows(const RigCalibration& c)
+{
+    const auto window = [&c](int k) { return c.fit.rig.cameras[k]->window(); };
+    const auto deviation = [&c](int k) { return windowStd(c.fit, k); };
     const GlassWindow first = window(0);
+    std::vector<SummaryRow> rows = isRound(first) ? centreRows(c) : normalRows(c);
     for (size_t i = 0; i < first.thickness.size(); i++)
     {
         const std::string layer = first.thickness.size() == 1 ? "" : format(" of layer %zu", i + 1);
@@ -162,7 +211,7 @@ std::vector<SummaryRow> windowRows(const RigCalibration& c)
     for (int k = 0; k < c.data.cameraCount; k++)
         hasOther = hasOther || secondSolution(c, k);
     if (hasOther)
-        rows.push_back(row(c, "second solution: normal; RMS, px", [&](int k) {
+        rows.push_back(row(c, std::string("second solution: ") + placeName(first) + "; RMS, px", [&](int k) {
             const std::optional<SecondSolution> other = secondSolution(c, k);
             return other ? format("(%.4f, %.4f, %.4f); %.4f", other->normal[0], other->normal[1], other->normal[2], other->rms)
                          : std::string("-");
@@ -286,7 +335,7 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     std::vector<SummaryRow> rows;
     const auto add = [&rows](const std::string& name, const Quality& quality) {
         std::string normals;
-        for (double std : quality.normalStdDeg)
+        for (double std : quality.placeStd)
             normals += (normals.empty() ? "" : ", ") + format("%.2g", std);
         rows.push_back({name, {normals, format("%.3g", quality.worstPoint), format("%.3g", quality.calibrationPart)}});
     };
@@ -296,6 +345,12 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     for (const PlannedImage& image : advice.instead)
         add("instead: " + image.placement, image.quality);
     return rows;
+}
+
+std::string placeHeading(const RigCalibration& c)
+{
+    const GlassWindow window = c.fit.rig.cameras[0]->window();
+    return std::string(placeName(window)) + " +-, " + placeUnit(window, c.unit);
 }
 
 void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& assessment, const Findings& findings)
@@ -325,7 +380,7 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
               {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
     if (!assessment.advice.pairs.empty())
         printRows(out, "What the next images would bring:",
-                  {"", "normal +-, deg", "worst point, " + c.unit, "calibration's part, " + c.unit},
+                  {"", placeHeading(c), "worst point, " + c.unit, "calibration's part, " + c.unit},
                   adviceRows(assessment.advice));
     out << format("\nRMS over all corners of the fit itself %.4f px; noise of a pixel coordinate %.4f px.\n", c.fit.rms, c.fit.sigma);
     if (!c.lens.scores.empty())

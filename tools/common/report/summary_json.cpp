@@ -4,6 +4,9 @@
 #include "report/summary_json.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "assess/next_step.hpp"
+#include "assess/round_window.hpp"
+#include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "report/given_values.hpp"
 #include <nlohmann/json.hpp>
@@ -61,8 +64,38 @@ Json otherMinimumJson(const RigCalibration& c, int camera)
     const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (!other)
         return nullptr;
-    return {{"normal", listOf(other->normal)}, {"rms_px", other->rms}, {"standard_deviations_worse", other->excess},
-            {"excluded", other->isExcluded()}};
+    return {{other->of == "normal" ? "normal" : "center", listOf(other->normal)}, {"rms_px", other->rms},
+            {"standard_deviations_worse", other->excess}, {"excluded", other->isExcluded()}};
+}
+
+//! Where the window is.
+void addPlace(const RigCalibration& c, int camera, Json& json)
+{
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const WindowStd std = windowStd(c.fit, camera);
+    if (const std::optional<RoundWindow> round = roundWindowOf(c, camera))
+    {
+        json["center"] = listOf(window.center);
+        json["center_std"] = std.center;
+        json["radius"] = estimate(window.radius, std.radius);
+        json["offset"] = estimate(round->offset, round->offsetStd);
+        json["moves_points"] = {{"px", round->px}, {"length", round->length}, {"z", round->depth}, {"needless", round->isNeedless()}};
+        if (window.shape == WINDOW_TUBE)
+        {
+            json["axis"] = listOf(window.axis);
+            json["axis_std_deg"] = std.axisDeg;
+        }
+        return;
+    }
+    json["normal"] = listOf(window.normal);
+    json["normal_std_deg"] = std.normalDeg;
+    json["tilt_deg"] = std::acos(std::min(1., window.normal[2]))*180./CV_PI;
+    json["distance"] = window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance);
+    if (window.shape == WINDOW_BENT)
+    {
+        json["curvature"] = estimate(window.curvature, std.curvature);
+        json["bow_mm_per_m"] = estimate(bowOf(window.curvature, c.unit), bowOf(std.curvature, c.unit));
+    }
 }
 
 Json cameraJson(const RigCalibration& c, int camera)
@@ -73,10 +106,7 @@ Json cameraJson(const RigCalibration& c, int camera)
     const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
     Json result = {
         {"window", {
-            {"normal", listOf(window.normal)},
-            {"normal_std_deg", std.normalDeg},
-            {"tilt_deg", std::acos(std::min(1., window.normal[2]))*180./CV_PI},
-            {"distance", window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance)},
+            {"shape", nameOfShape(window)},
             {"thickness", estimates(window.thickness, std.thickness)},
             {"index", estimates(window.index, std.index)},
             {"inner_index", window.innerIndex},
@@ -95,6 +125,7 @@ Json cameraJson(const RigCalibration& c, int camera)
         {"baselines_px", {{"glass_ignored", c.baselines.glassIgnored[camera]},
                           {"glass_ignored_board_fixed", c.baselines.shift[camera]},
                           {"pinhole_through_glass", c.baselines.throughGlass[camera]}}}};
+    addPlace(c, camera, result["window"]);
     return result;
 }
 
@@ -167,17 +198,17 @@ Json limitsJson(const Findings& findings)
     return list;
 }
 
-Json qualityJson(const Quality& quality)
+Json qualityJson(const Quality& quality, const std::string& placeKey)
 {
-    return {{"normal_std_deg", quality.normalStdDeg}, {"worst_point_error", quality.worstPoint},
+    return {{placeKey, quality.placeStd}, {"worst_point_error", quality.worstPoint},
             {"calibration_part", quality.calibrationPart}};
 }
 
-Json shotsJson(const std::vector<PlannedImage>& shots)
+Json shotsJson(const std::vector<PlannedImage>& shots, const std::string& placeKey)
 {
     Json list = Json::array();
     for (const PlannedImage& image : shots)
-        list.push_back({{"image", image.placement}, {"predicted", qualityJson(image.quality)}});
+        list.push_back({{"image", image.placement}, {"predicted", qualityJson(image.quality, placeKey)}});
     return list;
 }
 
@@ -189,8 +220,9 @@ Json givenJson(const RigCalibration& c)
     return list;
 }
 
-void addAssessment(Json& json, const Assessment& a)
+void addAssessment(Json& json, const RigCalibration& c, const Assessment& a)
 {
+    const std::string placeKey = isRound(c.fit.rig.cameras[0]->window()) ? "center_std" : "normal_std_deg";
     Json errors = Json::array(), tolerances = Json::array(), budget = Json::array();
     for (const ErrorMap& map : a.errors)
         errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
@@ -203,8 +235,9 @@ void addAssessment(Json& json, const Assessment& a)
     json["point_error"] = errors;
     json["budget"] = budget;
     json["tolerances"] = tolerances;
-    json["next_images"] = {{"now", qualityJson(a.advice.now)}, {"pairs", shotsJson(a.advice.pairs)},
-                           {"instead_of_the_first", shotsJson(a.advice.instead)}};
+    json["next_images"] = {{"now", qualityJson(a.advice.now, placeKey)},
+                           {"pairs", shotsJson(a.advice.pairs, placeKey)},
+                           {"instead_of_the_first", shotsJson(a.advice.instead, placeKey)}};
 }
 
 } // namespace
@@ -234,7 +267,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
     json["cameras"] = cameras;
     json["rig"] = parameters(estimatedRigParameters(c.fit));
     json["given"] = givenJson(c);
-    addAssessment(json, assessment);
+    addAssessment(json, c, assessment);
     json["views"] = viewsJson(c);
     json["images_without_target"] = c.withoutTarget;
     json["left_out"] = droppedJson(c);

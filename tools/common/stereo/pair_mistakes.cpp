@@ -3,6 +3,7 @@
 
 #include "stereo/pair_mistakes.hpp"
 #include "calibrate/rig_model.hpp"
+#include "calibrate/window_face.hpp"
 #include "stereo/depth_search.hpp"
 
 #include <algorithm>
@@ -64,7 +65,8 @@ void exchangeImages(Undone& pair) { std::swap(pair.partners.pixels1, pair.partne
 void mirrorNormal(Undone& pair, int camera, int axis)
 {
     cv::refract::GlassWindow window = pair.calibration.cameras[camera].camera->window();
-    window.normal[axis] = -window.normal[axis];
+    cv::Vec3d& place = isRound(window) ? window.center : window.normal;
+    place[axis] = -place[axis];
     setWindow(pair.calibration, camera, window);
 }
 

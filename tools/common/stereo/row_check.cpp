@@ -99,10 +99,14 @@ std::vector<Cause> causesOf(const RigModel& model)
         const ParameterColumns columns = columnsOf(model, c);
         if (columns.layers == 0)
             continue;
-        Cause tilt = {cv::format("a tilt of the window of camera %d", c + 1), " degrees", DEGREES, {}};
+        const bool isFlat = columns.has(columns.normal);
+        const double radius = model.cameras[c]->window().radius;
+        Cause tilt = {cv::format(isFlat ? "a tilt of the window of camera %d" : "a motion of the dome or tube of camera %d", c + 1),
+                      isFlat ? " degrees" : "", isFlat ? DEGREES : 1, {}};
         for (int k = 0; k < 3; k++)
-            tilt.directions.push_back(along(columns.normal + k, TILT));
-        tilts.directions.insert(tilts.directions.end(), tilt.directions.begin(), tilt.directions.end());
+            tilt.directions.push_back(along(columns.window + k, isFlat ? TILT : SHIFT*radius));
+        if (isFlat)
+            tilts.directions.insert(tilts.directions.end(), tilt.directions.begin(), tilt.directions.end());
         causes.push_back(tilt);
         VectorXd all = VectorXd::Zero(count);
         for (int k = 0; k < columns.layers; k++)
@@ -111,7 +115,8 @@ std::vector<Cause> causesOf(const RigModel& model)
     }
     if (thicker.size() == 2)
     {
-        causes.push_back(tilts);
+        if (!tilts.directions.empty())
+            causes.push_back(tilts);
         thicker.push_back({"another thickness of both windows", "", 1, {thicker[0].directions[0] + thicker[1].directions[0]}});
     }
     causes.insert(causes.end(), thicker.begin(), thicker.end());
