@@ -20,7 +20,6 @@ struct Shift
 {
     std::vector<std::pair<int, double>> numbers;    //!< which, and by how much for a shift of 1
     bool glassOnly = false;                         //!< only in the images through the windows
-    double known = 0., std = 0.;                    //!< what is known of the shift; 0: nothing
 };
 
 struct Relaxed
