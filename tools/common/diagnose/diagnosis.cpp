@@ -211,7 +211,10 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
         std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
-        if (plain.px > sound && SCALE.appliesTo(input))         // another unit is too far for a fit that starts from what was given
+        if (!(plain.px < NO_FIT))       // pairs that contradict each other: a cause is one name for that, an exchange may be another
+            for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean))
+                others.push_back(e);
+        else if (plain.px > sound && SCALE.appliesTo(input))    // another unit is too far for a fit that starts from what was given
             others.push_back(SCALE.undo(input));
         return toldBeside(*plain.explained, others, clean);
     }

@@ -19,7 +19,9 @@ namespace {
 
 const int ITERATIONS = 25;
 const double CONVERGED = 0.02;          // of chi^2, of which ten decide,
-const double CONVERGED_SHARE = 1e-5;    // or of its size: what leaves that much explains nothing
+const double CONVERGED_SHARE = 1e-5;    // or of its size: what leaves that much explains nothing,
+const double GROSS = 4.;                // least of all what leaves so much for each degree of freedom: it creeps, and where it ends
+const double GROSS_SHARE = 1e-3;        // does not matter
 const double LEAST_DAMPING = 1e-12, MOST_DAMPING = 1e3;
 
 //! Inverse of a covariance, 0 for what has no variance (it is fixed) or an unknown one (NaN, about which nothing is known).
@@ -347,7 +349,8 @@ static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double dam
 Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) const
 {
     Relaxed at = start;
-    at.shifts = VectorXd::Zero(freed.size());
+    if (at.shifts.size() != (Eigen::Index)freed.size())
+        at.shifts = VectorXd::Zero(freed.size());
     Normal normal = linearize(at, freed);
     double damping = 1e-9;
     for (int i = 0; i < ITERATIONS && normal.isFinite() && damping < MOST_DAMPING; i++)
@@ -369,7 +372,8 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
         at = next;
         normal = there;
         damping = std::max(LEAST_DAMPING, damping/30.);
-        if (gained < std::max(CONVERGED, CONVERGED_SHARE*normal.chiSquare))
+        const double share = normal.chiSquare > GROSS*dof_ ? GROSS_SHARE : CONVERGED_SHARE;
+        if (gained < std::max(CONVERGED, share*normal.chiSquare))
             break;
     }
     at.chiSquare = normal.isFinite() ? normal.chiSquare : std::numeric_limits<double>::infinity();

@@ -45,6 +45,7 @@ public:
 
     //! The calibration itself, for this noise.
     Relaxed asGiven() const { return fit(start_, {}); }
+    //! @param start of the same shifts, or without any
     Relaxed fit(const Relaxed& start, const std::vector<Shift>& freed) const;
     //! By how much chi^2 would fall, to first order, for each of some sets of shifts.
     std::vector<double> gains(const Relaxed& at, const std::vector<std::vector<Shift>>& sets) const;
