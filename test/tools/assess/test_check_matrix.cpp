@@ -298,4 +298,4 @@ static void checkRightInputs(int trials, unsigned salt)
 
 TEST_CASE("Right inputs are not warned of: a few", "[check_matrix]") { checkRightInputs(12, 100); }
 
-TEST_CASE("Right inputs are not warned of: many", "[.monte-carlo]") { checkRightInputs(400, 200); }
+TEST_CASE("Right inputs are not warned of: many", "[.monte-carlo]") { checkRightInputs(scenes::trials(400), 200); }

@@ -160,3 +160,34 @@ TEST_CASE("Both cameras and their pairs are watched at once, straight on to the 
     CHECK(mentions(result.out, ": enough"));
     CHECK(countOf(result.out, ": enough") == 1);
 }
+
+TEST_CASE("Watching ends when the best next pair would gain less than --watch-gain asks for, and not before", "[tools][calib][watch]")
+{
+    const TemporaryFolder folder;
+    for (const std::string set : {"direct1", "glass1"})
+    {
+        std::filesystem::create_directory(folder/set);
+        for (const auto& entry : std::filesystem::directory_iterator(STEREO + "/" + set))
+            std::filesystem::copy_file(entry.path(), folder/(set + "/" + entry.path().filename().string()));
+    }
+    const std::string watch = "refract_calib --size=6x5 --square=39 --thickness=20 --index=1.5437 --no-cross-validation --direct='"
+        + (folder / "direct1/*.jpg") + "' --glass='" + (folder / "glass1/*.jpg") + "' --out=" + (folder / "calib.yml") + " --watch";
+    const std::string begin = "so far: the best next pair would take ", end = " % off the calibration's part of a point's error";
+    const ToolResult goesOn = runTool(watch + " --watch-quiet=1 --watch-gain=0.01");
+    CAPTURE(goesOn.out, goesOn.err);
+    CHECK(goesOn.code != 1);
+    CHECK(mentions(goesOn.out, begin));
+    CHECK(!mentions(goesOn.out, ": enough"));
+    const size_t at = goesOn.out.find(begin);
+    REQUIRE(at != std::string::npos);
+    const double gain = std::stod(goesOn.out.substr(at + begin.size()));
+    CHECK(gain > 0.01);
+    // The same images; nothing else would end this before two minutes of quiet.
+    const auto start = std::chrono::steady_clock::now();
+    const ToolResult ended = runTool(watch + cv::format(" --watch-quiet=120 --watch-gain=%.1f", gain + 1.));
+    CAPTURE(ended.out, ended.err);
+    CHECK(ended.code != 1);
+    CHECK(countOf(ended.out, end + ": enough") == 1);
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(120));
+    CHECK(std::filesystem::exists(folder / "calib.yml"));
+}

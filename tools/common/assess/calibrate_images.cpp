@@ -49,10 +49,10 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     PlainFit plain;
     if (!isSlowToStart(input))
     {
-        requireNoMixUp(input);
+        const bool lookedAtImages = requireNoMixUp(input);
         plain = fitPlainly(input);
         if (!(plain.px < largestSoundError(c.data)))
-            requireNoCause(input, plain);
+            requireNoCause(input, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {
         return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };

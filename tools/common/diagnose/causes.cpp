@@ -21,7 +21,6 @@ namespace tools {
 namespace {
 
 const double DEGREES = 180./CV_PI;
-const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known
 
 struct FittedRig
 {
@@ -37,7 +36,6 @@ struct FittedRig
                 owners.push_back(c);
         return owners;
     }
-    bool hasEqualMedia() const { return options.window.innerIndex == options.window.outerIndex; }
     //! Of all cameras, or of one.
     bool hasBothStates(int camera = -1) const
     {
@@ -182,19 +180,9 @@ void addValues(const FittedRig& rig, std::vector<Cause>& causes)
     }
 }
 
-double nearestBoard(const Fit& fit)
-{
-    double nearest = INFINITY;
-    for (const Vec3d& tvec : fit.tvecs)
-        nearest = std::min(nearest, norm(tvec));
-    return nearest;
-}
-
-/** The faces of all layers of one window; images tell the sum, which the first layer stands for. Between equal media the distance is given
-as any, which a large wedge is not indifferent to: its glass is as thick as where the light goes through. */
+//! The faces of all layers of one window; images tell the sum, which the first layer stands for.
 void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
 {
-    const double somewhere = BEFORE_BOARDS*nearestBoard(rig.fit);
     for (int c : rig.windowOwners())
     {
         const ParameterColumns at = columnsOf(rig.fit.rig, c);
@@ -202,9 +190,7 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
             continue;
         const std::string where = ofWindow(rig, c);
         const double known = rig.options.std.wedge;
-        std::vector<Shift> freed = {{{{at.wedge, 1.}}}, {{{at.wedge + 1, 1.}}}};
-        if (rig.hasEqualMedia())
-            freed.push_back({{{at.distance, 1.}}, false, somewhere, somewhere});
+        const std::vector<Shift> freed = {{{{at.wedge, 1.}}}, {{{at.wedge + 1, 1.}}}};
         causes.push_back({format("wedge %d", c), freed, [=](const Relaxed& found, double deviations) {
             const VectorXd values = toVector(found.glass);
             const auto angle = [&](int i) { return plusMinus(values[i]/ARC_MINUTE, stdOfSum(found, {i})/ARC_MINUTE); };

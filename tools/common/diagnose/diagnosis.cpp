@@ -26,6 +26,7 @@ const double EXPLAINS = 0.3;            // a mistake undone leaves less than thi
 const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
 const double UNRELATED_PX = 4.*WINDOWS_PX;      // of boards, by cameras whose lens is a pinhole and whose windows are left out
 const double AS_GOOD = 3.;              // as the best of them
+const size_t MOST_POSSIBLE = 4;         // mix-ups that are fitted without geometry asking for it: a second each
 
 const char* const NOTHING_TRIED = "neither another square, thickness, index or medium, nor images exchanged or wrongly paired "
     "explain it. Check --pattern and --size, that the images are from this camera with the same zoom and focus, that the target "
@@ -134,56 +135,64 @@ std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mis
     return bestBelow(maxPx, tried);
 }
 
-std::string fits(double px, const std::string& sentence)
+/** What leaves more than the images' own noise explains only a part.
+@param clean px, of cleanError; 0: not known */
+std::string fits(const Explanation& e, double clean)
 {
-    return format("the same images fit within %.2g px with ", px) + sentence;
+    const std::string text = format("the same images fit within %.2g px with ", e.px) + e.sentence;
+    return clean > 0. && e.px > clean ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
 }
 
 } // namespace
 
 namespace {
 
-//! Of what makes the images agree, what fits.
-std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps)
+//! Of what makes the images agree, what fits. @param most that are tried
+std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps, size_t most, double clean)
 {
     std::vector<Explanation> tried;
-    for (const MixUp& mixUp : mixUps)
-        tried.push_back({mixUp.sentence, medianErrorOfFit(mixUp.undone, input.options, nullptr, SOON)});
+    for (size_t i = 0; i < std::min(most, mixUps.size()); i++)
+        tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options, nullptr, SOON)});
     std::vector<std::string> sentences;
     for (const Explanation& e : bestBelow(largestSoundError(input.data), tried))
-        sentences.push_back(fits(e.px, e.sentence));
+        sentences.push_back(fits(e, clean));
     return sentences;
 }
 
 /** What is wrong with images whatever the window is: each image and each camera is right by itself. Those that give images or cameras
 places of their own come last, as they explain any other. */
-std::vector<std::string> imageMistakes(const CalibrationInput& input, const std::vector<MixUp>& mixUps)
+std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps)
 {
-    const std::vector<std::string> sentences = confirmed(input, mixUps);
+    const double sound = largestSoundError(input.data), clean = cleanError(input);
+    std::vector<std::string> sentences = confirmed(input, mixUps.clear, mixUps.clear.size(), clean);
     if (!sentences.empty())
         return sentences;
     for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
         if (!sentence.empty())
             return {sentence};
-    const double sound = largestSoundError(input.data);
     const Explanation unpaired = pairsFromOneMap(input.data) > WINDOWS_PX ? unpairedImages(input) : Explanation{"", NO_FIT};
     if (unpaired.px < sound)
-        return {fits(unpaired.px, unpaired.sentence)};
-    const Explanation unrelated = areUnrelated(input) ? unrelatedViews(input) : Explanation{"", NO_FIT};
+        return {fits(unpaired, clean)};
+    if (!areUnrelated(input))
+        return {};
+    sentences = confirmed(input, mixUps.possible, MOST_POSSIBLE, clean);        // explains as much with less
+    if (!sentences.empty())
+        return sentences;
+    const Explanation unrelated = unrelatedViews(input);
     if (unrelated.px < sound)
-        return {fits(unrelated.px, unrelated.sentence)};
+        return {fits(unrelated, clean)};
     return {};
 }
 
 //! A contradicted value and others that explain the images about as well, the best first.
-std::vector<std::string> toldBeside(const Contradiction& value, const std::vector<Explanation>& others)
+std::vector<std::string> toldBeside(const Contradiction& value, const std::vector<Explanation>& others, double clean)
 {
     const double MEDIAN = 1.1774;       // length of an error of two coordinates, in their standard deviations
     std::vector<std::string> sentences = {value.sentence};
     for (const Explanation& e : bestBelow(AS_GOOD*MEDIAN*value.sigma, others))
     {
         const bool isBest = e.px < MEDIAN*value.sigma/VALUE_BEFORE;
-        sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(e.px, e.sentence));
+        sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(e, clean));
         if (AS_GOOD*e.px < MEDIAN*value.sigma)
             return {sentences[0]};
     }
@@ -192,18 +201,22 @@ std::vector<std::string> toldBeside(const Contradiction& value, const std::vecto
 
 } // namespace
 
-std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain)
+std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain, bool imagesToo)
 {
-    std::vector<std::string> sentences = imageMistakes(input, findMixUps(input));
+    const MixUps mixUps = findMixUps(input);
+    std::vector<std::string> sentences = imagesToo ? imageMistakes(input, mixUps) : std::vector<std::string>();
     if (!sentences.empty())
         return sentences;
     const double sound = largestSoundError(input.data), clean = cleanError(input);
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
         std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
-        if (plain.px > sound && SCALE.appliesTo(input))         // another unit is too far for a fit that starts from what was given
+        if (!(plain.px < NO_FIT))       // pairs that contradict each other: a cause is one name for that, an exchange may be another
+            for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean))
+                others.push_back(e);
+        else if (plain.px > sound && SCALE.appliesTo(input))    // another unit is too far for a fit that starts from what was given
             others.push_back(SCALE.undo(input));
-        return toldBeside(*plain.explained, others);
+        return toldBeside(*plain.explained, others, clean);
     }
     const double most = std::min(EXPLAINS*plain.px, sound);
     std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
@@ -212,13 +225,18 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
             explaining.push_back(e);
     explaining = bestBelow(most, explaining);
     if (explaining.empty())
+    {
+        sentences = confirmed(input, mixUps.possible, MOST_POSSIBLE, clean);
+        if (!sentences.empty())
+            return sentences;
         explaining = explanationsOf(input, LAST_MISTAKES, most, clean);
+    }
     for (const Explanation& e : explaining)
-        sentences.push_back(fits(e.px, e.sentence));
+        sentences.push_back(fits(e, clean));
     return sentences;
 }
 
-std::vector<std::string> diagnose(const CalibrationInput& input) { return diagnose(input, fitPlainly(input)); }
+std::vector<std::string> diagnose(const CalibrationInput& input) { return diagnose(input, fitPlainly(input), true); }
 
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input)
@@ -251,22 +269,23 @@ namespace {
 
 } // namespace
 
-void requireNoMixUp(const CalibrationInput& input)
+bool requireNoMixUp(const CalibrationInput& input)
 {
-    const std::vector<MixUp> mixUps = findMixUps(input);
-    if (mixUps.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
-        return;
+    const MixUps mixUps = findMixUps(input);
+    if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
+        return false;
     const double px = medianErrorOfFit(input.data, input.options, nullptr, SOON);
     if (px < largestSoundError(input.data))
-        return;
+        return false;
     const std::vector<std::string> reasons = imageMistakes(input, mixUps);
     if (!reasons.empty())
         refuse(input, px, reasons);
+    return true;
 }
 
-void requireNoCause(const CalibrationInput& input, const PlainFit& plain)
+void requireNoCause(const CalibrationInput& input, const PlainFit& plain, bool imagesToo)
 {
-    const std::vector<std::string> reasons = diagnose(input, plain);
+    const std::vector<std::string> reasons = diagnose(input, plain, imagesToo);
     if (!reasons.empty())
         refuse(input, plain.px, reasons);
 }

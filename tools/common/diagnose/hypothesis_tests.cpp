@@ -65,11 +65,19 @@ struct Trial
     }
 };
 
-Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, const std::vector<Cause>& causes, double noise)
+//! @param before for another noise, which is near; null: none
+Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, const std::vector<Cause>& causes, double noise,
+            const Trial* before = nullptr)
 {
     const bool posesKnown = options.flags & GLASS_USE_POSES;
     const RelaxedFit relaxed(data, fit, posesKnown, noise);
-    Trial trial{relaxed.asGiven(), {}, noise, relaxed.dof()};
+    Trial trial{before ? relaxed.fit(before->given, {}) : relaxed.asGiven(), {}, noise, relaxed.dof()};
+    const auto startOf = [&](const Cause& cause) {
+        if (before)
+            for (const Tested& t : before->tested)
+                if (t.cause == &cause && std::isfinite(t.chiSquare))
+                    return t.found;
+        return trial.given; };
     std::vector<std::vector<Shift>> sets;
     for (const Cause& cause : causes)
         sets.push_back(cause.freed);
@@ -79,7 +87,7 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
         if (!causes[i].posesToo && !(gains[i] > PROMISING))
             continue;
         const Relaxed found = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
-                                                 : relaxed.fit(trial.given, causes[i].freed);
+                                                 : relaxed.fit(startOf(causes[i]), causes[i].freed);
         if (!canBe(found, trial.given))
             continue;
         const int parameters = causes[i].posesToo ? 6*(int)found.views.size() : (int)causes[i].freed.size();
@@ -111,7 +119,7 @@ Trial triedAll(const RigData& data, const RigOptions& options, const Fit& fit, c
         return {};
     const Trial trial = tried(data, options, fit, causes, noise);
     const double least = trial.leastNoise();
-    return least > 0. && std::max(least/noise, noise/least) > OTHER_NOISE ? tried(data, options, fit, causes, least) : trial;
+    return least > 0. && std::max(least/noise, noise/least) > OTHER_NOISE ? tried(data, options, fit, causes, least, &trial) : trial;
 }
 
 } // namespace

@@ -167,23 +167,32 @@ RoughLenses roughLensesOf(const RigData& data)
     return lenses;
 }
 
-std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses)
+double Disagreements::largest() const
 {
-    std::vector<double> all;
+    double largest = 0.;
+    for (const std::vector<double>& kind : kinds())
+        for (double px : kind)
+            largest = std::max(largest, px);
+    return largest;
+}
+
+Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses)
+{
+    Disagreements all;
     PerCamera<Matx33d> through;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        all.push_back(pairsApart(data, c));
-        all.push_back(magnificationOff(lenses.direct[c], lenses.glass[c], options, data.imageSize[c]));
+        all.pairs.push_back(pairsApart(data, c));
+        all.magnifications.push_back(magnificationOff(lenses.direct[c], lenses.glass[c], options, data.imageSize[c]));
         through[c] = throughWindow(lenses.direct[c], lenses.glass[c], options);
     }
     for (int c = 1; c < data.cameraCount; c++)
     {
         const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c]),
                                 glass = boardsOf(data, c, true, through[0], through[c]);
-        all.push_back(apart(direct, direct, lenses.direct[c](0, 0)));
-        all.push_back(apart(glass, glass, through[c](0, 0)));
-        all.push_back(apart(glass, direct, through[c](0, 0)));
+        all.direct.push_back(apart(direct, direct, lenses.direct[c](0, 0)));
+        all.glass.push_back(apart(glass, glass, through[c](0, 0)));
+        all.states.push_back(apart(glass, direct, through[c](0, 0)));
     }
     return all;
 }
@@ -216,10 +225,10 @@ double pairsFromOneMap(const RigData& data)
 
 double camerasApart(const RigData& data, const RigOptions& options)
 {
-    const std::vector<double> all = disagreementsOf(data, options, roughLensesOf(data));
+    const Disagreements all = disagreementsOf(data, options, roughLensesOf(data));
     double worst = 0.;
-    for (size_t i = 2*data.cameraCount; i < all.size(); i += 3)
-        worst = std::max({worst, all[i], all[i + 1]});
+    for (size_t i = 0; i < all.direct.size(); i++)
+        worst = std::max({worst, all.direct[i], all.glass[i]});
     return worst;
 }
 

@@ -19,11 +19,20 @@ struct RoughLenses
 
 RoughLenses roughLensesOf(const RigData& data);
 
-/** All disagreements that there can be, in one order: of each camera, how far the two images of a pair are apart, and how much the images
-through its window are magnified otherwise than by it; then of each further camera, how far boards are from where one of them has this
-camera to the first: of direct images, of those through the windows, and of these by the direct images. 0 where there is nothing to
-compare. */
-std::vector<double> disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses);
+/** Of each camera, or of each but the first to the first; 0 where there is nothing to compare. What is compared is a kind: images that are
+given to another camera take what they have along. */
+struct Disagreements
+{
+    std::vector<double> pairs;              //!< how far the two images of a pair are apart
+    std::vector<double> magnifications;     //!< how much images through the window are magnified otherwise than by it
+    //! How far boards are from where one of them has this camera to the first: of images of one state, and of glass by direct ones.
+    std::vector<double> direct, glass, states;
+
+    std::vector<std::vector<double>> kinds() const { return {pairs, magnifications, direct, glass, states}; }
+    double largest() const;
+};
+
+Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses);
 
 //! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
 double pairsFromOneMap(const RigData& data);

@@ -6,7 +6,6 @@
 #include "diagnose/image_disagreement.hpp"
 #include "console/table.hpp"
 #include <algorithm>
-#include <numeric>
 
 using namespace cv;
 
@@ -150,21 +149,37 @@ struct Candidate
 {
     MixUp mixUp;
     double left;                //!< product of the disagreements
+    bool isClear;
 };
 
 //! What is less than the doing of windows does not count.
-double product(const std::vector<double>& px)
+double product(const Disagreements& all)
 {
-    return std::accumulate(px.begin(), px.end(), 1., [](double all, double one) { return all*(one + WINDOWS_PX); });
+    double result = 1.;
+    for (const std::vector<double>& kind : all.kinds())
+        for (double px : kind)
+            result *= px + WINDOWS_PX;
+    return result;
 }
 
-//! Whether there is much less disagreement, and nowhere more.
-bool explains(const std::vector<double>& before, const std::vector<double>& after)
+//! Whether the worst camera, the next and so on have more: which camera it is may be what was wrong.
+bool isWorse(std::vector<double> before, std::vector<double> after)
 {
+    std::sort(before.begin(), before.end());
+    std::sort(after.begin(), after.end());
     for (size_t i = 0; i < before.size(); i++)
         if (after[i] > NOT_WORSE*before[i] + WINDOWS_PX)
+            return true;
+    return false;
+}
+
+bool isNowhereWorse(const Disagreements& before, const Disagreements& after)
+{
+    const std::vector<std::vector<double>> was = before.kinds(), is = after.kinds();
+    for (size_t kind = 0; kind < was.size(); kind++)
+        if (isWorse(was[kind], is[kind]))
             return false;
-    return product(after) < CLEARLY_BETTER*product(before);
+    return true;
 }
 
 std::string sentenceOf(Change change, const RigData& data, int camera, bool directToo)
@@ -180,21 +195,22 @@ std::string sentenceOf(Change change, const RigData& data, int camera, bool dire
 
 } // namespace
 
-std::vector<MixUp> findMixUps(const CalibrationInput& input)
+MixUps findMixUps(const CalibrationInput& input)
 {
     const RigData& data = input.data;
     const RoughLenses lenses = roughLensesOf(data);
-    const std::vector<double> before = disagreementsOf(data, input.options, lenses);
-    if (!(*std::max_element(before.begin(), before.end()) > WINDOWS_PX))
+    const Disagreements before = disagreementsOf(data, input.options, lenses);
+    if (!(before.largest() > WINDOWS_PX))
         return {};
     std::vector<Candidate> candidates;
     double least = NO_FIT;
     const auto attempt = [&](const RigData& changed, const RoughLenses& now, const std::string& sentence) {
-        const std::vector<double> after = disagreementsOf(changed, input.options, now);
-        if (!explains(before, after))
+        const Disagreements after = disagreementsOf(changed, input.options, now);
+        if (!isNowhereWorse(before, after))
             return;
-        candidates.push_back({{sentence, changed}, product(after)});
-        least = std::min(least, candidates.back().left);
+        const double left = product(after);
+        candidates.push_back({{sentence, changed}, left, left < CLEARLY_BETTER*product(before)});
+        least = std::min(least, left);
     };
     attempt(exchangedStates(data), {lenses.glass, lenses.direct}, "--direct and --glass exchanged");
     for (int b = 1; b < data.cameraCount; b++)
@@ -215,11 +231,11 @@ std::vector<MixUp> findMixUps(const CalibrationInput& input)
                     attempt(changedBack(data, (Change)change, camera, directToo), lenses,
                             sentenceOf((Change)change, data, camera, directToo));
             }
-    std::vector<MixUp> best;
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.left < b.left; });
+    MixUps found;
     for (const Candidate& candidate : candidates)
-        if (candidate.left <= AS_GOOD*least)
-            best.push_back(candidate.mixUp);
-    return best;
+        (candidate.isClear && candidate.left <= AS_GOOD*least ? found.clear : found.possible).push_back(candidate.mixUp);
+    return found;
 }
 
 } // namespace tools

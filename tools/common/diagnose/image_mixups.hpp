@@ -16,8 +16,13 @@ struct MixUp
     RigData undone;             //!< the images as they should be
 };
 
-//! Those that make the images agree best, if any makes them agree clearly better.
-std::vector<MixUp> findMixUps(const CalibrationInput& input);
+struct MixUps
+{
+    std::vector<MixUp> clear;           //!< those that make the images agree best, if any makes them agree clearly better
+    std::vector<MixUp> possible;        //!< others that make them agree no worse, the best first: tilted windows in water hide an exchange
+};
+
+MixUps findMixUps(const CalibrationInput& input);
 
 } // namespace tools
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/plain_fit.hpp"
+#include "diagnose/unfitted.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "diagnose/rig_vector.hpp"
@@ -63,6 +64,15 @@ Fit withKnown(const RigData& data, const Fit& exact, const RigOptions& options)
     return fit;
 }
 
+//! A cause that explains all of the residuals of a fit.
+std::optional<Contradiction> causeOf(const RigData& data, const RigOptions& options, const Fit& fit, double sigma)
+{
+    for (const Contradiction& c : testGivenValues(data, options, fit))
+        if (c.isSure && c.sigma < LEFT_BY_CAUSE*sigma && c.sigma < CLEAN*c.singleImages)
+            return c;
+    return std::nullopt;
+}
+
 } // namespace
 
 PlainFit fitPlainly(const CalibrationInput& input)
@@ -74,11 +84,20 @@ PlainFit fitPlainly(const CalibrationInput& input)
         const RigOptions exact = exactly(input.options);
         RigOptions options = input.options;
         const RigModel start = startModel(input.data, exact, sources);
-        const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS);
-        plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
-        for (const Contradiction& c : testGivenValues(input.data, options, withKnown(input.data, fit, options)))
-            if (c.isSure && c.sigma < LEFT_BY_CAUSE*fit.sigma && c.sigma < CLEAN*c.singleImages)
-                plain.explained = c;
+        try
+        {
+            const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS);
+            plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
+            plain.explained = causeOf(input.data, options, withKnown(input.data, fit, options), fit.sigma);
+        }
+        catch (const CalibrationError& e)
+        {
+            if (e.cause != CalibrationError::PAIRS_CONTRADICT)
+                throw;
+            options.flags = input.options.flags;
+            const Fit fit = unfitted(input.data, start, sources, options.flags);
+            plain.explained = causeOf(input.data, options, withKnown(input.data, fit, options), NO_FIT);
+        }
     }
     catch (const std::exception&) {}    // no fit, or none to test
     return plain;

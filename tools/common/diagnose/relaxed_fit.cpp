@@ -19,7 +19,9 @@ namespace {
 
 const int ITERATIONS = 25;
 const double CONVERGED = 0.02;          // of chi^2, of which ten decide,
-const double CONVERGED_SHARE = 1e-5;    // or of its size: what leaves that much explains nothing
+const double CONVERGED_SHARE = 1e-5;    // or of its size: what leaves that much explains nothing,
+const double GROSS = 4.;                // least of all what leaves so much for each degree of freedom: it creeps, and where it ends
+const double GROSS_SHARE = 1e-3;        // does not matter
 const double LEAST_DAMPING = 1e-12, MOST_DAMPING = 1e3;
 
 //! Inverse of a covariance, 0 for what has no variance (it is fixed) or an unknown one (NaN, about which nothing is known).
@@ -56,6 +58,27 @@ Eigen::Matrix<double, 3, 2> across(const Vec3d& normal)
     Eigen::Matrix<double, 3, 2> basis;
     basis << a[0], b[0], a[1], b[1], a[2], b[2];
     return basis;
+}
+
+const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known
+
+/** Between equal media a calibration holds the distance, which parallel faces are indifferent to. A wedge is not: its glass is as thick as
+where the light goes through, and cameras that share it look through it at two places. Whatever is tested, it is then somewhere before the
+boards; a cause that alone was free to say so would explain what only the held distance leaves. */
+bool holdsDistanceOfWedge(const Fit& fit, int camera)
+{
+    const ParameterColumns at = columnsOf(fit.rig, camera);
+    const GlassWindow& window = fit.rig.cameras[camera]->window();
+    return fit.rig.ownsWindow(camera) && window.innerIndex == window.outerIndex && at.wedge < at.curvature
+        && fit.stdDeviations.at<double>(at.wedge) > 0. && !(fit.stdDeviations.at<double>(at.distance) > 0.);
+}
+
+double somewhereBefore(const Fit& fit)
+{
+    double nearest = INFINITY;
+    for (const Vec3d& tvec : fit.tvecs)
+        nearest = std::min(nearest, norm(tvec));
+    return BEFORE_BOARDS*nearest;
 }
 
 //! What the fit estimated, a column each.
@@ -98,6 +121,8 @@ MatrixXd freeOf(const Fit& fit)
         else
             addFree(at.center, at.center + 3);
         addFree(at.thickness - 1, at.end);          // from the distance or the radius on
+        if (holdsDistanceOfWedge(fit, c))
+            add(at.distance);
     }
     for (int i = 0; i < TARGET_ERRORS && !rig.targetCovariance.empty(); i++)
         if (rig.targetCovariance.at<double>(i, i) > 0.)
@@ -142,14 +167,6 @@ MatrixXd changesOf(const RigModel& rig, const MatrixXd& free, const std::vector<
             if (glass || !freed[k].glassOnly)
                 changes(number.first, free.cols() + k) += number.second;
     return consistentChanges(rig)*changes;
-}
-
-VectorXd knownShifts(const std::vector<Shift>& freed)
-{
-    VectorXd known(freed.size());
-    for (size_t k = 0; k < freed.size(); k++)
-        known[k] = freed[k].known;
-    return known;
 }
 
 VectorXd toVector(const Vec3d& rvec, const Vec3d& tvec)
@@ -207,8 +224,17 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
         rig_.targetCovariance = Mat::zeros(TARGET_ERRORS, TARGET_ERRORS, CV_64F);     // so that poseInImage follows the motion
     else
         information_.bottomRightCorner(TARGET_ERRORS, TARGET_ERRORS) = informationOf(toEigen(rig_.targetCovariance));
-    start_.direct = start_.glass = rig_;
     start_.before = toVector(rig_);
+    for (int c = 0; c < (int)rig_.cameras.size(); c++)
+        if (holdsDistanceOfWedge(fit, c))
+        {
+            const int distance = columnsOf(rig_, c).distance;
+            const double somewhere = somewhereBefore(fit);
+            known_[distance] = start_.before[distance] = somewhere;
+            information_(distance, distance) = 1./(somewhere*somewhere);
+            rig_ = withVector(rig_, start_.before);
+        }
+    start_.direct = start_.glass = rig_;
     for (size_t k = 0; k < fit.views.size(); k++)
     {
         const View& view = data.views[fit.views[k]];
@@ -240,14 +266,6 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
     normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = own*free_;
     normal.right.head(free_.cols()) = own*off;
     normal.chiSquare = priorOf(at.before);
-    for (size_t k = 0; k < freed.size(); k++)
-        if (freed[k].std > 0.)
-        {
-            const double weight = 1./(freed[k].std*freed[k].std), rest = freed[k].known - at.shifts[k];
-            normal.matrix(free_.cols() + k, free_.cols() + k) += weight;
-            normal.right[free_.cols() + k] += weight*rest;
-            normal.chiSquare += weight*rest*rest;
-        }
     for (size_t k = 0; k < at.views.size(); k++)
     {
         const ViewObservations& observed = at.views[k];
@@ -349,9 +367,8 @@ static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double dam
 Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) const
 {
     Relaxed at = start;
-    at.shifts = knownShifts(freed);
-    if (!at.shifts.isZero() && !setRigs(freed, at))
-        return at;
+    if (at.shifts.size() != (Eigen::Index)freed.size())
+        at.shifts = VectorXd::Zero(freed.size());
     Normal normal = linearize(at, freed);
     double damping = 1e-9;
     for (int i = 0; i < ITERATIONS && normal.isFinite() && damping < MOST_DAMPING; i++)
@@ -373,7 +390,8 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
         at = next;
         normal = there;
         damping = std::max(LEAST_DAMPING, damping/30.);
-        if (gained < std::max(CONVERGED, CONVERGED_SHARE*normal.chiSquare))
+        const double share = normal.chiSquare > GROSS*dof_ ? GROSS_SHARE : CONVERGED_SHARE;
+        if (gained < std::max(CONVERGED, share*normal.chiSquare))
             break;
     }
     at.chiSquare = normal.isFinite() ? normal.chiSquare : std::numeric_limits<double>::infinity();
@@ -395,7 +413,7 @@ std::vector<double> RelaxedFit::gains(const Relaxed& at, const std::vector<std::
     for (const std::vector<Shift>& set : sets)
         all.insert(all.end(), set.begin(), set.end());
     Relaxed here = at;
-    here.shifts = knownShifts(all);
+    here.shifts = VectorXd::Zero(all.size());
     const Normal normal = linearize(here, all);
     const Eigen::Index own = free_.cols();
     const double without = normal.right.head(own).dot(solved(normal.matrix.topLeftCorner(own, own), normal.right.head(own), 1e-12));

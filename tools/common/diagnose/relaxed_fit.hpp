@@ -20,7 +20,6 @@ struct Shift
 {
     std::vector<std::pair<int, double>> numbers;    //!< which, and by how much for a shift of 1
     bool glassOnly = false;                         //!< only in the images through the windows
-    double known = 0., std = 0.;                    //!< what is known of the shift; 0: nothing
 };
 
 struct Relaxed
@@ -46,6 +45,7 @@ public:
 
     //! The calibration itself, for this noise.
     Relaxed asGiven() const { return fit(start_, {}); }
+    //! @param start of the same shifts, or without any
     Relaxed fit(const Relaxed& start, const std::vector<Shift>& freed) const;
     //! By how much chi^2 would fall, to first order, for each of some sets of shifts.
     std::vector<double> gains(const Relaxed& at, const std::vector<std::vector<Shift>>& sets) const;
