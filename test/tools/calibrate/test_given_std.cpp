@@ -113,3 +113,32 @@ TEST_CASE("A deviation of what there is not is refused", "[given]")
     CHECK_THROWS(read({"--thickness-std=-1"}, pane()));
     CHECK_THROWS(read({"--thickness-std=nan"}, pane()));
 }
+
+TEST_CASE("What is known of domes and bent panes has its own options", "[given]")
+{
+    GivenValues dome = pane();
+    dome.shape = cv::refract::WINDOW_DOME;
+    const GivenStd std = read({}, dome);
+    CHECK(std.radius == 0.1);
+    CHECK(std.center == 0.);
+    CHECK(std.wedge == 0.);                         // spheres of one centre have none
+    CHECK(std.curvature == 0.);
+    CHECK(read({"--radius-std=0.02", "--center-std=0.5"}, dome).radius == 0.02);
+    CHECK(read({"--center-std=0.5"}, dome).center == 0.5);
+    CHECK(read({"--exact"}, dome).radius == 0.);
+    dome.flags = cv::refract::GLASS_FREE_RADIUS;
+    CHECK(read({}, dome).radius == 0.);
+    // A sag of 2 mm over a metre is a radius of 62.5 m.
+    CHECK(read({}, pane()).curvature == 0.);
+    CHECK(read({"--bow-std=2"}, pane()).curvature == Approx(1/62500.));
+    GivenValues metres = pane();
+    metres.millimetre = 0.001;
+    CHECK(read({"--bow-std=2"}, metres).curvature == Approx(1/62.5));
+    for (const char* option : {"--wedge-std=1", "--distance-std=1", "--bow-std=1"})
+        CHECK_THROWS_AS(read({option}, dome), Failure);
+    for (const char* option : {"--radius-std=1", "--center-std=1"})
+        CHECK_THROWS_AS(read({option}, pane()), Failure);
+    GivenValues surface = pane();
+    surface.layers.clear();
+    CHECK_THROWS_AS(read({"--bow-std=1"}, surface), Failure);
+}
