@@ -29,8 +29,9 @@ without a window.
 - **Length**: the caller's unit. Thickness, distance, object points and results share it. Angles are radians.
 - **Window**: see GlassWindow. **Ray**: origin + s * direction, direction of unit length, s grows into the scene;
   the origin lies on the axis through the centre of projection along the window's normal, origin = tau * normal.
-  Behind a window with a wedge the ray misses the axis by little, and the origin is a point of the ray near it. Behind a dome
-  the axis is the one through the dome's centre.
+  Behind a window with a wedge and behind a bent pane the ray misses the axis by little, and the origin is a point of the ray
+  near it. Behind a dome the axis is the one through the dome's centre. Rays behind a tube have no common axis: the origin is
+  the point of the ray in the plane through the centre of projection across the tube's axis.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
   RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
@@ -67,6 +68,10 @@ the path from a point to the camera is the one of least optical length.
 A dome's faces are spheres about one point S (GlassWindow::dome). From there, the moment \f$L = r \times p\f$ is the same in all
 media, so a face of radius r_k turns the ray about L by
 \f[ \arcsin\frac{|L|}{n_{k+1} r_k} - \arcsin\frac{|L|}{n_k r_k} \f]
+
+The faces of tubes and bent panes are quadrics \f$g \cdot X + \frac{1}{2} X^T K X = d\f$ of unit gradient:
+\f$K = \kappa (I - a a^T)\f$ for a cylinder about the axis a, \f$\kappa I\f$ for a sphere. Light goes out as through leaning
+planes, with the gradient in place of the normal.
 
 @{
     @defgroup refract_camera Windows and cameras
@@ -223,14 +228,18 @@ enum WindowShape {
     WINDOW_BENT = 3             //!< a pane that is slightly bent: as flat, with a curvature
 };
 
-/** @brief A window: layers between planes that share one normal, or between spheres that share one centre.
+/** @brief A window: layers between planes with one normal, spheres about one centre, or cylinders about one axis.
 
 No layer and equal inner and outer index = no window = plain OpenCV.
 
 A **flat** window has `normal` and `distance`; a **dome** (GlassWindow::dome) has `center` and `radius` in their place, and the
 camera is anywhere inside. If it is in the centre, no ray is refracted: the dome has no effect, and neither its radius nor its
-indices can be found from images. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only
-and refuse a dome with the code Error::StsNotImplemented; all other calls take both.
+indices can be found from images. A **tube** (GlassWindow::tube) has `center`, any point of its axis, `axis` and `radius`; the
+camera is anywhere inside. A ray along the axis never leaves it. A **bent** pane is a flat one with a `curvature`: its faces are
+spheres that meet the axis along the normal where the flat one's would, such as tempered glass with a bow of 1 to 3 mm a metre.
+It may have a wedge. Points beyond the centre of a negative curvature may have several images behind its focus; they get one of
+them, or a status. calibrateGlass and the other calibrators, and refractiveBundleAdjust, take flat windows only and refuse the
+other shapes with the code Error::StsNotImplemented; all other calls take all shapes.
 
 Faces that are not quite parallel have a `wedge`. Data sheets state up to 3 arc minutes for commercial panes and nothing for
 tempered glass. At range z a wedge d looks like a tilt of the pane by index z d/thickness.
@@ -288,15 +297,15 @@ public:
     CV_PROP_RW Vec3d center;                   //!< dome: of the spheres; tube: a point of the axis; camera coordinates
     CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
     CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
-    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is on
-    the camera's side. The other faces are spheres about the same point. 0: planes. */
+    /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is
+    on the camera's side. The other faces are spheres about the same point. 0: planes. */
     CV_PROP_RW double curvature;
     CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
     /** Of each layer: the angle between its outer and its inner face, radians along e1 and e2, about 0; see above.
-    Empty: all faces are parallel, as a dome's are. */
+    Empty: all faces are parallel, as a dome's and a tube's are. */
     CV_PROP_RW std::vector<Vec2d> wedge;
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
     /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex
