@@ -301,7 +301,7 @@ public:
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
     /** Of each layer: the angle between its outer and its inner face, radians along e1 and e2, about 0; see above.
-    Empty: all faces are parallel, as a dome's and a tube's are. */
+    Empty: all faces are parallel, as a dome's are. */
     CV_PROP_RW std::vector<Vec2d> wedge;
     CV_PROP_RW double wavelength;              //!< of the light that the indices are of, nm in air; 0: not known
     /** How the indices change with the wavelength: the inner medium, each layer, the outer medium, each as refractiveIndex
