@@ -12,16 +12,17 @@
 namespace {
 
 //! Two cameras in water, each in a dome of its own; given values are those of a data sheet, the domes as delivered.
-std::string scene(const std::string& center1 = "[ 3., -2., 6. ]")
+std::string scene(const std::string& center1 = "[ 3., -2., 6. ]", const std::string& center2 = "[ -4., 1., 5. ]",
+                  const std::string& radius = "50.06")
 {
-    const auto camera = [](const std::string& name, const std::string& f, const std::string& c, const std::string& center) {
+    const auto camera = [&](const std::string& name, const std::string& f, const std::string& c, const std::string& center) {
         return name + ":\n   image_width: 800\n   image_height: 640\n   camera_matrix: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ "
             + f + ", 0., " + c + ", 0., " + f + ", 316., 0., 0., 1. ] }\n   distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, "
             "dt: d, data: [ -0.1, 0.05, 0.0005, -0.0005 ] }\n   glass_window: { shape: dome, center: " + center
-            + ", radius: 50.06, thickness: [ 4.95 ], index: [ 1.4906 ], outer_index: 1.3334 }\n";
+            + ", radius: " + radius + ", thickness: [ 4.95 ], index: [ 1.4906 ], outer_index: 1.3334 }\n";
     };
     return "%YAML:1.0\n---\ntarget: { pattern: chessboard, size: \"9x6\", square: 25.003 }\n"
-        + camera("camera1", "720.", "404.", center1) + camera("camera2", "728.", "396.", "[ -4., 1., 5. ]")
+        + camera("camera1", "720.", "404.", center1) + camera("camera2", "728.", "396.", center2)
         + "R: !!opencv-matrix { rows: 3, cols: 3, dt: d, data: [ 0.97534, 0., -0.220713, 0., 1., 0., 0.220713, 0., 0.97534 ] }\n"
           "T: [ -120., 2., 15. ]\nexposure: { noise: 2., blur: 0.7, vignetting: 0.2 }\nseed: 5\nposes:\n"
           "   air: { count: 8, distance: [ 400., 600. ], tilt_deg: [ 10., 35. ], roll_deg: 30., margin: 8. }\n"
@@ -146,6 +147,31 @@ TEST_CASE("Two cameras in domes, from images to points, with errors as stated", 
     CHECK(same.code == 0);
     CHECK(mentions(same.out, "dome of camera 1"));
     CHECK(mentions(same.out, "no sign of it"));
+}
+
+TEST_CASE("Two cameras in one dome, from images to its centre", "[tools][dome]")
+{
+    // What camera 2 sees of it: R center1 + T.
+    const Rendered rig(scene("[ 62., -2., -8. ]", "[ -57.763216, 0., 20.881486 ]", "200.05"));
+    const ToolResult r = runTool(rig.calib() + " --window=dome --radius=200 --center=60,0,0 --shared-window --thickness=5 --index=1.49 "
+                                 "--outer-index=1.333 --no-cross-validation --quiet --out=" + rig.out("calib.yml"));
+    INFO(r.out << r.err);
+    REQUIRE(r.code == 0);
+    const cv::FileStorage file(rig.out("calib.yml"), cv::FileStorage::READ);
+    const cv::Vec3d expected[] = {cv::Vec3d(62, -2, -8), cv::Vec3d(-57.763216, 0, 20.881486)};
+    for (int k : {0, 1})
+    {
+        cv::refract::GlassWindow window;
+        std::vector<double> std;
+        const cv::FileNode camera = file[k ? "camera2" : "camera1"];
+        camera["glass_window"] >> window;
+        camera["glass_window_std"]["center"] >> std;
+        REQUIRE(std.size() == 3);
+        std::cout << "[numbers] one dome, camera " << k + 1 << ": centre off by " << window.center - expected[k] << ", stated " << std[0]
+                  << ", " << std[1] << ", " << std[2] << '\n';
+        for (int i = 0; i < 3; i++)
+            CHECK(std::abs(window.center[i] - expected[k][i]) < 4*std[i]);
+    }
 }
 
 TEST_CASE("refract_check names the dome that moved", "[tools][dome]")
