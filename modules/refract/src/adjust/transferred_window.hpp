@@ -12,7 +12,8 @@ namespace cv { namespace refract {
 
 /** A window that is described in the frame of its owner, as another camera sees it, with derivatives. Between parallel faces only
 the normal and the distance depend on the frame; with a wedge the thickness (along the normal through the centre of projection) and
-the wedge's axes do, too; where they are bent the normal leads to the spheres' centre. Of a dome it is the center, of a tube the center and the axis. */
+the wedge's axes do, too; where faces are bent the normal leads to the spheres' centre. Of a dome it is the center, of a tube the
+center and the axis. */
 struct TransferredWindow
 {
     //! @param ofOwner the window's parameters in the order of the layout
