@@ -21,9 +21,12 @@ std::vector<GlassWindow> windowsOfEachShape()
     GlassWindow bentWedge = wedged;
     bentWedge.shape = WINDOW_BENT;
     bentWedge.curvature = -1e-4;
-    return {GlassWindow(normalize(Vec3d(0.2, -0.1, 1)), 20, 1.52, 40, 1.333), wedged, bent, bentWedge,
-            GlassWindow::dome(Vec3d(5, -3, 9), 50, 6, 1.49, 1.333),
-            GlassWindow::tube(Vec3d(5, 0, 9), Vec3d(0.1, 1, -0.2), 50, 6, 1.49, 1.333)};
+    std::vector<GlassWindow> windows = {GlassWindow(normalize(Vec3d(0.2, -0.1, 1)), 20, 1.52, 40, 1.333), wedged, bent, bentWedge,
+                                        GlassWindow::dome(Vec3d(5, -3, 9), 50, 6, 1.49, 1.333),
+                                        GlassWindow::tube(Vec3d(5, 0, 9), Vec3d(0.1, 1, -0.2), 50, 6, 1.49, 1.333)};
+    for (GlassWindow& window : windows)
+        window.innerIndex = 1.01;               // away from its bound, so that there are differences to both sides
+    return windows;
 }
 
 } // namespace
