@@ -27,7 +27,7 @@ struct Search
         views.object = scene.object;
         views.cameras.push_back({ scenes::PixelViews(count), scene.refracted[0] });
         const RigStart given = { { { static_cast<const Camera&>(*truth.cameras[0]) }, { 0 }, { Pose() } }, {} };
-        for (const GlassWindow& place : placesAround(given.rig.cameras[0].window(), 0.4, 8, 0))
+        for (const WindowPlace& place : placesAround(given.rig.cameras[0].window(), 0.4, 8, 0))
         {
             tilts.push_back(given);
             REQUIRE(setPlace(tilts.back().rig, 0, place));

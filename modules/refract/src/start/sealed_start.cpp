@@ -63,7 +63,7 @@ std::vector<RigStart> tilted(const std::vector<RigStart>& starts, int owner)
 {
     std::vector<RigStart> all = starts;
     for (const RigStart& start : starts)
-        for (const GlassWindow& place : placesAround(start.rig.cameras[owner].window(), TILT, AZIMUTHS, 0.5))
+        for (const WindowPlace& place : placesAround(start.rig.cameras[owner].window(), TILT, AZIMUTHS, 0.5))
         {
             RigStart other = start;
             if (setPlace(other.rig, owner, place))
@@ -104,10 +104,10 @@ std::vector<RigStart> mirrored(const Rig& rig, const Rig& middle, int flags)
     for (int c = 0; c < rig.count(); c++)
     {
         const GlassWindow window = rig.cameras[c].window();
-        for (const GlassWindow& place : mirroredPlaces(window))
+        for (const WindowPlace& place : mirroredPlaces(window))
         {
             RigStart other = { rig, {} };
-            if (rig.owns(c) && angleBetweenPlaces(place, window) > 2*ROUGHLY_SAME_ANGLE && setPlace(other.rig, c, place))
+            if (rig.owns(c) && angleBetweenPlaces(withPlace(window, place), window) > 2*ROUGHLY_SAME_ANGLE && setPlace(other.rig, c, place))
                 others.push_back(other);
         }
         const std::vector<bool> isFree = freeLens(rig.cameras[c], flags);

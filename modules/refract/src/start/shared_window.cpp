@@ -5,7 +5,6 @@
 /* Windows of a rig: one camera owns each, the others see it from where they are. */
 
 #include "start/shared_window.hpp"
-#include "window/place.hpp"
 #include "window/wedge.hpp"
 
 namespace cv { namespace refract {
@@ -107,9 +106,9 @@ bool setDistances(Rig& rig, double distance)
     return transferToOthers(rig).converged();
 }
 
-bool setPlace(Rig& rig, int owner, const GlassWindow& place)
+bool setPlace(Rig& rig, int owner, const WindowPlace& place)
 {
-    rig.cameras[owner].setWindow(withPlaceOf(rig.cameras[owner].window(), place));
+    rig.cameras[owner].setWindow(withPlace(rig.cameras[owner].window(), place));
     return transferToOthers(rig).converged();
 }
 

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_SHARED_WINDOW_HPP
 
 #include "adjust/problem.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -19,7 +20,7 @@ void giveToNearest(Rig& rig);
 //! The distance of every window that has one from its owner; false if some camera then looks away from it.
 bool setDistances(Rig& rig, double distance);
 //! The place of the window of an owner, in its frame; false if some camera then looks away from it.
-bool setPlace(Rig& rig, int owner, const GlassWindow& place);
+bool setPlace(Rig& rig, int owner, const WindowPlace& place);
 
 }} // namespace
 

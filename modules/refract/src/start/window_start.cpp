@@ -38,7 +38,7 @@ std::vector<RigStart> likelyTilts(const RigStart& given, const RigViews& views)
     const RigStart& first = std::isfinite(placed.cost) ? placed : given;    // poses behind one window are near those behind another
     std::vector<RigStart> ring, likely(1, first);
     for (double tilt : { 0., 0.2, 0.45 })
-        for (const GlassWindow& place : placesAround(given.rig.cameras[0].window(), tilt, tilt > 0 ? 8 : 1, 0))
+        for (const WindowPlace& place : placesAround(given.rig.cameras[0].window(), tilt, tilt > 0 ? 8 : 1, 0))
         {
             ring.push_back(first);
             setPlace(ring.back().rig, 0, place);
@@ -213,7 +213,7 @@ FitOutcome keepGivenPlaces(const Rig& given, const RigViews& views, const std::v
 {
     for (int c = 0; c < rig.count(); c++)
         if (!showsWhatWasSeen(rig, c, views, poses))
-            setPlace(rig, rig.owner[c], given.cameras[rig.owner[c]].window());
+            setPlace(rig, rig.owner[c], placeOf(given.cameras[rig.owner[c]].window()));
     return transferToOthers(rig);
 }
 

@@ -61,17 +61,19 @@ bool isPossible(const WindowLayout& at, const double* p)
     return true;
 }
 
-GlassWindow withPlaceOf(GlassWindow window, const GlassWindow& other)
+WindowPlace placeOf(const GlassWindow& window) { return { window.normal, window.center, window.axis }; }
+
+GlassWindow withPlace(GlassWindow window, const WindowPlace& place)
 {
-    window.normal = other.normal;
-    window.center = other.center;
-    window.axis = other.axis;
+    window.normal = place.normal;
+    window.center = place.center;
+    window.axis = place.axis;
     return window;
 }
 
-std::vector<GlassWindow> placesAround(const GlassWindow& window, double tilt, int count, double first)
+std::vector<WindowPlace> placesAround(const GlassWindow& window, double tilt, int count, double first)
 {
-    std::vector<GlassWindow> places;
+    std::vector<WindowPlace> places;
     // A tube's center moves across its axis.
     const bool isTube = window.shape == WINDOW_TUBE;
     const Vec3d u = isTube ? normalize(across(std::abs(window.axis[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0), window.axis))
@@ -82,22 +84,22 @@ std::vector<GlassWindow> placesAround(const GlassWindow& window, double tilt, in
     {
         const double azimuth = (i + first)*2*CV_PI/count;
         const Vec3d away = sine*(std::cos(azimuth)*u + std::sin(azimuth)*v);
-        places.push_back(window);
+        places.push_back(placeOf(window));
         (hasCenter(window.shape) ? places.back().center : places.back().normal) =
             hasCenter(window.shape) ? window.radius*away : away + Vec3d(0, 0, std::cos(tilt));
     }
     for (double side : { -1., 1. })
         if (window.shape == WINDOW_DOME && tilt > 0)
         {
-            places.push_back(window);
+            places.push_back(placeOf(window));
             places.back().center = Vec3d(0, 0, side*sine*window.radius);
         }
     return places;
 }
 
-std::vector<GlassWindow> mirroredPlaces(const GlassWindow& window)
+std::vector<WindowPlace> mirroredPlaces(const GlassWindow& window)
 {
-    std::vector<GlassWindow> places(hasCenter(window.shape) ? 2 : 1, window);
+    std::vector<WindowPlace> places(hasCenter(window.shape) ? 2 : 1, placeOf(window));
     Vec3d& place = hasCenter(window.shape) ? places[0].center : places[0].normal;
     place = Vec3d(-place[0], -place[1], place[2]);
     if (hasCenter(window.shape))
