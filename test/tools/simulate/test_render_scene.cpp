@@ -5,6 +5,7 @@
 #include "scenes.hpp"
 #include "simulate/render_scene.hpp"
 
+#include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -74,6 +75,15 @@ std::vector<Vec3d> pointsAt(const std::vector<Point2d>& pixels, const std::vecto
     return points;
 }
 
+//! A pane that bulges towards the camera is a sphere, which closes again: what a grazing ray sees beyond it has no answer.
+bool isBehindPane(const GlassWindow& window, const Vec3d& point)
+{
+    if (!(window.curvature < 0))
+        return true;
+    const double radius = -1/window.curvature, glass = std::accumulate(window.thickness.begin(), window.thickness.end(), 0.);
+    return norm(point - (window.distance + radius)*window.normal) < radius - glass;
+}
+
 std::vector<double> asList(const Mat& depth)
 {
     std::vector<double> list;
@@ -137,12 +147,19 @@ TEST_CASE("a pixel's depth is on the first surface, and its point is seen in tha
             REQUIRE(depth.type() == CV_32F);
             std::vector<Point2d> pixels, seenAt;
             std::vector<double> depths;
-            for (const Point2d& p : allPixels(depth.size()))
-                if (depth.at<float>(p) > 50)        // at the edge of a fisheye's image z is next to nothing: no way to a point
+            std::vector<Vec3d> origins, directions;
+            const std::vector<Point2d> all = allPixels(depth.size());
+            refractiveUnprojectPoints(all, origins, directions, camera);
+            for (size_t i = 0; i < all.size(); i++)
+            {
+                const double z = depth.at<float>(all[i]);
+                // At the edge of a fisheye's image z is next to nothing: no way to a point.
+                if (z > 50 && isBehindPane(camera->window(), origins[i] + (z - origins[i][2])/directions[i][2]*directions[i]))
                 {
-                    pixels.push_back(p);
-                    depths.push_back(depth.at<float>(p));
+                    pixels.push_back(all[i]);
+                    depths.push_back(z);
                 }
+            }
             REQUIRE(pixels.size() > depth.total()/10);       // total reflection leaves a cone
             const std::vector<Vec3d> points = pointsAt(pixels, depths, camera);
             std::vector<double> next;
