@@ -9,8 +9,9 @@ from . import _native
 from ._values import Values
 
 WINDOW_FIELDS = ("normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge", "wavelength", "materials",
-                 "shape", "center", "radius")
-SEQUENCES = ("normal", "center", "thickness", "index", "wedge", "materials")
+                 "shape", "center", "radius", "axis", "curvature")
+SEQUENCES = ("normal", "center", "axis", "thickness", "index", "wedge", "materials")
+PANES = (0, 3)      # shapes that have a normal: WINDOW_FLAT, WINDOW_BENT
 
 
 def as_values(read):
@@ -49,8 +50,8 @@ def window_text(window):
     """As it is made; fields with the values of no window are left out."""
     none = _native.GlassWindow()
     given = [(name, getattr(window, name)) for name in WINDOW_FIELDS]
-    always = ("normal", "thickness", "index") if window.shape == none.shape else ("thickness", "index")
-    parts = [f"{name}={tuple(value) if name in ('normal', 'center') else value!r}" for name, value in given
+    always = ("normal", "thickness", "index") if window.shape in PANES else ("thickness", "index")
+    parts = [f"{name}={tuple(value) if name in ('normal', 'center', 'axis') else value!r}" for name, value in given
              if value != getattr(none, name) or (name in always and window != none)]
     return f"GlassWindow({', '.join(parts)})"
 

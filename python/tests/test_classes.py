@@ -71,8 +71,16 @@ def test_a_dome():
         refract.GlassWindow.dome((0, 0, 60.), 50, 7, 1.5)
     with pytest.raises(refract.error, match="radius"):
         refract.GlassWindow((0, 0, 1), 7, 1.5, radius=50)
-    with pytest.raises(refract.error, match="dome"):
-        refract.calibrateGlass([np.zeros((6, 3), np.float32)], [np.zeros((6, 2), np.float32)], [np.zeros((6, 2), np.float32)], camera)
+    truth = camera.window().center
+    object_points = [np.array([[30.*x, 30.*y, 0] for y in range(-2, 3) for x in range(-3, 4)]) for _ in range(6)]
+    poses = [((0.3*np.sin(i), 0.3*np.cos(i), 0.1), (5.*i - 12, 8., 550. + 40*i)) for i in range(6)]
+    seen = [refract.refractiveProjectPoints(o, r, t, camera)[0] for o, (r, t) in zip(object_points, poses)]
+    bare = refract.RefractiveCamera.create(K, None)
+    direct = [refract.refractiveProjectPoints(o, r, t, bare)[0] for o, (r, t) in zip(object_points, poses)]
+    start = refract.RefractiveCamera.create(K, None, refract.GlassWindow.dome((0, 0, 0), 50, 7, 1.5, 1.33))
+    refract.calibrateGlass(object_points, direct, seen, start)
+    assert np.abs(np.array(start.window().center) - truth).max() < 1e-5
+
 
 
 def test_a_tube():
