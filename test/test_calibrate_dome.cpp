@@ -260,7 +260,7 @@ TEST_CASE("Domes with values drawn from their priors: in every flow errors are w
     }
 }
 
-TEST_CASE("Derivatives of a rig's cameras in one dome follow from its owner's", "[dome][calibrate]")
+TEST_CASE("Two cameras in one dome are calibrated together", "[dome][calibrate]")
 {
     Random random(6102);
     CAPTURE(seed());

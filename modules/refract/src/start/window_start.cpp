@@ -155,7 +155,7 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     GlassWindow window = rig.cameras[owner].window();
     if ((flags & GLASS_FIX_NORMAL) || !rig.cameras[owner].refracts())
         return window;
-    // A dome is round: with poses known it has one minimum, and no line through it to begin with.
+    // With poses known the centre of a dome has one minimum, which the fit reaches from the given place.
     const bool areKnown = hasCenter(window.shape) ? hasPairs(rig, owner, views, poses)
                                                   : normalOfPairs(rig, owner, views, poses, flags, window.normal);
     if (areKnown || (flags & GLASS_FREE_INTRINSICS))
