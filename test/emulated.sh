@@ -105,6 +105,7 @@ run() {         # run NAME COMMAND...: its output, kept for the counts
 # As with the sanitizers: what is slow by design is left out; and the tests that make thousands of threads, as the emulator
 # (qemu-user 7.2) keeps the memory of each that has ended.
 run refract_tests "$bin/refract_tests" '~[slow]~[.]~[threads]'
+run refract_program_tests "$bin/refract_program_tests" '~[slow]~[.]'
 run refract_tools_tests "$bin/refract_tools_tests" '~[.]'
 run opencv_test_refract "$bin/opencv_test_refract" --gtest_brief=1
 for sample in "$bin"/sample_*."$arch"; do
@@ -117,7 +118,7 @@ run main_job env -C "$work/main_job" PATH="$bin:$PATH" "$PWD/test/main_job.sh"
 
 echo
 tail -n 2 "$work/kernels.txt"
-for name in refract_tests refract_tools_tests opencv_test_refract; do
+for name in refract_tests refract_program_tests refract_tools_tests opencv_test_refract; do
   echo "$name: $(grep -E '^(All tests passed|test cases:|\[  PASSED|\[  FAILED)' "$work/$name.txt")"
 done
 echo "$failed programs failed on $arch"

@@ -49,16 +49,17 @@ for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"
 done
 
-# One build for the suites and the fuzzers, which want clang.
+# One build for the module's suite and the fuzzers, which want clang.
+targets="refract_tests fuzzers"
 build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
   -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
+targets=""
 # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
 # One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
 export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
-# The module, and what reads files. The tools' fits take ten times as long so: with --release.
-suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|tools|calib_tool|calib_rig|real'
-suite "parsers under sanitizers" build/sanitize -L '^(units|table|frames|points_csv|poses_file|given_index|rig_data|mesh|cloud)$'
+# What reads files is under them in the fuzzers; the tools' fits take ten times as long so: with --release.
+suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|real'
 unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
 run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh
 

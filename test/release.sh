@@ -9,9 +9,10 @@
 build build/plain -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 for disabled in AVX512-SKX AVX512-SKX,AVX2; do
   export OPENCV_CPU_DISABLE=$disabled
-  suite "the module without $disabled" build/release -L '^refract_tests$' -LE 'slow|tools|calib_tool|calib_rig'
+  suite "the module without $disabled" build/release -L '^refract_tests$' -LE slow
 done
 unset OPENCV_CPU_DISABLE
+cmake --build build/sanitize        # all of it
 export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
 suite "the tools under sanitizers" build/sanitize -L '^refract_tools_tests$' -LE slow
 pair=samples/data/stereo
@@ -35,6 +36,6 @@ run "both commands on a bare Debian 12" test/bare.sh
 run "a bare Debian 13" test/debian13.sh
 run "the same hundred values from all of these builds" test/agreement/run.sh build/release
 run "fuzzing: ten minutes of each" test/fuzz/run.sh 600
-for program in refract_tests refract_tools_tests; do
+for program in refract_tests refract_program_tests refract_tools_tests; do
   run "$program: Monte Carlo, crude starts, honesty, scaling" "build/release/bin/$program" "[.]"
 done

@@ -30,10 +30,11 @@ mkdir -p build
 echo "installed after $(after)"
 
 passed=0; failed=0; skipped=0; failures=""; failing_logs=""
-build() {   # build DIRECTORY OPTIONS...
+build() {   # build DIRECTORY OPTIONS...; only the targets in $targets, if there are any
   directory=$1; shift
   cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
-  cmake --build "$directory"
+  # shellcheck disable=SC2086  # names without blanks
+  cmake --build "$directory" --target ${targets:-all}
   echo "built after $(after): $directory"
 }
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
