@@ -40,32 +40,36 @@ Eigen::MatrixXd ParameterBlock::tangentBasis(bool withHeld) const
     return basis.leftCols(column);
 }
 
-//! By the root of the correlations, as the parameters' sizes differ by orders.
+//! By the root of the correlations of what is uncertain, as the parameters' sizes differ by orders.
 bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
 {
     const int size = (int)values.size();
-    std::vector<int> uncertain;
+    Eigen::MatrixXd known = Eigen::MatrixXd::Zero(size, size);
     for (int i = 0; i < size; i++)
+    {
         if (covariance(i, i) > 0)
-            uncertain.push_back(i);
+            isFree[i] = true;
         else if ((kind == LENS || kind == EXTRINSICS) && covariance(i, i) == 0)
             isFree[i] = false;
-    const int count = (int)uncertain.size();
-    Eigen::MatrixXd correlation(count, count);
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < count; j++)
-            correlation(i, j) = covariance(uncertain[i], uncertain[j])/
-                                std::sqrt(covariance(uncertain[i], uncertain[i])*covariance(uncertain[j], uncertain[j]));
-    const Eigen::LLT<Eigen::MatrixXd> root(correlation);
+        for (int j = 0; j < size; j++)
+            if (covariance(i, i) > 0 && covariance(j, j) > 0)
+                known(i, j) = covariance(i, j);
+    }
+    if (known.isZero(0))
+        return true;
+    if (isOnManifold())
+        isFree.assign(size, true);
+    const Eigen::MatrixXd tangents = tangentBasis(true);
+    const Eigen::VectorXd variances = (tangents.transpose()*known*tangents).diagonal();
+    const int count = (int)(variances.array() > 0).count();
+    Eigen::MatrixXd directions(size, count);    // each divided by its deviation
+    for (int i = 0, k = 0; i < variances.size(); i++)
+        if (variances[i] > 0)
+            directions.col(k++) = tangents.col(i)/std::sqrt(variances[i]);
+    const Eigen::LLT<Eigen::MatrixXd> root(directions.transpose()*known*directions);
     if (root.info() != Eigen::Success)
         return false;
-    const Eigen::MatrixXd inverse = root.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
-    sqrtInformation.setZero(count, size);
-    for (int j = 0; j < count; j++)
-    {
-        isFree[uncertain[j]] = true;
-        sqrtInformation.col(uncertain[j]) = inverse.col(j)/std::sqrt(covariance(uncertain[j], uncertain[j]));
-    }
+    sqrtInformation = root.matrixL().solve(directions.transpose());
     return true;
 }
 

@@ -194,7 +194,7 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     if (!rig_.owns(c))
         return;
     add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)),
-        at.shape == WINDOW_DOME);
+        hasCenter(at.shape));
     add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
 }
 
