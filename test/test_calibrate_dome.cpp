@@ -3,9 +3,7 @@
 
 // Cameras in domes, calibrated: from crude starts, at the Cramer-Rao bound, with errors as stated. The centre is free, as the normal
 // of a pane is.
-#include "problem_scenes.hpp"
-#include "target_scenes.hpp"
-#include "window/wedge.hpp"
+#include "round_scenes.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -13,67 +11,17 @@ using namespace scenes;
 
 namespace {
 
-const int CENTER = 8, RADIUS = 11, THICKNESS = 12, INDEX = 13, OUTER = 15, COUNT = 16;      // rows of a camera: 8 of the lens
+const int CENTER = 8, RADIUS = 11, OUTER = 15, COUNT = 16;      // rows of a camera: 8 of the lens
 const double SIGMA = 0.1;
 
-GlassWindow domeAt(const Vec3d& center, double outerIndex) { return GlassWindow::dome(center, 70, 7, 1.49, outerIndex); }
-
-//! Cameras as makeRig's, each in a dome of its own, or all in that of the first.
 RigTruth domeRig(int count, bool shared, double outerIndex, const Vec3d& center, Random& random, double apart = 0.2)
 {
-    std::vector<int> windows(count, 0);
-    for (int c = 0; c < count && !shared; c++)
-        windows[c] = c;
-    RigTruth truth = makeRig(count, windows, outerIndex, apart);
-    for (int c = 0; c < count; c++)
-        truth.cameras[c]->setWindow(c == 0 ? domeAt(center, outerIndex) :
-            shared ? windowInFrame(truth.cameras[0]->window(), truth.Rs[c], truth.Ts[c]) : domeAt(center + random.vector(4), outerIndex));
-    return truth;
-}
-
-//! The centres begin at the cameras.
-RigCall callFromCentre(const RigTruth& truth, const RigScene& scene, bool paired)
-{
-    RigCall call(truth, scene, paired);
-    for (size_t c = 0; c < call.cameras.size(); c++)
-    {
-        GlassWindow window = truth.cameras[c]->window();
-        window.center = Vec3d();
-        call.cameras[c]->setWindow(window);
-    }
-    return call;
-}
-
-void runWithPriors(RigCall& call, const std::vector<Mat>& priors, int flags)
-{
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima, flags,
-                      noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12), priors);
+    return roundRig(domeAt, count, shared, outerIndex, center, random, apart);
 }
 
 double centerError(const RigCall& call, const RigTruth& truth, int c = 0)
 {
     return norm(call.cameras[c]->window().center - truth.cameras[c]->window().center);
-}
-
-//! Covariance of the centre for pixels of standard deviation 1, all else of the camera known, poses not; without noise.
-Matx33d boundOfCenter(const CalibrationScene& perfect, bool paired, const Ptr<RefractiveCamera>& camera)
-{
-    Ptr<RefractiveCamera> found = camera->clone();
-    Mat jacobian;
-    calibrateGlass(perfect.object, paired ? perfect.direct : PixelViews(), perfect.refracted, found, noArray(), noArray(), noArray(),
-                   noArray(), noArray(), jacobian, 0);
-    const int points = (int)perfect.object[0].size(), rows = 2*points*(paired ? 2 : 1);
-    Matx33d information = Matx33d::zeros();
-    for (int view = 0; view < (int)perfect.object.size(); view++)
-    {
-        const Mat ofView = jacobian.rowRange(view*rows, (view + 1)*rows), J = ofView.colRange(CENTER, CENTER + 3);
-        const Mat K = ofView.colRange(COUNT + 6*view, COUNT + 6*view + 6);
-        Mat fit;
-        solve(K, J, fit, DECOMP_QR);
-        information += Matx33d(Mat(J.t()*(J - K*fit)));
-    }
-    return information.inv();
 }
 
 } // namespace
@@ -119,144 +67,6 @@ TEST_CASE("A dome's radius, thickness and indices are estimated where images tel
         CHECK(std::abs(call.cameras[0]->window().radius - 70) < 1e-4);
         CHECK(std::abs(call.cameras[0]->window().outerIndex - 1.333) < 1e-7);
         CHECK(call.deviations.at<double>(c.row) > 0);
-    }
-}
-
-TEST_CASE("The centre is as good as the Cramer-Rao bound", "[dome][calibrate][slow]")
-{
-    CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 100;
-    struct Case { const char* name; bool paired; double outerIndex; int views; };
-    for (const Case& c : { Case{ "4 pairs in air", true, 1, 4 }, Case{ "4 pairs in water", true, 1.333, 4 },
-                           Case{ "20 hand-held views in water", false, 1.333, 20 } })
-    {
-        double squares = 0, ofBound = 0, ofStated = 0;
-        for (int trial = 0; trial < TRIALS; trial++)
-        {
-            Random random(6200 + trial);
-            const Ptr<RefractiveCamera> camera = paperCamera(domeAt({ 4, -3, 6 }, c.outerIndex));
-            const CalibrationScene perfect = makeScene(camera, c.views, random, 0), scene = withNoise(perfect, random, SIGMA);
-            const Matx33d bound = SIGMA*SIGMA*boundOfCenter(perfect, c.paired, camera);
-            Ptr<RefractiveCamera> found = paperCamera(domeAt(Vec3d(), c.outerIndex));
-            Mat covariance;
-            calibrateGlass(scene.object, c.paired ? scene.direct : PixelViews(), scene.refracted, found, noArray(), noArray(), noArray(),
-                           covariance, noArray(), noArray(), 0);
-            const Vec3d error = found->window().center - camera->window().center;
-            squares += error.dot(error)/TRIALS;
-            ofBound += trace(bound)/TRIALS;
-            ofStated += squaredMahalanobis({ error[0], error[1], error[2] }, covariance, { CENTER, CENTER + 1, CENTER + 2 })/(3*TRIALS);
-        }
-        std::cout << "[numbers] dome, " << c.name << ": centre " << std::sqrt(squares) << " mm RMS, of the Cramer-Rao bound "
-                  << std::sqrt(squares/ofBound) << ", of what is stated " << std::sqrt(ofStated) << std::endl;
-        CAPTURE(c.name);
-        CHECK(std::abs(std::sqrt(squares/ofBound) - 1) < 4/std::sqrt(2.*TRIALS));     // one direction may hold it all
-        CHECK(std::abs(ofStated - 1) < 4*std::sqrt(2./(3*TRIALS)));
-    }
-}
-
-namespace {
-
-//! Standard deviations of what is known of a dome; mm.
-struct Given
-{
-    double radius = 0.3, thickness = 0.1, index = 0.002, outerIndex = 0.001;
-    double scale = 2e-4, rotation = 3e-4, translation = 0.03;
-};
-
-struct Flow
-{
-    const char* name;
-    int cameras;
-    bool shared, paired;
-    double outerIndex;
-    int views, flags;
-};
-
-GlassWindow drawn(GlassWindow window, const Given& given, Random& random)
-{
-    window.radius += random.normal(given.radius);
-    window.thickness[0] += random.normal(given.thickness);
-    window.index[0] += random.normal(given.index);
-    window.outerIndex += window.outerIndex > 1 ? random.normal(given.outerIndex) : 0;
-    return window;
-}
-
-Mat priorOf(const GlassWindow& window, const Given& given)
-{
-    Mat covariance = Mat::diag(Mat(COUNT, 1, CV_64F, Scalar(NaN)));
-    const auto set = [&](int i, double sigma) { covariance.at<double>(i, i) = sigma*sigma; };
-    set(RADIUS, given.radius);
-    set(THICKNESS, given.thickness);
-    set(INDEX, given.index);
-    if (window.outerIndex > 1)
-        set(OUTER, given.outerIndex);
-    return covariance;
-}
-
-//! Mean squares over what is stated: of the centre, of all that is estimated of the first dome.
-Vec2d tryFlow(const Flow& flow, const Given& given, int seedOfTrial)
-{
-    Random random(seedOfTrial);
-    const RigTruth nominal = domeRig(flow.cameras, flow.shared, flow.outerIndex, Vec3d(5, -4, 9) + random.vector(3), random,
-                                     flow.shared ? 0.02 : 0.2);
-    RigTruth truth = nominal;
-    for (int c = 0; c < flow.cameras; c++)
-    {
-        truth.cameras[c] = nominal.cameras[c]->clone();
-        truth.cameras[c]->setWindow(c > 0 && flow.shared ? windowInFrame(truth.cameras[0]->window(), truth.Rs[c], truth.Ts[c])
-                                                         : drawn(nominal.cameras[c]->window(), given, random));
-    }
-    RigScene scene = makeRigScene(truth, ObjectViews(flow.views, board()), random, SIGMA, 400, 800);
-    imageTargets(truth, drawTargets(random, given.scale, given.rotation, given.translation), random, SIGMA, scene);
-    RigCall call = callFromCentre(nominal, scene, flow.paired);
-    std::vector<Mat> priors;
-    for (const Ptr<RefractiveCamera>& camera : call.cameras)
-        priors.push_back(priorOf(camera->window(), given));
-    Mat errors;
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima,
-                      targetCovariance(given.scale, given.rotation, given.translation), errors, flow.flags, noArray(),
-                      TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12), priors);
-    const std::vector<double> found = static_cast<const Camera&>(*call.cameras[0]).parameters(),
-                              exact = static_cast<const Camera&>(*truth.cameras[0]).parameters();
-    std::vector<double> difference;
-    std::vector<int> rows;
-    for (int i = CENTER; i < COUNT; i++)
-        if (call.deviations.at<double>(i) > 0)
-        {
-            rows.push_back(i);
-            difference.push_back(found[i] - exact[i]);
-        }
-    return Vec2d(squaredMahalanobis({ difference[0], difference[1], difference[2] }, call.covariance, { CENTER, CENTER + 1, CENTER + 2 })/3,
-                 squaredMahalanobis(difference, call.covariance, rows)/(double)rows.size());
-}
-
-} // namespace
-
-TEST_CASE("Domes with values drawn from their priors: in every flow errors are what is stated", "[dome][given][slow]")
-{
-    CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
-    const Flow flows[] = {
-        { "pairs in air", 1, false, true, 1, 6, 0 },
-        { "pairs in water", 1, false, true, 1.333, 6, 0 },
-        { "hand-held in water", 1, false, false, 1.333, 15, 0 },
-        { "two domes, pairs in water, R and T free", 2, false, true, 1.333, 6, GLASS_FREE_EXTRINSICS },
-        { "two domes, hand-held in water", 2, false, false, 1.333, 12, 0 },
-        { "two cameras in one dome, pairs in water, R and T free", 2, true, true, 1.333, 6, GLASS_FREE_EXTRINSICS },
-        { "pairs in water, lens free", 1, false, true, 1.333, 10, GLASS_FREE_INTRINSICS },
-        { "pairs in water, robust", 1, false, true, 1.333, 8, GLASS_ROBUST },
-    };
-    for (const Flow& flow : flows)
-    {
-        Vec2d mean;
-        for (int trial = 0; trial < TRIALS; trial++)
-            mean += tryFlow(flow, Given(), 6300 + trial)*(1./TRIALS);
-        std::cout << "[numbers] domes, given values drawn from their priors, " << flow.name << ": error over stated, centre "
-                  << std::sqrt(mean[0]) << ", all of the dome " << std::sqrt(mean[1]) << std::endl;
-        CAPTURE(flow.name);
-        CHECK(std::abs(mean[0] - 1) < 4*std::sqrt(2./(3*TRIALS)));
-        CHECK(std::abs(mean[1] - 1) < 4*std::sqrt(2./(6*TRIALS)));
     }
 }
 

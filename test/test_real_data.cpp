@@ -421,8 +421,8 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
         for (int coefficients : { 0, 4 })
         {
             std::vector<double> rms;
-            for (double focal : { 5400., 6000., 6600. })
-                for (double distance : { 50., 150., 400. })
+            for (double focal : { 5400., 6600. })
+                for (double distance : { 50., 400. })
                 {
                     GlassWindow window;
                     window.distance = distance;
@@ -437,7 +437,7 @@ TEST_CASE("One view of a real target in water: starts far apart end in one minim
             CAPTURE(cameraNumber, coefficients, rms);
             const auto ends = std::minmax_element(rms.begin(), rms.end());
             std::cout << "[numbers] myptv, camera " << cameraNumber << ", " << coefficients << " coefficients: " << *ends.first
-                      << " to " << *ends.second << " px from nine starts\n";
+                      << " to " << *ends.second << " px from four starts\n";
             CHECK(*ends.second - *ends.first < 1e-6);
         }
     }
