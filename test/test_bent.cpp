@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Bent panes; in every call as two of allWindows().
-#include "kernel_levels.hpp"
+#include "curved_scenes.hpp"
 #include "quick_require.hpp"
-#include "scenes.hpp"
 #include "window/curved.hpp"
 #include "window/curved_path.hpp"
-#include "window/layers.hpp"
 #include "window/parameters.hpp"
 #include "window/wedge.hpp"
 
@@ -18,9 +16,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
-
-Vec3d unit(const Vec3d& v) { return v/norm(v); }
+const Matx33d K = CURVED_K;
 
 enum Lean { UPRIGHT, LEANING };
 
@@ -62,22 +58,17 @@ uchar trace(const GlassWindow& w, Vec3d& point, Vec3d& direction, double* leastC
         return REFRACT_BEHIND_WINDOW;
     for (size_t k = 0; k <= w.index.size(); k++)
     {
-        const double next = k < w.index.size() ? w.index[k] : w.outerIndex, ratio = medium/next, angle = norm(lean);
+        const double next = k < w.index.size() ? w.index[k] : w.outerIndex, angle = norm(lean);
         const double curvature = w.curvature/(1 + w.curvature*(height - w.distance));
         const Vec3d foot = height*w.normal;
-        const Vec3d across = lean[0]*e1 + lean[1]*e2;
-        const Vec3d m0 = angle > 0 ? std::cos(angle)*w.normal + std::sin(angle)/angle*across : w.normal;
+        const Vec3d towards = lean[0]*e1 + lean[1]*e2;
+        const Vec3d m0 = angle > 0 ? std::cos(angle)*w.normal + std::sin(angle)/angle*towards : w.normal;
         const double s = stepTo(point, direction, foot, m0, curvature);
         if (!(s >= -1e-13*norm(point)))
             return REFRACT_BEHIND_WINDOW;
         point += s*direction;
-        const Vec3d m = m0 + curvature*(point - foot);
-        const double c = m.dot(direction), square = 1 - ratio*ratio*(1 - c*c);
-        if (!(square > 0))
+        if (!refractAt(direction, m0 + curvature*(point - foot), medium, next, leastCosine))
             return REFRACT_TOTAL_REFLECTION;
-        direction = ratio*direction + (std::sqrt(square) - ratio*c)*m;
-        if (leastCosine)
-            *leastCosine = std::min(*leastCosine, std::min(c, std::sqrt(square)));
         medium = next;
         if (k == w.index.size())
             break;
@@ -85,13 +76,6 @@ uchar trace(const GlassWindow& w, Vec3d& point, Vec3d& direction, double* leastC
         lean += w.wedge.empty() ? Vec2d() : w.wedge[k];
     }
     return REFRACT_OK;
-}
-
-uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction)
-{
-    uchar status = REFRACT_OK;
-    layers.solveIn(1, &X[0], &X[1], &X[2], &w, &direction[0], &direction[1], &direction[2], &status);
-    return status;
 }
 
 //! What the kernels see, made anew from a window.
@@ -113,20 +97,6 @@ struct Seen
     std::vector<CurvedFace> faces;
     CurvedFaces curved;
 };
-
-std::string refusal(const std::function<void()>& call, int code)
-{
-    try
-    {
-        call();
-    }
-    catch (const cv::Exception& e)
-    {
-        CHECK(e.code == code);
-        return e.err;
-    }
-    return "no refusal";
-}
 
 std::vector<Point3d> somePoints(Random& random, int count)
 {
@@ -340,38 +310,13 @@ TEST_CASE("Every instruction set gives the same answer behind a bent pane", "[be
 {
     CAPTURE(seed());
     Random random;
-    const int n = 301;
     for (int i = 0; i < 20; i++)
     {
         const GlassWindow window = randomBent(random, i % 2 ? LEANING : UPRIGHT);
-        const Seen seen(window);
-        std::vector<double> x(n), y(n), z(n), d[3], expected[3], jacobian;
-        for (int k = 0; k < n; k++)
-        {
-            const Vec3d X = random.uniform(300, 800)*unit(window.normal + random.vector(0.5));
-            x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
-        }
-        for (const Kernels* level : kernelLevels())
-        {
-            CAPTURE(level->instructions);
-            d[0] = x; d[1] = y; d[2] = z;
-            CHECK(level->curved.solveIn(seen.curved, n, x.data(), y.data(), z.data(), NULL, d[0].data(), d[1].data(), d[2].data()));
-            std::vector<double> byDirection(6*n, 1), byPoint(6*n), byWindow(2*n*seen.curved.at.count);
-            level->curved.chain(seen.curved, 2, n, x.data(), y.data(), z.data(), d[0].data(), d[1].data(), d[2].data(),
-                                { byDirection.data(), 3, n }, { byPoint.data(), 3, n }, { byWindow.data(), seen.curved.at.count, n });
-            if (expected[0].empty())
-            {
-                std::copy(d, d + 3, expected);
-                jacobian = byWindow;
-            }
-            for (int k = 0; k < n; k++)
-            {
-                const Vec3d one = unit(Vec3d(d[0][k], d[1][k], d[2][k])), other(expected[0][k], expected[1][k], expected[2][k]);
-                REQUIRE(norm(one - unit(other)) < 1e-14);
-            }
-            for (size_t k = 0; k < byWindow.size(); k++)
-                REQUIRE(std::abs(byWindow[k] - jacobian[k]) < 1e-11*(1 + std::abs(byWindow[k])));
-        }
+        std::vector<Vec3d> points;
+        for (int k = 0; k < 301; k++)
+            points.push_back(random.uniform(300, 800)*unit(window.normal + random.vector(0.5)));
+        checkInstructionSets(Seen(window).curved, points, window.distance);
     }
 }
 
@@ -404,13 +349,9 @@ TEST_CASE("A bent pane is the same after its file", "[bent][file]")
     bent.shape = WINDOW_BENT;
     bent.curvature = -1.25e-5;
     bent.wedge.push_back(Vec2d(0.001, -0.002));
-    FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-    out << "glass_window" << bent;
-    const String text = out.releaseAndGetString();
+    String text;
+    const GlassWindow back = throughFile(bent, text);
     CHECK_THAT(text, Contains("shape: bent"));
-    FileStorage in(text, FileStorage::READ | FileStorage::MEMORY);
-    GlassWindow back;
-    in["glass_window"] >> back;
     CHECK(back.shape == WINDOW_BENT);
     CHECK(back.curvature == bent.curvature);
     CHECK(back.wedge == bent.wedge);

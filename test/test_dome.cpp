@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Domes; against 60-digit references in test_reference.cpp, in every call as two of allWindows().
-#include "kernel_levels.hpp"
+#include "curved_scenes.hpp"
 #include "quick_require.hpp"
-#include "scenes.hpp"
 #include "window/dome.hpp"
 #include "window/dome_kernels.hpp"
-#include "window/layers.hpp"
 #include "window/parameters.hpp"
 
 #include <opencv2/calib3d.hpp>
@@ -19,7 +17,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const Matx33d K(1000, 0, 640, 0, 1010, 480, 0, 0, 1);
+const Matx33d K = CURVED_K;
 
 /** One to three layers; the centre up to 0.6 radii off.
 @param anyMedia round the camera, too, and the centre up to 0.95 radii off: there may be total reflection and caustics */
@@ -47,51 +45,23 @@ bool trace(const GlassWindow& w, Vec3d& point, Vec3d& direction, double* leastCo
     point = Vec3d();
     for (size_t k = 0; k <= w.index.size(); k++)
     {
-        const double next = k < w.index.size() ? w.index[k] : w.outerIndex, ratio = medium/next;
+        const double next = k < w.index.size() ? w.index[k] : w.outerIndex;
         const Vec3d off = point - w.center;
         const double ahead = off.dot(direction);
         point += (-ahead + std::sqrt(ahead*ahead - off.dot(off) + radius*radius))*direction;
-        const Vec3d m = (point - w.center)/radius;
-        const double c = m.dot(direction), square = 1 - ratio*ratio*(1 - c*c);
-        if (!(square > 0))
+        if (!refractAt(direction, (point - w.center)/radius, medium, next, leastCosine))
             return false;
-        direction = ratio*direction + (std::sqrt(square) - ratio*c)*m;
-        if (leastCosine)
-            *leastCosine = std::min(*leastCosine, std::min(c, std::sqrt(square)));
         medium = next;
         radius += k < w.index.size() ? w.thickness[k] : 0;
     }
     return true;
 }
 
-uchar solveIn(const Layers& layers, const Vec3d& X, double w, Vec3d& direction)
-{
-    uchar status = REFRACT_OK;
-    layers.solveIn(1, &X[0], &X[1], &X[2], &w, &direction[0], &direction[1], &direction[2], &status);
-    return status;
-}
-
-Vec3d unit(const Vec3d& v) { return v/norm(v); }
-
 Dome domeOf(const GlassWindow& window, const std::vector<Sphere>& faces)
 {
     const WindowLayout at = windowLayout(window);
     return { { window.center[0], window.center[1], window.center[2] }, 0, faces.data(), (int)faces.size(), window.innerIndex,
              window.outerIndex, at };
-}
-
-std::string refusal(const std::function<void()>& call, int code)
-{
-    try
-    {
-        call();
-    }
-    catch (const cv::Exception& e)
-    {
-        CHECK(e.code == code);
-        return e.err;
-    }
-    return "no refusal";
 }
 
 GlassWindow changed(const std::function<void(GlassWindow&)>& change)
@@ -140,8 +110,7 @@ TEST_CASE("Round trips through domes, to all sides, of any media", "[dome]")
         left += !domeKernels().solveIn(dome, 1, &X[0], &X[1], &X[2], NULL, &back[0], &back[1], &none);
         QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w, X);
         const double error = norm(unit(back) - w)*grazing*grazing;
-        const bool isRarest = window.innerIndex <= std::min(window.outerIndex, *std::min_element(window.index.begin(),
-                                                                                                window.index.end()));
+        const bool isRarest = isInnerRarest(window);
         if (error >= 1e-13 && !isRarest)
         {
             // Next to a caustic two directions see the point, and behind it more: any of them is right.
@@ -204,27 +173,8 @@ TEST_CASE("A dome with its centre at the camera does not refract", "[dome]")
 TEST_CASE("A dome becomes a flat window as its radius grows", "[dome]")
 {
     CAPTURE(seed());
-    Random random;
-    for (double outerIndex : { 1., 1.333 })
-    {
-        const GlassWindow flat(Vec3d(0.1, -0.05, 1), 20, 1.5, 30, outerIndex);
-        std::vector<Point3d> points;
-        for (int i = 0; i < 200; i++)
-            points.push_back(Point3d(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(600, 1000)));
-        std::vector<Point2d> expected;
-        refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), flat, expected);
-        const auto difference = [&](double radius)
-        {
-            const GlassWindow dome = GlassWindow::dome(-(radius - flat.distance)*flat.normal, radius, 20, 1.5, outerIndex);
-            std::vector<Point2d> pixels;
-            refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), dome, pixels);
-            return norm(pixels, expected, NORM_INF);
-        };
-        // What is left is the curvature's own: half of it at twice the radius.
-        for (double radius : { 1e5, 1e6, 1e7 })
-            CHECK(difference(radius)/difference(2*radius) == Approx(2).epsilon(1e-2));
-        printNumber(format("radius 1e6 against the flat window, outside %g", outerIndex), difference(1e6), "px");
-    }
+    checkLimitOfRadius("dome", [](const GlassWindow& flat, double radius)
+    { return GlassWindow::dome(-(radius - flat.distance)*flat.normal, radius, flat.thickness[0], flat.index[0], flat.outerIndex); });
 }
 
 TEST_CASE("Points before and inside a dome are behind the window", "[dome]")
@@ -233,43 +183,20 @@ TEST_CASE("Points before and inside a dome are behind the window", "[dome]")
     Random random;
     const GlassWindow window = GlassWindow::dome(Vec3d(5, -4, 12), 50, 7, 1.5, 1.333);
     std::vector<Point3d> points;
-    std::vector<uchar> expected, status;
+    std::vector<uchar> expected;
     for (int i = 0; i < 1000; i++)
     {
         const Vec3d at = unit(random.vector(1));
-        const double radius = i % 3 == 0 ? 57*(1 + 1e-9) : i % 3 == 1 ? 57*(1 - 1e-9) : random.uniform(0, 57);
+        const double radius = (i % 3 == 0 ? 1 + 1e-9 : i % 3 == 1 ? 1 - 1e-9 : random.uniform(0, 3))*57;
         const Vec3d X = window.center + radius*at;
         if (X[2] < 5)
             continue;
         points.push_back(X);
-        expected.push_back(i % 3 == 0 ? REFRACT_OK : REFRACT_BEHIND_WINDOW);
+        expected.push_back(radius > 57 ? REFRACT_OK : REFRACT_BEHIND_WINDOW);
     }
     points.push_back(Point3d(NAN, 0, 100));
     expected.push_back(REFRACT_NOT_FINITE);
-    std::vector<Point2f> pixels;
-    Mat strided(3*(int)points.size(), 2, CV_64FC3);         // every third row of the second column, as float32
-    for (size_t i = 0; i < points.size(); i++)
-        strided.at<Point3d>(3*(int)i, 1) = points[i];
-    std::vector<Point2d> exact;
-    refractiveProjectPoints(points, Vec3d(), Vec3d(), K, noArray(), window, exact, status);
-    CHECK(status == expected);
-    const Mat view(Mat((int)points.size(), 1, CV_64FC3, strided.ptr(0) + strided.elemSize(), 3*strided.step[0]));
-    Mat fromView;
-    refractiveProjectPoints(view, Vec3d(), Vec3d(), K, noArray(), window, fromView);
-    Mat single;
-    Mat(points).convertTo(single, CV_32F);
-    refractiveProjectPoints(single, Vec3d(), Vec3d(), K, noArray(), window, pixels);
-    for (size_t i = 0; i < points.size(); i++)
-    {
-        REQUIRE(std::isnan(exact[i].x) == (expected[i] != REFRACT_OK));
-        if (expected[i] != REFRACT_OK)
-            continue;
-        REQUIRE(fromView.at<Point2d>((int)i) == exact[i]);
-    }
-    std::vector<Point2d> none;
-    refractiveProjectPoints(std::vector<Point3d>(), Vec3d(), Vec3d(), K, noArray(), window, none, status);
-    CHECK(none.empty());
-    CHECK(status.empty());
+    checkProjectedArrays(points, expected, window);
 }
 
 TEST_CASE("Every instruction set gives the same answer behind a dome", "[dome][kernels]")
@@ -327,33 +254,23 @@ TEST_CASE("What is no dome is refused, and the text says why", "[dome]")
 TEST_CASE("A dome is the same after its file, and a flat window's file has no word of it", "[dome][file]")
 {
     GlassWindow dome = GlassWindow::dome(Vec3d(1.25, -2.5, 3.0625), 50.1, 7.3, 1.5168, 1.333);
-    FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-    out << "glass_window" << dome << "flat" << GlassWindow(Vec3d(0, 0, 1), 5, 1.5);
-    const String text = out.releaseAndGetString();
+    String text;
+    const GlassWindow back = throughFile(dome, text);
     CHECK_THAT(text, Contains("shape: dome"));
-    CHECK(text.find("radius", text.find("flat:")) == String::npos);
-    FileStorage in(text, FileStorage::READ | FileStorage::MEMORY);
-    GlassWindow back;
-    in["glass_window"] >> back;
+    String ofFlat;
+    throughFile(GlassWindow(Vec3d(0, 0, 1), 5, 1.5), ofFlat);
+    CHECK(ofFlat.find("radius") == String::npos);
+    CHECK(ofFlat.find("shape") == String::npos);
     CHECK(back.shape == WINDOW_DOME);
     CHECK(back.center == dome.center);
     CHECK(back.radius == dome.radius);
     CHECK(back.thickness == dome.thickness);
     CHECK(back.index == dome.index);
     CHECK(back.outerIndex == dome.outerIndex);
-    const auto parse = [](const String& map)
-    {
-        return refusal([&]
-        {
-            GlassWindow window;
-            FileStorage fs("%YAML:1.0\nglass_window: {" + map + "}\n", FileStorage::READ | FileStorage::MEMORY);
-            fs["glass_window"] >> window;
-        }, Error::StsParseError);
-    };
-    CHECK_THAT(parse("shape: cone, radius: 5"), Contains("glass_window.shape is 'cone'; it must be flat, dome, tube or bent"));
-    CHECK_THAT(parse("radius: 50, center: [0, 0, 1], thickness: 5, index: 1.5"), Contains("its shape is flat"));
-    CHECK_THAT(parse("shape: dome, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is dome"));
-    CHECK_THAT(parse("shape: dome, center: [0, 0], radius: 50"), Contains("glass_window.center has 2 numbers"));
+    CHECK_THAT(refusalOfFile("shape: cone, radius: 5"), Contains("glass_window.shape is 'cone'; it must be flat, dome, tube or bent"));
+    CHECK_THAT(refusalOfFile("radius: 50, center: [0, 0, 1], thickness: 5, index: 1.5"), Contains("its shape is flat"));
+    CHECK_THAT(refusalOfFile("shape: dome, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is dome"));
+    CHECK_THAT(refusalOfFile("shape: dome, center: [0, 0], radius: 50"), Contains("glass_window.center has 2 numbers"));
 }
 
 TEST_CASE("A dome's parameters are its centre and its radius", "[dome][parameters]")
