@@ -15,12 +15,11 @@ bent.json: a list of cases (one lens, one pane), each with
   missing     pixels whose ray does not meet a face, or meets another one before it
   posed       one object point with rvec, tvec: pixel and its jacobian (columns as refractiveProjectPoints' jacobian)
 """
-import json
-import os
 import random
 
 from make_reference import along, dot, exact, in_field, make_window, mp, mpf, project_lens, rounded, unit
-from make_wedge_reference import ARC_MINUTE, DEGREE, LENSES, Window, directions_at, make_point, make_posed
+from make_wedge_reference import (ARC_MINUTE, DEGREE, LENSES, Window, directions_at, make_point, make_posed, refracted,
+                                  write_cases)
 
 SEED = 20261128
 
@@ -70,12 +69,10 @@ class Bent(Window):
                 return None
             point = along(point, s, direction)
             m = tuple((a - b) / radius for a, b in zip(point, center))
-            ratio, cosine = self.media[i] / self.media[i + 1], dot(m, direction)
-            square = 1 - ratio**2 * (1 - cosine**2)
-            if square <= 0:
-                self.is_reflected = True
+            direction = refracted(direction, m, self.media[i], self.media[i + 1])
+            self.is_reflected = direction is None
+            if self.is_reflected:
                 return None
-            direction = tuple(ratio * d + (mp.sqrt(square) - ratio * cosine) * n for d, n in zip(direction, m))
         return point, direction
 
 
@@ -111,12 +108,7 @@ def make_case(rng, lens, given):
 
 def main():
     rng = random.Random(SEED)
-    cases = [make_case(rng, lens, pane) for lens in LENSES for pane in PANES]
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bent.json")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("[\n" + ",\n".join(json.dumps(c) for c in cases) + "\n]\n")
-    print(f"{path}: {len(cases)} cases, {sum(len(c['points']) for c in cases)} points, "
-          f"{sum(len(c['unseeing']) for c in cases)} unseeing, {sum(len(c['missing']) for c in cases)} missing")
+    write_cases("bent", [make_case(rng, lens, pane) for lens in LENSES for pane in PANES], "points", "unseeing", "missing")
 
 
 if __name__ == "__main__":

@@ -15,12 +15,11 @@ dome.json: a list of cases (one lens, one dome), each with
   unseeing    pixels whose ray is totally reflected
   posed       one object point with rvec, tvec: pixel and its jacobian (columns as refractiveProjectPoints' jacobian)
 """
-import json
-import os
 import random
 
-from make_reference import along, dot, exact, in_field, mp, mpf, project_lens, rounded, unit
-from make_wedge_reference import LENSES, Window, directions_at, make_point, make_posed
+from make_reference import along, dot, exact, mp, mpf, unit
+from make_wedge_reference import LENSES, Window, make_point, make_posed, refracted, write_cases
+from round_windows import TILTS, dark, reflected
 
 SEED = 20261126
 
@@ -40,7 +39,6 @@ DOMES = [  # name, center, radius, thickness, index, inner, outer
     ("flat but for 1e6", (1e5, -5e4, -9.9e5), 1e6, [20], [1.52], 1, 1.333),
 ]
 
-TILTS = (0, 1e-7, 10, 30, 50, 70, 80, 88)       # degrees from the optical axis
 
 
 class Dome(Window):
@@ -62,22 +60,10 @@ class Dome(Window):
             ahead = dot(off, direction)
             point = along(point, -ahead + mp.sqrt(ahead**2 - dot(off, off) + radius**2), direction)
             m = tuple((a - b) / radius for a, b in zip(point, self.center))
-            ratio, cosine = self.media[i] / self.media[i + 1], dot(m, direction)
-            square = 1 - ratio**2 * (1 - cosine**2)
-            if square <= 0:
+            direction = refracted(direction, m, self.media[i], self.media[i + 1])
+            if direction is None:
                 return None
-            direction = tuple(ratio * d + (mp.sqrt(square) - ratio * cosine) * n for d, n in zip(direction, m))
         return point, direction
-
-
-def reflected(rng, dome, lens, parameters, half_field):
-    """Pixels whose light stays inside."""
-    pixels = []
-    for _ in range(200):
-        w = next(directions_at(rng, dome, rng.uniform(0, 88)))
-        if in_field(w, half_field) and dome.trace_out(w) is None and len(pixels) < 4:
-            pixels.append(rounded(project_lens(lens, parameters, w)))
-    return pixels
 
 
 def images(dome, x):
@@ -101,32 +87,6 @@ def images(dome, x):
     return found
 
 
-def dark(dome):
-    """Points outside that no direction sees: all that do, in their plane with the centre, pass them by."""
-    e = mp.sqrt(dot(dome.center, dome.center))
-    most = min(n * r for n, r in zip(dome.media[1:], dome.radii))
-    if most >= dome.media[0] * e:
-        return []
-    axis = tuple(-c / e for c in dome.center)
-    across = unit((axis[1], -axis[0], mpf(0)))
-    seen, radius = [], 3 * dome.radii[-1]
-    for i in range(721):
-        angle = mp.pi * i / 720
-        traced = dome.trace_out(tuple(mp.cos(angle) * a + mp.sin(angle) * b for a, b in zip(axis, across)))
-        if traced is None:
-            continue
-        off = tuple(a - b for a, b in zip(traced[0], dome.center))
-        ahead = dot(off, traced[1])
-        x = along(off, -ahead + mp.sqrt(ahead**2 - dot(off, off) + radius**2), traced[1])
-        seen.append(mp.atan2(dot(x, across), dot(x, axis)))
-    seen.sort()
-    gap, low, high = max((b - a, a, b) for a, b in zip(seen, seen[1:]))
-    if gap < mpf(10) * mp.pi / 720:
-        return []
-    return [rounded(c + radius * (mp.cos(a) * u + mp.sin(a) * v) for c, u, v in zip(dome.center, axis, across))
-            for a in (low + gap / 4, low + gap / 2, high - gap / 4)]
-
-
 def make_case(rng, lens, given):
     model, core, coefficients, half_field = lens
     name, center, radius, thickness, index, inner, outer = given
@@ -141,19 +101,14 @@ def make_case(rng, lens, given):
     return {"lens": model, "core": list(core), "coefficients": coefficients,
             "window": {"name": name, "shape": "dome", "center": list(center), "radius": radius, "thickness": thickness,
                        "index": index, "inner_index": inner, "outer_index": outer},
-            "points": [p[0] for p in made], "unseen": dark(dome),
+            "points": [p[0] for p in made], "unseen": dark(dome, dome.center, lambda a: unit((a[1], -a[0], mpf(0)))),
             "unseeing": reflected(rng, dome, model, parameters, half_field),
             "posed": make_posed(rng, model, parameters, window_parameters, exact(point["X"]), direction, Dome)}
 
 
 def main():
     rng = random.Random(SEED)
-    cases = [make_case(rng, lens, dome) for lens in LENSES for dome in DOMES]
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "dome.json")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("[\n" + ",\n".join(json.dumps(c) for c in cases) + "\n]\n")
-    print(f"{path}: {len(cases)} cases, {sum(len(c['points']) for c in cases)} points, "
-          f"{sum(len(c['unseen']) for c in cases)} unseen, {sum(len(c['unseeing']) for c in cases)} unseeing")
+    write_cases("dome", [make_case(rng, lens, dome) for lens in LENSES for dome in DOMES], "points", "unseen", "unseeing")
 
 
 if __name__ == "__main__":

@@ -16,12 +16,11 @@ tube.json: a list of cases (one lens, one tube), each with
   unseeing    pixels whose ray is totally reflected
   posed       one object point with rvec, tvec: pixel and its jacobian (columns as refractiveProjectPoints' jacobian)
 """
-import json
-import os
 import random
 
-from make_reference import along, dot, exact, in_field, mp, mpf, project_lens, rounded, unit
-from make_wedge_reference import LENSES, Window, directions_at, make_point, make_posed
+from make_reference import along, dot, exact, mp, mpf, rounded, unit
+from make_wedge_reference import LENSES, Window, make_point, make_posed, refracted, write_cases
+from round_windows import TILTS, dark, reflected
 
 SEED = 20261127
 
@@ -40,7 +39,6 @@ TUBES = [  # name, center, axis (any length), radius, thickness, index, inner, o
     ("flat but for 1e6", (1e5, -5e4, -9.9e5), (1, 2, 0), 1e6, [20], [1.52], 1, 1.333),
 ]
 
-TILTS = (0, 1e-7, 10, 30, 50, 70, 80, 88)       # degrees from the optical axis
 TOO_NEAR = mpf("0.02")                          # sine of the angle with the axis, at which light goes far within the tube
 
 
@@ -66,22 +64,10 @@ class Tube(Window):
             a, b, c = dot(flat, flat), dot(off, flat), dot(off, off) - radius**2
             point = along(point, (-b + mp.sqrt(b**2 - a * c)) / a, direction)
             m = tuple(x / radius for x in self.across(tuple(a - b for a, b in zip(point, self.center))))
-            ratio, cosine = self.media[i] / self.media[i + 1], dot(m, direction)
-            square = 1 - ratio**2 * (1 - cosine**2)
-            if square <= 0:
+            direction = refracted(direction, m, self.media[i], self.media[i + 1])
+            if direction is None:
                 return None
-            direction = tuple(ratio * d + (mp.sqrt(square) - ratio * cosine) * n for d, n in zip(direction, m))
         return point, direction
-
-
-def reflected(rng, tube, lens, parameters, half_field):
-    """Pixels whose light stays inside."""
-    pixels = []
-    for _ in range(200):
-        w = next(directions_at(rng, tube, rng.uniform(0, 88)))
-        if in_field(w, half_field) and tube.trace_out(w) is None and len(pixels) < 4:
-            pixels.append(rounded(project_lens(lens, parameters, w)))
-    return pixels
 
 
 def has_one_image(tube, x, w):
@@ -99,31 +85,11 @@ def has_one_image(tube, x, w):
     return True
 
 
-def dark(tube):
-    """Points outside, level with the camera, that no direction sees: light that goes along the axis is never level again."""
-    foot = tube.across(tube.center)
-    e = mp.sqrt(dot(foot, foot))
-    if e == 0 or min(n * r for n, r in zip(tube.media[1:], tube.radii)) >= tube.media[0] * e:
-        return []
-    ahead = tuple(-c / e for c in foot)
+def dark_level(tube):
+    """Level with the camera: light that goes along the axis is never level again."""
     a = tube.axis
-    side = (a[1] * ahead[2] - a[2] * ahead[1], a[2] * ahead[0] - a[0] * ahead[2], a[0] * ahead[1] - a[1] * ahead[0])
-    seen, radius = [], 3 * tube.radii[-1]
-    for i in range(721):
-        angle = mp.pi * i / 720
-        traced = tube.trace_out(tuple(mp.cos(angle) * u + mp.sin(angle) * v for u, v in zip(ahead, side)))
-        if traced is None:
-            continue
-        off = tuple(p - c for p, c in zip(traced[0], foot))
-        way = dot(off, traced[1])
-        x = along(off, -way + mp.sqrt(way**2 - dot(off, off) + radius**2), traced[1])
-        seen.append(mp.atan2(dot(x, side), dot(x, ahead)))
-    seen.sort()
-    gap, low, high = max((b - a, a, b) for a, b in zip(seen, seen[1:]))
-    if gap < mpf(10) * mp.pi / 720:
-        return []
-    return [rounded(c + radius * (mp.cos(a) * u + mp.sin(a) * v) for c, u, v in zip(foot, ahead, side))
-            for a in (low + gap / 4, low + gap / 2, high - gap / 4)]
+    return dark(tube, tube.across(tube.center),
+                lambda b: (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
 
 
 def inside(rng, tube):
@@ -155,20 +121,14 @@ def make_case(rng, lens, given):
     return {"lens": model, "core": list(core), "coefficients": coefficients,
             "window": {"name": name, "shape": "tube", "center": list(center), "axis": list(axis), "radius": radius,
                        "thickness": thickness, "index": index, "inner_index": inner, "outer_index": outer},
-            "points": [p[0] for p in made], "inside": inside(rng, tube), "unseen": dark(tube),
+            "points": [p[0] for p in made], "inside": inside(rng, tube), "unseen": dark_level(tube),
             "unseeing": reflected(rng, tube, model, parameters, half_field),
             "posed": make_posed(rng, model, parameters, window_parameters, exact(point["X"]), direction, Tube)}
 
 
 def main():
     rng = random.Random(SEED)
-    cases = [make_case(rng, lens, tube) for lens in LENSES for tube in TUBES]
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tube.json")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("[\n" + ",\n".join(json.dumps(c) for c in cases) + "\n]\n")
-    print(f"{path}: {len(cases)} cases, {sum(len(c['points']) for c in cases)} points, "
-          f"{sum(len(c['inside']) for c in cases)} inside, {sum(len(c['unseen']) for c in cases)} unseen, "
-          f"{sum(len(c['unseeing']) for c in cases)} unseeing")
+    write_cases("tube", [make_case(rng, lens, tube) for lens in LENSES for tube in TUBES], "points", "inside", "unseen", "unseeing")
 
 
 if __name__ == "__main__":

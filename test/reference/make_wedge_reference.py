@@ -49,6 +49,15 @@ WINDOWS = [  # name, normal, distance, thickness, index, inner, outer, wedge
 INCIDENCE = (0, 1e-7, 10, 30, 50, 70, 80, 85)   # degrees at the first face
 
 
+def refracted(direction, m, before, after):
+    """Snell's law at a face with the unit normal m; None: total reflection."""
+    ratio, cosine = before / after, dot(m, direction)
+    square = 1 - ratio**2 * (1 - cosine**2)
+    if square <= 0:
+        return None
+    return tuple(ratio * d + (mp.sqrt(square) - ratio * cosine) * n for d, n in zip(direction, m))
+
+
 class Window:
     """Parameters: normal (3, any length), distance, thickness[], index[], inner, outer, wedge[] (2 a layer)."""
 
@@ -76,11 +85,9 @@ class Window:
             if dot(m, direction) <= 0 or s < 0:
                 return None
             point = along(point, s, direction)
-            ratio, cosine = self.media[i] / self.media[i + 1], dot(m, direction)
-            square = 1 - ratio**2 * (1 - cosine**2)
-            if square <= 0:
+            direction = refracted(direction, m, self.media[i], self.media[i + 1])
+            if direction is None:
                 return None
-            direction = tuple(ratio * d + (mp.sqrt(square) - ratio * cosine) * n for d, n in zip(direction, m))
         return point, direction
 
     def solve_in(self, x, start):
@@ -159,13 +166,17 @@ def make_case(rng, lens, window):
             "posed": make_posed(rng, model, parameters, window_parameters, exact(point["X"]), direction)}
 
 
-def main():
-    rng = random.Random(SEED)
-    cases = [make_case(rng, lens, window) for lens in LENSES for window in WINDOWS]
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "wedge.json")
+def write_cases(name, cases, *kinds):
+    """Writes NAME.json beside this file and says how many cases and values of each kind are in it."""
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name + ".json")
     with open(path, "w", encoding="utf-8") as file:
         file.write("[\n" + ",\n".join(json.dumps(c) for c in cases) + "\n]\n")
-    print(f"{path}: {len(cases)} cases, {sum(len(c['points']) for c in cases)} points")
+    print(f"{path}: {len(cases)} cases" + "".join(f", {sum(len(c[kind]) for c in cases)} {kind}" for kind in kinds))
+
+
+def main():
+    rng = random.Random(SEED)
+    write_cases("wedge", [make_case(rng, lens, window) for lens in LENSES for window in WINDOWS], "points")
 
 
 if __name__ == "__main__":

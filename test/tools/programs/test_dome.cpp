@@ -6,6 +6,8 @@
 #include "truth_file.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <opencv2/refract.hpp>
 
@@ -147,6 +149,68 @@ TEST_CASE("Two cameras in domes, from images to points, with errors as stated", 
     CHECK(same.code == 0);
     CHECK(mentions(same.out, "dome of camera 1"));
     CHECK(mentions(same.out, "no sign of it"));
+}
+
+namespace {
+
+//! Each of what is given of a rig, drawn from what refract_calib assumes where nothing is said.
+std::string drawnScene(cv::RNG& random, int number)
+{
+    std::string rig = scene();
+    const auto draw = [&](const std::string& before, double nominal, double sigma)      // each occurrence another
+    {
+        for (size_t at = 0; (at = rig.find(before, at)) != std::string::npos; )
+        {
+            size_t end = at + before.size();
+            end += std::strspn(rig.c_str() + end, "0123456789.");
+            const std::string drawn = before + cv::format("%.6f", nominal + random.gaussian(sigma));
+            rig.replace(at, end - at, drawn);
+            at += drawn.size();
+        }
+    };
+    draw("radius: ", 50, 0.1);
+    draw("thickness: [ ", 5, 0.1);
+    draw("index: [ ", 1.49, 0.001);
+    draw("square: ", 25, 0.0005*25);
+    const double water = 1.333 + random.gaussian(0.001);        // both cameras are in it
+    draw("outer_index: ", water, 0);
+    const std::string motion = "tvec: [ 0.02, -0.015, 0.02 ]", seed = "seed: 5";
+    rig.replace(rig.find(motion), motion.size(), cv::format("tvec: [ %.5f, %.5f, %.5f ]", random.gaussian(0.02), random.gaussian(0.02),
+                                                            random.gaussian(0.02)));
+    rig.replace(rig.find(seed), seed.size(), cv::format("seed: %d", number));
+    return rig;
+}
+
+} // namespace
+
+TEST_CASE("Domes as delivered, from images: errors of centre and radius are what is stated", "[.monte-carlo]")
+{
+    const int trials = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
+    double ofCenter = 0, ofRadius = 0;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        cv::RNG random(8000 + trial);
+        const Rendered rig(drawnScene(random, 8000 + trial));
+        const ToolResult r = runTool(rig.calib() + DOME + "--no-cross-validation --quiet --out=" + rig.out("calib.yml"));
+        CAPTURE(trial, r.out, r.err);
+        REQUIRE(r.code == 0);
+        const cv::FileStorage found(rig.out("calib.yml"), cv::FileStorage::READ), truth(rig.out("img/truth.yml"), cv::FileStorage::READ);
+        for (const std::string camera : {"camera1", "camera2"})
+        {
+            cv::refract::GlassWindow is, expected;
+            found[camera]["glass_window"] >> is;
+            truth[camera]["glass_window"] >> expected;
+            std::vector<double> std;
+            found[camera]["glass_window_std"]["center"] >> std;
+            for (int i = 0; i < 3; i++)
+                ofCenter += std::pow((is.center[i] - expected.center[i])/std[i], 2)/(6*trials);
+            ofRadius += std::pow((is.radius - expected.radius)/(double)found[camera]["glass_window_std"]["radius"], 2)/(2*trials);
+        }
+    }
+    std::cout << "[numbers] two domes in water as delivered, " << trials << " rendered rigs: error over stated, centre "
+              << std::sqrt(ofCenter) << ", radius " << std::sqrt(ofRadius) << std::endl;
+    CHECK(std::abs(ofCenter - 1) < 4*std::sqrt(2./(2*trials)));         // a camera's coordinates may be one
+    CHECK(std::abs(ofRadius - 1) < 4*std::sqrt(2./(2*trials)));
 }
 
 TEST_CASE("Two cameras in one dome, from images to its centre", "[tools][dome]")

@@ -1384,8 +1384,8 @@ exact; noArray(): all are exact.
 @param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance of its
 L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
 estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
-NaN the flags decide, also for window parameters without a variance. Rows of a normal, and of a tube's center and axis, are not
-used; those of a dome's center are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's
+NaN the flags decide, also for window parameters without a variance. Rows of a normal are not used; those of a
+center, and of a tube's axis, are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's
 parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with this
 prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a straight
 sheet of light the images determine the plane, three of the six.

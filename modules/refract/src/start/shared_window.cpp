@@ -25,26 +25,16 @@ double distanceFrom(const Rig& rig, int c) { return seenFrom(rig, c).distance; }
 
 GlassWindow transferred(GlassWindow window, const Pose& from, const Pose& to)
 {
+    if (from.rvec == to.rvec && from.tvec == to.tvec)       // given values stay to the last bit
+        return window;
     const TransformWithDerivatives a(from), b(to);
     const Matx33d R = b.rotation.R*a.rotation.R.t();
-    if (hasCenter(window.shape))
-        return windowInFrame(window, R, b.T - R*a.T);
-    if (window.shape == WINDOW_BENT)
-    {
-        window = windowInFrame(window, R, b.T - R*a.T);
-        window.distance = std::max(window.distance, 0.);
-        return window;
-    }
-    const WindowTransfer transfer(window.normal, window.distance, a, b);
-    if (!window.wedge.empty() && !(from.rvec == to.rvec && from.tvec == to.tvec))       // else given values stay to the last bit
-    {
-        const std::vector<double> given = window.thickness;
-        window = windowInFrame(window, R, b.T - R*a.T);
-        for (size_t i = 0; i < given.size(); i++)       // the fit refuses faces that meet before the camera
-            window.thickness[i] = std::max(window.thickness[i], 1e-3*given[i]);
-    }
-    window.normal = transfer.normal;
-    window.distance = std::max(transfer.distance, 0.);      // the fit refuses a window that is behind the camera
+    const std::vector<double> given = window.thickness;
+    window = windowInFrame(window, R, b.T - R*a.T);
+    // The fit refuses a window that is behind the camera, and faces that meet before it.
+    window.distance = std::max(window.distance, 0.);
+    for (size_t i = 0; i < given.size(); i++)
+        window.thickness[i] = std::max(window.thickness[i], 1e-3*given[i]);
     return window;
 }
 
