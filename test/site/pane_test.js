@@ -53,6 +53,10 @@
     // The library is as exact beside a line as this, beyond its end to what it promises.
     if (answer.lineDistance !== null)
       note(shape, answer.ignored ? "lineDistance" : "endDistance", difference([answer.lineDistance], expected.distance));
+    // A shape's own search has the answer, but of a tube that holds the denser medium: else it is broken, and this hides it.
+    for (const seen of [answer.seen1, answer.seen2])
+      if (seen.attempts > 0 && !(shape === "tube" && expected.input.innerIndex > 1))
+        problems.push(`${shape}: ${seen.attempts} attempts without an answer`);
     if (!expected.origin) continue;
     note(shape, "line", beside(answer.seen1, expected.origin));
     note(shape, "direction", difference(answer.seen1.direction, expected.direction));

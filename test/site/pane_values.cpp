@@ -33,6 +33,7 @@ struct Configuration
 {
     int shape;
     Place first, second;
+    bool isTurned;              //!< the second, as the page does it by itself
     double distance, wedge, radius, thickness, index, innerIndex, outerIndex;
     Point3d point;
 };
@@ -103,7 +104,8 @@ Configuration randomConfiguration(RNG& rng, int shape, int i)
     c.shape = shape;
     c.radius = rng.uniform(15., 150.);
     c.first = randomPlace(rng, i, c.radius);
-    c.second = i % 2 ? turned(c.first) : randomPlace(rng, i/2, c.radius);
+    c.isTurned = i % 2 == 1;
+    c.second = c.isTurned ? turned(c.first) : randomPlace(rng, i/2, c.radius);
     c.thickness = rng.uniform(0.5, 50.);
     c.index = rng.uniform(1.3, 1.9);
     c.distance = rng.uniform(10., 80.);
@@ -153,9 +155,13 @@ void printInput(const Configuration& c)
 {
     std::printf(" input: { shape: \"%s\",", SHAPES[c.shape]);
     printPlace(c.first);
-    std::printf(", second: {");
-    printPlace(c.second);
-    std::printf(" }, distance: %.17g, wedge: %.17g, radius: %.17g, thickness: %.17g, index: %.17g, innerIndex: %.17g, outerIndex: %.17g, "
+    if (!c.isTurned)
+    {
+        std::printf(", second: {");
+        printPlace(c.second);
+        std::printf(" }");
+    }
+    std::printf(", distance: %.17g, wedge: %.17g, radius: %.17g, thickness: %.17g, index: %.17g, innerIndex: %.17g, outerIndex: %.17g, "
                 "x: %.17g, y: %.17g, z: %.17g },", c.distance, c.wedge, c.radius, c.thickness, c.index, c.innerIndex, c.outerIndex,
                 c.point.x, c.point.y, c.point.z);
 }
