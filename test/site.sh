@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # The documentation: its site is built without a warning, every link in it leads somewhere, and the figure of doc/pane.html has
-# the library's numbers in a browser: 200 random configurations to 1e-9 px.
+# the library's numbers in a browser: 200 random configurations of each shape of window to 1e-9 px.
 #
 # Usage: test/site.sh [BUILD_DIRECTORY]      build/release if not said; its program pane_values is built if it is not there
 # Ends with 77 if there is no chromium.

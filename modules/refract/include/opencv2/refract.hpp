@@ -187,6 +187,7 @@ throws a plain cv::Exception.
 class CV_EXPORTS CalibrationError : public Exception
 {
 public:
+    //! Why there is no answer.
     enum Cause {
         NOT_CONVERGED = 0,      //!< the iterations of criteria were not enough: give more, or fix what is hardly determined
         UNDETERMINED = 1,       //!< the data do not determine a free parameter: fix it, or take other views
@@ -207,7 +208,7 @@ public:
     CalibrationError(Cause cause, const String& err, const String& reason);
     virtual ~CalibrationError();
 
-    Cause cause;
+    Cause cause;                //!< for a program, which need not read the text
     String reason;              //!< the part of err that says what was found, for a program that gives its own advice
     int view;                   //!< index of the view to blame; -1: none
     int camera;                 //!< index of the camera to blame; -1: none
@@ -1415,6 +1416,21 @@ CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfAr
 
 /** @overload
 With systematic errors of the targets.
+@param objectPoints as above.
+@param imagePointsDirect as above.
+@param imagePointsRefracted as above.
+@param cameras as above.
+@param windowOfCamera as above.
+@param Rs as above.
+@param Ts as above.
+@param rvecs as above.
+@param tvecs as above.
+@param stdDeviations as above.
+@param covariance as above.
+@param perViewErrors as above.
+@param imageStatus as above.
+@param inliers as above.
+@param otherMinima as above.
 @param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance: relative
 error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the rigid motion by which
 all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame of camera 1. (A
@@ -1422,6 +1438,13 @@ rotation about a point c adds [c]x times its rotation vector to the translation.
 These errors are estimated within the prior, so that all uncertainties contain them: in air a common motion of the targets
 resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance have seven more rows at their end.
 @param targetErrors 7x1 CV_64F: the estimates; NaN without targetCovariance.
+@param flags as above.
+@param poseCovariances as above.
+@param criteria as above.
+@param cameraCovariances as above.
+@param pixelCovariancesDirect as above.
+@param pixelCovariancesRefracted as above.
+@return as above.
 */
 CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
