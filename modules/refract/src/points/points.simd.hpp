@@ -166,7 +166,7 @@ bool meetPlane(const Stack& stack, const Surface& lastSurface, const double* pla
         const Lanes shift = m*t, X = a + shift*normal[0], Y = b + shift*normal[1], Z = c + shift*normal[2];
         Mask good = (along*ahead > 0) & (m - m == 0);
         if (s.refracts)
-            good &= isBeyond(last, X, Y, Z, m);
+            good &= isBeyondAlong(last, X, Y, Z, m, a, b, c);
         store(answers.where(good, X), x, at);
         store(Y, y, at);
         store(Z, z, at);
@@ -188,7 +188,8 @@ bool meetPlaneOffAxis(const Stack& stack, const Surface& lastSurface, const Colu
         const Vector o = originOf(off, normal.value, load(tau, at), at), d = { load(dx, at), load(dy, at), load(dz, at) };
         const Lanes along = dot(abc.value, d), ahead = load(planeD, at) - dot(abc.value, o), m = along/ahead;
         const Vector X = { d.x + m*o.x, d.y + m*o.y, d.z + m*o.z };
-        const Mask good = (along*ahead > 0) & (m - m == 0) & isBeyond(off.lastSurface, X.x, X.y, X.z, m);
+        const Mask good = (along*ahead > 0) & (m - m == 0) &
+                          isBeyondAlong(off.lastSurface, X.x, X.y, X.z, m, d.x, d.y, d.z);
         store(answers.where(good, X.x), x, at);
         store(X.y, y, at);
         store(X.z, z, at);

@@ -56,6 +56,16 @@ CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n,
     return rays;
 }
 
+//! Lines of rays that leave a round window have come in through its far side: a point there is none that is seen.
+void checkWayOut(const PlacedCamera& placed, int c, const Rays& rays, int n, PixelBlock& block)
+{
+    const Surface last = inFrame(placed.camera->layers().lastSurface(), placed.place.R.val, placed.place.t.val);
+    for (int i = 0; i < n && last.curvature > 0; i++)
+        if (block.status[i] == REFRACT_OK && block.isSeen(c, i) &&
+            !isBeyondAlong(last, block.x[i], block.y[i], block.z[i], 1., rays.dx[i], rays.dy[i], rays.dz[i]))
+            block.status[i] = REFRACT_BEHIND_WINDOW;
+}
+
 //! The points nearest to all rays. @param off by how many pixels they are off at most; 0: they are the most likely ones
 void meet(const PlacedCameras& cameras, PixelBlock& block, int n, double* off)
 {
@@ -85,6 +95,9 @@ void meet(const PlacedCameras& cameras, PixelBlock& block, int n, double* off)
         if (block.status[i] == REFRACT_OK)
             block.status[i] = !(apart[i] > PARALLEL) ? REFRACT_PARALLEL_RAYS
                               : !(nearest[i] > 0) ? REFRACT_NO_INTERSECTION : REFRACT_OK;
+    for (int c = 0; c < (int)cameras.size(); c++)
+        if (block.sees[c] != PixelBlock::NONE && !block.hasHalves[c])
+            checkWayOut(cameras[c], c, buffers[c], n, block);
     if (count == 2 && half >= 0 && whole >= 0)
         slideToSheet(cameras[half], half, rays[whole < half ? 0 : 1], n, block, off);
 }

@@ -48,18 +48,14 @@ inline auto isBeyond(const Surface& s, T x, T y, T z, T w)
     return beyond;
 }
 
-/** Whether a line that goes out through the surface has done so where it is at a homogeneous point, or never was inside: it may pass
-what lies on its far side, on the way in. */
+//! Of a point of a line that goes out along d: beyond, and not on the far side, where the line comes from.
 template<typename T>
-inline auto isOnWayOut(const Surface& s, T x, T y, T z, T w, T dx, T dy, T dz)
+inline auto isBeyondAlong(const Surface& s, T x, T y, T z, T w, T dx, T dy, T dz)
 {
-    T slope = w*(s.normal[0]*dx + s.normal[1]*dy + s.normal[2]*dz);
+    auto beyond = isBeyond(s, x, y, z, w);
     if (s.curvature > 0)
-        slope += s.curvature*dotAcross(s, x, y, z, dx, dy, dz);
-    auto goesOut = slope > 0;
-    if (!(s.curvature > 0))
-        goesOut |= !goesOut;
-    return goesOut;
+        beyond &= w*(s.normal[0]*dx + s.normal[1]*dy + s.normal[2]*dz) + s.curvature*dotAcross(s, x, y, z, dx, dy, dz) > 0;
+    return beyond;
 }
 
 //! The s at which the line o + s d, of unit d, goes out.
