@@ -4,6 +4,7 @@
 // Which column is which parameter, for windows of each shape: against the module's own derivatives.
 #include "calibrate/parameter_columns.hpp"
 #include <catch2/catch.hpp>
+#include <map>
 
 using namespace cv;
 using namespace cv::refract;
@@ -46,6 +47,17 @@ TEST_CASE("A window's numbers are in the columns of its derivatives, for each sh
         CHECK(at.has(at.axis) == (window.shape == WINDOW_TUBE));
         CHECK(at.has(at.curvature) == (window.shape == WINDOW_BENT));
         CHECK((at.wedge < at.curvature) == !window.wedge.empty());
+        const std::vector<String> names = camera->parameterNames();
+        REQUIRE((int)names.size() == at.end);
+        for (const auto& column : std::map<std::string, int>{{"fx", at.lens}, {"normal[0]", at.normal}, {"distance", at.distance},
+                 {"center[0]", at.center}, {"axis[0]", at.axis}, {"radius", at.radius}, {"thickness[0]", at.thickness},
+                 {"index[0]", at.index}, {"innerIndex", at.innerIndex}, {"outerIndex", at.outerIndex}, {"curvature", at.curvature}})
+        {
+            CAPTURE(column.first);
+            CHECK(std::find(names.begin(), names.end(), column.first) - names.begin() == column.second);
+        }
+        CHECK(std::count_if(names.begin(), names.end(), [](const String& name) { return name.find("wedge") == 0; })
+              == at.curvature - at.wedge);
         std::vector<double> numbers(at.end, 0.);
         putWindow(window, at, numbers.data());
         Mat pixels, jacobian;
@@ -61,7 +73,7 @@ TEST_CASE("A window's numbers are in the columns of its derivatives, for each sh
                 refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::create(K, Mat(), windowOf(window, at, moved.data())),
                                         seen[side]);
             }
-            CAPTURE(at.names[i]);
+            CAPTURE(names[i]);
             for (size_t p = 0; p < points.size(); p++)
             {
                 const Point2d slope = (seen[1][p] - seen[0][p])*(0.5/step);

@@ -79,7 +79,7 @@ std::string nameOf(const RigModel& rig, int column)
         const ParameterColumns at = columnsOf(rig, c);
         if (column < at.end)
             return format("camera %d's ", c + 1)
-                + (column >= at.normal && column < at.normal + 3 ? "normal" : at.names[column - at.lens]);
+                + (column >= at.normal && column < at.normal + 3 ? "normal" : rig.cameras[c]->parameterNames()[column - at.lens]);
     }
     const int place = column - extrinsicsColumn(rig, 1);
     return std::string(place % 6 < 3 ? "R" : "T") + (place < 6 ? "" : std::to_string(place/6 + 2));

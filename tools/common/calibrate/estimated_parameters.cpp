@@ -111,9 +111,10 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
     {
         const std::string prefix = fit.rig.cameras.size() == 1 ? "" : format("camera %d ", c + 1);
         const Mat lens = fit.rig.cameras[c]->lensParameters();
+        const std::vector<String> names = fit.rig.cameras[c]->parameterNames();
         const ParameterColumns at = columnsOf(fit.rig, c);
         for (int i = 0; i < at.lensCount; i++)
-            append(list, fit, prefix + at.names[i], at.lens + i, lens.at<double>(i));
+            append(list, fit, prefix + names[i], at.lens + i, lens.at<double>(i));
         end = at.end;
     }
     for (int c = 1; c < (int)fit.rig.cameras.size(); c++, end += 6)

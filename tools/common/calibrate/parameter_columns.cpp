@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -10,29 +11,35 @@ using namespace cv::refract;
 
 namespace tools {
 
+//! In the order of parameterNames(), which are strings: those would take longer than what is done with the columns.
 ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
 {
-    ParameterColumns columns;
-    columns.names = camera.parameterNames();
-    columns.lensCount = camera.lensParameters().rows;
-    columns.layers = (int)camera.window().thickness.size();
-    const auto find = [&](const char* name)
-    { return first + int(std::find(columns.names.begin(), columns.names.end(), name) - columns.names.begin()); };
-    columns.lens = first;
-    columns.window = first + columns.lensCount;
-    columns.normal = find("normal[0]");
-    columns.distance = find("distance");
-    columns.center = find("center[0]");
-    columns.axis = find("axis[0]");
-    columns.radius = find("radius");
-    columns.thickness = find("thickness[0]");
-    columns.index = find("index[0]");
-    columns.innerIndex = find("innerIndex");
-    columns.outerIndex = find("outerIndex");
-    columns.curvature = find("curvature");
-    columns.wedge = std::min(find("wedge[0][0]"), columns.curvature);
-    columns.end = first + (int)columns.names.size();
-    return columns;
+    const GlassWindow window = camera.window();
+    const bool round = isRound(window);
+    int next = first;
+    const auto take = [&next](int count) { return (next += count) - count; };
+    const int NONE = -1;
+    ParameterColumns at;
+    at.lensCount = camera.lensParameters().rows;
+    at.layers = (int)window.thickness.size();
+    at.lens = take(at.lensCount);
+    at.window = next;
+    at.normal = round ? NONE : take(3);
+    at.center = round ? take(3) : NONE;
+    at.axis = window.shape == WINDOW_TUBE ? take(3) : NONE;
+    at.distance = round ? NONE : take(1);
+    at.radius = round ? take(1) : NONE;
+    at.thickness = take(at.layers);
+    at.index = take(at.layers);
+    at.innerIndex = take(1);
+    at.outerIndex = take(1);
+    at.wedge = take(window.wedge.empty() ? 0 : 2*at.layers);
+    at.curvature = take(window.shape == WINDOW_BENT);
+    at.end = next;
+    for (int* column : {&at.normal, &at.center, &at.axis, &at.distance, &at.radius})
+        if (*column == NONE)
+            *column = at.end;
+    return at;
 }
 
 ParameterColumns columnsOf(const RigModel& rig, int camera)

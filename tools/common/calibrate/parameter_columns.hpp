@@ -17,7 +17,6 @@ struct ParameterColumns
     int thickness, index, innerIndex, outerIndex;
     int wedge, curvature, end;          //!< wedge == curvature: there is none
     int lensCount, layers;
-    std::vector<cv::String> names;
 
     bool has(int column) const { return column < end; }
 };

@@ -11,6 +11,7 @@
 #include "console/failure.hpp"
 #include "console/table.hpp"
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 using namespace cv::refract;
@@ -43,6 +44,12 @@ std::vector<Explanation> bestBelow(double most, const std::vector<Explanation>& 
         if (e.px < most && e.px <= AS_GOOD*best)
             explaining.push_back(e);
     return explaining;
+}
+
+//! What leaves no more than noise ends the search.
+bool isFound(const std::vector<Explanation>& explaining, double clean)
+{
+    return std::any_of(explaining.begin(), explaining.end(), [&](const Explanation& e) { return e.px < clean; });
 }
 
 std::string joined(const std::vector<std::string>& reasons)
@@ -92,7 +99,7 @@ const Mistake FAR_OFF[] = {
 const Mistake SCALE = {[](const CalibrationInput& input) { return hasPairs(input.data) && !input.options.window.thickness.empty(); },
                        wrongScale};
 
-//! The mistakes that are tried, the quick ones first: what leaves no more than noise ends the search.
+//! The mistakes that are tried, the quick ones first.
 const Mistake MISTAKES[] = {
     SCALE,
     {[](const CalibrationInput& input) { return !hasPairs(input.data) && !(input.square > 0); }, wrongUnitOfPoints},
@@ -152,7 +159,7 @@ std::vector<std::string> confirmed(const CalibrationInput& input, const std::vec
 {
     std::vector<Explanation> tried;
     for (size_t i = 0; i < std::min(most, mixUps.size()); i++)
-        tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options, nullptr, SOON)});
+        tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options)});
     std::vector<std::string> sentences;
     for (const Explanation& e : bestBelow(largestSoundError(input.data), tried))
         sentences.push_back(fits(e, clean));
@@ -175,7 +182,10 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         return {fits(unpaired, clean)};
     if (!areUnrelated(input))
         return {};
-    sentences = confirmed(input, mixUps.possible, MOST_POSSIBLE, clean);        // explains as much with less
+    std::vector<MixUp> relating;        // they explain as much with less
+    std::copy_if(mixUps.possible.begin(), mixUps.possible.end(), std::back_inserter(relating), [](const MixUp& mixUp) {
+        return !(mixUp.camerasApart > UNRELATED_PX); });
+    sentences = confirmed(input, relating, MOST_POSSIBLE, clean);
     if (!sentences.empty())
         return sentences;
     const Explanation unrelated = unrelatedViews(input);
@@ -211,6 +221,8 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
         std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
+        if (isFound(others, clean))
+            return toldBeside(*plain.explained, others, clean);
         if (!(plain.px < NO_FIT))       // pairs that contradict each other: a cause is one name for that, an exchange may be another
             for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean))
                 others.push_back(e);
@@ -220,7 +232,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
     }
     const double most = std::min(EXPLAINS*plain.px, sound);
     std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
-    if (explaining.empty() || !(explaining[0].px < clean))
+    if (!isFound(explaining, clean))
         for (const Explanation& e : explanationsOf(input, MISTAKES, most, clean))
             explaining.push_back(e);
     explaining = bestBelow(most, explaining);
@@ -274,7 +286,7 @@ bool requireNoMixUp(const CalibrationInput& input)
     const MixUps mixUps = findMixUps(input);
     if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
         return false;
-    const double px = medianErrorOfFit(input.data, input.options, nullptr, SOON);
+    const double px = medianErrorOfFit(input.data, input.options);
     if (px < largestSoundError(input.data))
         return false;
     const std::vector<std::string> reasons = imageMistakes(input, mixUps);

@@ -14,7 +14,8 @@ namespace tools {
 namespace {
 
 const double CORNERS_PX = 2.;           // half of the corners are never farther off, in an image of usual size;
-const double CORNERS_SHARE = 1./640.; // in a larger one, of its longer side
+const double CORNERS_SHARE = 1./640.;   // in a larger one, of its longer side
+const int SOON = 30;                    // iterations: what is right is fitted by fewer; a wrong guess may creep for a thousand
 
 } // namespace
 
@@ -48,7 +49,7 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result, int maxIterations)
+double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result)
 {
     // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
     RigOptions options = given;
@@ -59,7 +60,7 @@ double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* 
     try
     {
         std::vector<LensSource> sources;
-        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, maxIterations);
+        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
         if (result)
             *result = fit.rig;
         return medianCornerError(data, residualsOf(data, fit));

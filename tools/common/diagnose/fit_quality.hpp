@@ -23,10 +23,8 @@ double medianCornerError(const RigData& data, const std::vector<Residual>& resid
 //! The largest median error of correct input, px.
 double largestSoundError(const RigData& data);
 
-const int SOON = 30;                    //!< iterations: images that are right are fitted by fewer; a wrong guess may creep for a thousand
-
-//! medianCornerError of a fit to all the data, NO_FIT if there is none. @param result gets the rig that was fitted
-double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result = nullptr, int maxIterations = 100);
+//! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets the rig that was fitted
+double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result = nullptr);
 
 } // namespace tools
 

@@ -176,6 +176,14 @@ double Disagreements::largest() const
     return largest;
 }
 
+double Disagreements::camerasApart() const
+{
+    double worst = 0.;
+    for (size_t i = 0; i < direct.size(); i++)
+        worst = std::max({worst, direct[i], glass[i]});
+    return worst;
+}
+
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses)
 {
     Disagreements all;
@@ -225,11 +233,7 @@ double pairsFromOneMap(const RigData& data)
 
 double camerasApart(const RigData& data, const RigOptions& options)
 {
-    const Disagreements all = disagreementsOf(data, options, roughLensesOf(data));
-    double worst = 0.;
-    for (size_t i = 0; i < all.direct.size(); i++)
-        worst = std::max({worst, all.direct[i], all.glass[i]});
-    return worst;
+    return disagreementsOf(data, options, roughLensesOf(data)).camerasApart();
 }
 
 } // namespace tools

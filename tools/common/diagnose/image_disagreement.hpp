@@ -30,6 +30,8 @@ struct Disagreements
 
     std::vector<std::vector<double>> kinds() const { return {pairs, magnifications, direct, glass, states}; }
     double largest() const;
+    //! The largest of two cameras in images of one state.
+    double camerasApart() const;
 };
 
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses);
@@ -37,7 +39,7 @@ Disagreements disagreementsOf(const RigData& data, const RigOptions& options, co
 //! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
 double pairsFromOneMap(const RigData& data);
 
-//! The largest disagreement of two cameras in images of one state.
+//! Disagreements::camerasApart of these images.
 double camerasApart(const RigData& data, const RigOptions& options);
 
 } // namespace tools

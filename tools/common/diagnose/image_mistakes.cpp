@@ -73,7 +73,7 @@ Explanation unrelatedViews(const CalibrationInput& input)
     for (int c = 0; c < input.data.cameraCount; c++)
     {
         const CalibrationInput one = oneCamera(input, c);
-        worst = std::max(worst, medianErrorOfFit(one.data, one.options, nullptr, SOON));
+        worst = std::max(worst, medianErrorOfFit(one.data, one.options));
     }
     return {"each camera calibrated alone, so equal names of " + std::string(input.data.cameraCount == 2 ? "camera 1 and camera 2"
             : "different cameras") + " are not the same moment (or the cameras moved to each other)", worst};
@@ -114,7 +114,7 @@ Explanation unpairedImages(const CalibrationInput& input)
             data.views.push_back(direct);
     }
     return {"each image fitted alone, so equal names of --direct and --glass are not one place of the board (it moved, or it "
-            "was hand-held: --unpaired)", medianErrorOfFit(data, input.options, nullptr, SOON)};
+            "was hand-held: --unpaired)", medianErrorOfFit(data, input.options)};
 }
 
 } // namespace tools

@@ -209,7 +209,7 @@ MixUps findMixUps(const CalibrationInput& input)
         if (!isNowhereWorse(before, after))
             return;
         const double left = product(after);
-        candidates.push_back({{sentence, changed}, left, left < CLEARLY_BETTER*product(before)});
+        candidates.push_back({{sentence, changed, after.camerasApart()}, left, left < CLEARLY_BETTER*product(before)});
         least = std::min(least, left);
     };
     attempt(exchangedStates(data), {lenses.glass, lenses.direct}, "--direct and --glass exchanged");

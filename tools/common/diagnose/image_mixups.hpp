@@ -14,6 +14,7 @@ struct MixUp
 {
     std::string sentence;
     RigData undone;             //!< the images as they should be
+    double camerasApart;        //!< then, px: see Disagreements
 };
 
 struct MixUps

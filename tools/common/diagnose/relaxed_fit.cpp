@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 using namespace cv;
 using namespace cv::refract;
@@ -178,14 +179,20 @@ VectorXd toVector(const Vec3d& rvec, const Vec3d& tvec)
 
 } // namespace
 
+//! What is left of one view's pixels and of what is known of its pose, over the noise, and how it changes.
+struct RelaxedFit::Rows
+{
+    MatrixXd byAll, byPose;                     //!< byPose: no columns where the pose is known exactly
+    VectorXd rest;
+};
+
 //! Normal equations with the poses eliminated, and what it takes to get these back.
 struct RelaxedFit::Normal
 {
     MatrixXd matrix;
     VectorXd right;
     double chiSquare = 0.;
-    std::vector<MatrixXd> byAll, byPose;        //!< of each view, over the noise
-    std::vector<VectorXd> rest;
+    std::vector<Rows> rows;                     //!< of each view
     MatrixXd glassChanges;
 
     bool isFinite() const { return std::isfinite(chiSquare) && matrix.allFinite() && right.allFinite(); }
@@ -253,70 +260,68 @@ double RelaxedFit::priorOf(const VectorXd& numbers) const
     return off.dot(information_*off);
 }
 
+//! @param changes of the numbers of direct images and of those through the windows
+RelaxedFit::Rows RelaxedFit::rowsOf(const Relaxed& at, size_t k, const std::vector<MatrixXd>& changes) const
+{
+    const ViewObservations& observed = at.views[k];
+    std::vector<ImageOfView> images[2];
+    for (const ImageOfView& image : observed.images)
+        images[image.glass].push_back(image);
+    const bool isExact = !poseInformation_.empty() && !std::isfinite(poseInformation_[k](0, 0));
+    const Eigen::Index known = poseInformation_.empty() || isExact ? 0 : 6, count = observed.pixels.size() + known;
+    Rows rows{MatrixXd::Zero(count, changes[0].cols()), MatrixXd(count, 6), VectorXd(count)};
+    Eigen::Index row = 0;
+    for (bool glass : {false, true})
+    {
+        if (images[glass].empty())
+            continue;
+        const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
+                                                       observed.tvec, images[glass]);
+        const Eigen::Index n = view.predicted.size();
+        rows.byAll.middleRows(row, n).noalias() = view.byParameters*(changes[glass]/noise_);
+        rows.byPose.middleRows(row, n) = view.byPose/noise_;
+        rows.rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
+        row += n;
+    }
+    if (known > 0)
+    {
+        const MatrixXd root = poseInformation_[k].llt().matrixU();
+        rows.byPose.bottomRows(6) = root;
+        rows.rest.tail(6) = root*(knownPoses_[k] - toVector(observed.rvec, observed.tvec));
+    }
+    if (isExact)
+        rows.byPose.resize(count, 0);
+    return rows;
+}
+
 RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Shift>& freed) const
 {
     const int count = (int)(free_.cols() + freed.size());
-    const MatrixXd directChanges = changesOf(at.direct, free_, freed, false);
+    const std::vector<MatrixXd> changes = {changesOf(at.direct, free_, freed, false), changesOf(at.glass, free_, freed, true)};
     Normal normal;
-    normal.glassChanges = changesOf(at.glass, free_, freed, true);
+    normal.glassChanges = changes[true];
     const MatrixXd own = free_.transpose()*information_;
-    const VectorXd off = known_ - at.before;
     normal.matrix = MatrixXd::Zero(count, count);
     normal.right = VectorXd::Zero(count);
     normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = own*free_;
-    normal.right.head(free_.cols()) = own*off;
+    normal.right.head(free_.cols()) = own*(known_ - at.before);
     normal.chiSquare = priorOf(at.before);
     for (size_t k = 0; k < at.views.size(); k++)
     {
-        const ViewObservations& observed = at.views[k];
-        std::vector<ImageOfView> images[2];
-        for (const ImageOfView& image : observed.images)
-            images[image.glass].push_back(image);
-        const Eigen::Index rows = observed.pixels.size();
-        const bool hasPose = !poseInformation_.empty() && std::isfinite(poseInformation_[k](0, 0));
-        const bool isExact = !poseInformation_.empty() && !hasPose;
-        MatrixXd byAll = MatrixXd::Zero(rows + 6*hasPose, count), byPose = MatrixXd::Zero(rows + 6*hasPose, 6);
-        VectorXd rest(rows + 6*hasPose);
-        Eigen::Index row = 0;
-        for (bool glass : {false, true})
-        {
-            if (images[glass].empty())
-                continue;
-            const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
-                                                           observed.tvec, images[glass]);
-            const Eigen::Index n = view.predicted.size();
-            byAll.middleRows(row, n) = view.byParameters*(glass ? normal.glassChanges : directChanges)/noise_;
-            byPose.middleRows(row, n) = view.byPose/noise_;
-            rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
-            row += n;
-        }
-        if (hasPose)
-        {
-            const MatrixXd root = poseInformation_[k].llt().matrixU();
-            byPose.bottomRows(6) = root;
-            rest.tail(6) = root*(knownPoses_[k] - toVector(observed.rvec, observed.tvec));
-        }
-        if (isExact)
-            byPose.resize(rows, 0);
-        normal.chiSquare += rest.squaredNorm();
+        const Rows rows = rowsOf(at, k, changes);
+        normal.chiSquare += rows.rest.squaredNorm();
         if (!std::isfinite(normal.chiSquare))
             return normal;
-        if (isExact)
-        {
-            normal.matrix += byAll.transpose()*byAll;
-            normal.right += byAll.transpose()*rest;
-        }
-        else
-        {
-            const PoseNullSpace project(byPose);
-            const MatrixXd A = project(byAll);
-            normal.matrix += A.transpose()*A;
-            normal.right += A.transpose()*project(rest);
-        }
-        normal.byAll.push_back(byAll);
-        normal.byPose.push_back(byPose);
-        normal.rest.push_back(rest);
+        MatrixXd all(rows.byAll.rows(), count + 1);
+        all << rows.byAll, rows.rest;
+        if (rows.byPose.cols() > 0)
+            all = PoseNullSpace(rows.byPose)(all);
+        const auto byAll = all.leftCols(count);
+        normal.matrix.selfadjointView<Eigen::Lower>().rankUpdate(byAll.transpose());
+        normal.right.noalias() += byAll.transpose()*all.col(count);
+        normal.rows.push_back(rows);
     }
+    normal.matrix = normal.matrix.selfadjointView<Eigen::Lower>();
     return normal;
 }
 
@@ -343,9 +348,10 @@ bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, con
         return false;
     for (size_t k = 0; k < at.views.size(); k++)
     {
-        if (normal.byPose[k].cols() == 0)
+        const Rows& rows = normal.rows[k];
+        if (rows.byPose.cols() == 0)
             continue;
-        const VectorXd pose = normal.byPose[k].colPivHouseholderQr().solve(normal.rest[k] - normal.byAll[k]*step);
+        const VectorXd pose = rows.byPose.colPivHouseholderQr().solve(rows.rest - rows.byAll*step);
         for (int i = 0; i < 3; i++)
         {
             at.views[k].rvec[i] += pose[i];
@@ -380,15 +386,15 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
             damping = std::max(1e-6, 30.*damping);
             continue;
         }
-        const Normal there = linearize(next, freed);
+        Normal there = linearize(next, freed);
         if (!there.isFinite() || there.chiSquare > normal.chiSquare + CONVERGED)
         {
             damping = std::max(1e-6, 30.*damping);
             continue;
         }
         const double gained = normal.chiSquare - there.chiSquare;
-        at = next;
-        normal = there;
+        at = std::move(next);
+        normal = std::move(there);
         damping = std::max(LEAST_DAMPING, damping/30.);
         const double share = normal.chiSquare > GROSS*dof_ ? GROSS_SHARE : CONVERGED_SHARE;
         if (gained < std::max(CONVERGED, share*normal.chiSquare))

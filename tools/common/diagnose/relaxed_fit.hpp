@@ -54,6 +54,8 @@ public:
 
 private:
     struct Normal;
+    struct Rows;
+    Rows rowsOf(const Relaxed& at, size_t view, const std::vector<MatrixXd>& changes) const;
     Normal linearize(const Relaxed& at, const std::vector<Shift>& freed) const;
     bool setRigs(const std::vector<Shift>& freed, Relaxed& at) const;
     bool move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const;
