@@ -216,8 +216,8 @@ void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std
     for (size_t i : {(size_t)0, rig.window.index.size() - 1})
         if (!rig.window.index.empty() && rig.window.index[i] < LEAST_SOLID)
         {
-            notices.push_back("--index=" + o.window.index() + format(": the %s has the index %.4g, as a liquid: no window is made of that. The "
-                              "medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
+            notices.push_back("--index=" + o.window.index() + format(": the %s has the index %.4g, as a liquid: no window is made of that. "
+                              "The medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
                               rig.window.index.size() == 1 ? "window" : i ? "outermost layer" : "innermost layer", rig.window.index[i]));
             return;
         }

@@ -257,7 +257,8 @@ TEST_CASE("What refract_bundle cannot take of a window's shape it refuses in one
     const TemporaryFolder f;
     wand.write(f);
     std::string outside = readFile(f / "start.yml");
-    outside.replace(outside.find("center:"), outside.find('\n', outside.find("center:")) - outside.find("center:"), "center: [ 0., 0., 60. ]");
+    const size_t at = outside.find("center:");
+    outside.replace(at, outside.find('\n', at) - at, "center: [ 0., 0., 60. ]");
     writeFile(f / "start.yml", outside);
     const ToolResult result = bundle(f);
     CAPTURE(result.err);
@@ -273,8 +274,8 @@ TEST_CASE("The wand of the guide before domes is made anew", "[.wand-data]")
     std::string start = readFile(folder + "/start.yml");
     for (size_t at = start.find("   glass_window"); at != std::string::npos; at = start.find("   glass_window"))
         start.erase(at, start.find('\n', at) + 1 - at);
-    start = "%YAML:1.0\n---\n# Two cameras in domes under water, as a tape measure has them; of the domes the options of refract_bundle tell. "
-            "Lengths in mm.\n" + start.substr(start.find("unit: mm"));
+    start = "%YAML:1.0\n---\n# Two cameras in domes under water, as a tape measure has them; of the domes the options of refract_bundle "
+            "tell. Lengths in mm.\n" + start.substr(start.find("unit: mm"));
     writeFile(folder + "/dome_start.yml", start);
     const Rig thought = Rig::read(folder + "/dome_start.yml");
     wand.length = WAND + (wand.length - WAND)*0.1/WAND_STD;         // this one is known to 0.1 mm

@@ -47,7 +47,8 @@ TEST_CASE("A laser line is calibrated from a camera in a dome", "[tools][dome][l
     const auto putDome = [&rig](const std::string& from, const std::string& to, const std::string& window) {
         const size_t first = rig.find(from), end = rig.find(to, first);
         REQUIRE(end != std::string::npos);
-        rig.replace(first, end - first, "glass_window: { shape: dome, " + window + ", thickness: [ 5. ], index: [ 1.49 ], outer_index: 1.333 }\n");
+        rig.replace(first, end - first, "glass_window: { shape: dome, " + window
+                                        + ", thickness: [ 5. ], index: [ 1.49 ], outer_index: 1.333 }\n");
     };
     putDome("glass_window:\n   normal", "exposure", "center: [ 3., -2., 6. ], radius: 50.");
     putDome("glass_window:\n         normal", "      rvec", "center: [ 0., 0., 10. ], radius: 30.");

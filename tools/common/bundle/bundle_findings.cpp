@@ -184,8 +184,8 @@ std::string explanationOf(const std::vector<std::string>& free, double sigma,
                           const std::function<BundleAdjustment(const std::vector<std::string>&)>& adjust)
 {
     const double EXPLAINS = 0.5, AS_GOOD = 1.1;     // of the noise
-    const char* const MAY_CHANGE[] = {"normal", "center", "extrinsics", "intrinsics", "distance", "radius", "outer-index", "thickness", "index",
-                                      "curvature"};
+    const char* const MAY_CHANGE[] = {"normal", "center", "extrinsics", "intrinsics", "distance", "radius", "outer-index", "thickness",
+                                      "index", "curvature"};
     std::vector<std::pair<double, std::string>> explains;
     for (const std::string name : MAY_CHANGE)
     {

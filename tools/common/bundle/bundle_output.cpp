@@ -68,8 +68,8 @@ std::string cameraLines(const BundleFindings& findings, int c)
 //! A line a camera, while there is room in the ten.
 int shownCameras(const BundleFindings& findings)
 {
-    const bool hasAxis = std::any_of(findings.changes.begin(), findings.changes.end(), [](const CameraChange& c) { return c.axis.estimated; });
-    return hasAxis ? 2 : 3;
+    const auto hasAxis = [](const CameraChange& c) { return c.axis.estimated; };
+    return std::any_of(findings.changes.begin(), findings.changes.end(), hasAxis) ? 2 : 3;
 }
 
 double median(std::vector<double> values)

@@ -85,7 +85,8 @@ void takeWindows(const BundleOptions& options, const std::string& path, Calibrat
         throw Failure("'" + path + "' has a glass_window, which says what the cameras look through: leave --window, --thickness, --index "
                       "and their kin out, or the glass_window");
     if (!file.covariance.empty())
-        throw Failure("'" + path + "' has a covariance, of cameras without windows: leave it out of the file, or the windows of the options");
+        throw Failure("'" + path + "' has a covariance, of cameras without windows: leave it out of the file, or the windows of the "
+                      "options");
     const GivenWindow given = givenWindow(options, file);
     for (CameraCalibration& camera : file.cameras)
         camera.camera = copyWithWindow(camera.camera, given.window);
