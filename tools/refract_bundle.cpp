@@ -17,7 +17,9 @@ wand that is waved, particles, any matches. Cameras, windows, R, T and points ar
   refract_bundle calib.yml --points=matches.csv --free=normal --out=new.yml                 its windows were taken out meanwhile
 
 start.yml: what refract_calib wrote, or lenses, windows and R, T written by hand, within some degrees and per cent
-(doc/howto_bundle.md has one). The cameras do not move.
+(doc/howto_bundle.md has one). The cameras do not move. If start.yml has no glass_window, the options say it, of all cameras, as those of
+refract_calib: --window=dome --radius=50 --thickness=5 --index=PMMA --outer-index=water. A dome's centre is then at the camera, where it
+is enough to start from, unless --center says otherwise; a tube needs --axis, roughly; --bow-std lets flat windows be bent.
 
 matches.csv: [image,]id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a camera did not see
 it. The same id with another image is another point: of a wand, image is the moment. What refract_measure wrote will do.
@@ -28,7 +30,8 @@ that show both points. Rows with equal length and std are one object: its error 
 Three kinds of parameters. What --free names starts at the values of start.yml and follows from the matches alone. What has a
 variance in start.yml (what refract_calib wrote has a covariance) is estimated within that; where it has none, thickness, index,
 distance and wedge are known as well as in refract_calib (--thickness-std and its kin). The rest is exact. Default of --free:
-normal,extrinsics for a start without a covariance; nothing for one with.
+normal,extrinsics (of domes and tubes center,extrinsics; with center goes a tube's axis) for a start without a covariance; nothing for
+one with.
 
 Scale: of --lengths; without, of T in start.yml, if it is not free.
 
@@ -56,6 +59,7 @@ void addOptions(CLI::App& app, Options& o)
     app.add_option("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
     app.add_option("--free", o.bundle.free, "what the matches alone must tell; none: nothing")->delimiter(',')
         ->check(CLI::IsMember(freeNames()));
+    o.bundle.window.addTo(app, "needed where the medium on its other side is another");
     o.bundle.std.addTo(app, false);
     app.add_option("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)")->check(CLI::IsMember(unitNames()));
     app.add_flag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
@@ -106,7 +110,6 @@ int main(int argc, char** argv)
                       {"--summary", options.summary, OUTPUT_TEXT}},
                      {options.start, options.points, options.lengths, command.settings()});
         const Calibration file = readCalibration(options.start);
-        requireWindows(file, options.start, options.bundle.noWindow);
         warnOfContradictions(file, options.start, command);
         const Matches matches = readMatches(options.points, file, options.start);
         const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);

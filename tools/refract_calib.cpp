@@ -51,6 +51,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "assess/live_limits.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
+#include "calibrate/given_window.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/live_rig.hpp"
@@ -87,28 +88,19 @@ struct Options
     RigSources images;
     WatchOptions watch;
     PerCamera<std::string> camera;
-    std::string thickness, index, imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
-    std::string innerIndex = "1", outerIndex = "1";
-    std::string shape = "flat", center, axis;
-    double radius = 0.;
+    GivenWindowOptions window;
+    std::string imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
     std::string channel;
-    double wavelength = 0., distance = 0., watchGain = 0.;
+    double watchGain = 0.;
     GivenStdOptions std;
     std::vector<std::string> free;
-    bool distanceGiven = false, unpaired = false, sharedWindow = false;
+    bool unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
     Limits limits;
     Label label;
     std::string unit = "mm";
     bool verbose = false;
 };
-
-const std::map<std::string, int> FREE = {
-    {"thickness", GLASS_FREE_THICKNESS}, {"index", GLASS_FREE_INDEX}, {"distance", GLASS_FREE_DISTANCE},
-    {"outer-index", GLASS_FREE_OUTER_INDEX}, {"intrinsics", GLASS_FREE_INTRINSICS}, {"wedge", GLASS_FREE_WEDGE},
-    {"radius", GLASS_FREE_RADIUS}, {"curvature", GLASS_FREE_CURVATURE}};
-
-const std::map<std::string, int> SHAPES = {{"flat", WINDOW_FLAT}, {"dome", WINDOW_DOME}, {"tube", WINDOW_TUBE}, {"bent", WINDOW_BENT}};
 
 template<typename T> std::vector<std::string> namesOf(const std::map<std::string, T>& map)
 {
@@ -158,28 +150,12 @@ Options parseOptions(Command& command)
     app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
                    "cv::fisheye's four, or auto: as many as held-out images support")->check(CLI::IsMember(lensNames()))
         ->capture_default_str();
-    app.add_option("--window", o.shape, "shape of the windows: flat, bent (flat with --bow-std), dome or tube")
-        ->check(CLI::IsMember(namesOf(SHAPES)))->capture_default_str();
-    app.add_option("--radius", o.radius, "of a dome's or tube's inner face")->check(moreThanZero());
-    app.add_option("--center", o.center, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame "
-        "(default: 0,0,0, the camera itself)");
-    app.add_option("--axis", o.axis, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 if upright");
-    app.add_option("--thickness", o.thickness, "thickness of each layer, from the camera outwards: T[,T...]");
-    app.add_option("--index", o.index, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
-        "or N-BK7,PMMA,N-BK7");
+    o.window.addTo(app, "where it is needed and not given, it is estimated");
     o.std.addTo(app);
-    app.add_option("--inner-index", o.innerIndex, "index of the medium round the camera, or its name")
-        ->capture_default_str();
-    app.add_option("--outer-index", o.outerIndex, "index of the scene's medium, or its name: 1.333, water, "
-        "seawater:T=12,S=35")->capture_default_str();
     app.add_option("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)")->check(CLI::IsMember({"red", "green", "blue"}));
-    app.add_option("--wavelength", o.wavelength, "of the light, nm, for materials that are named (default: 550; of --channel red "
-        "610, green 540, blue 465)")->check(moreThanZero());
-    CLI::Option* distance = app.add_option("--distance", o.distance, "from the camera's centre of projection to the window; "
-        "where it is needed and not given, it is estimated");
     app.add_option("--free", o.free, "what to estimate beside the normal, or the centre")->delimiter(',')
-        ->check(CLI::IsMember(namesOf(FREE)));
+        ->check(CLI::IsMember(namesOf(freeFlags())));
     app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
     app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
@@ -220,7 +196,6 @@ Options parseOptions(Command& command)
                 throw Failure("--note=" + text + ": there is another note '" + note.first + "'");
         o.label.notes.push_back(note);
     }
-    o.distanceGiven = distance->count() > 0;
     const auto isGiven = [](const std::string& file) { return !file.empty(); };
     if (app.get_option("--lens")->count() > 0
         && std::all_of(o.camera.begin(), o.camera.begin() + o.images.cameraCount(), isGiven))
@@ -233,32 +208,6 @@ Options parseOptions(Command& command)
     return o;
 }
 
-const double MOST_INDEX = 4.1;          // germanium in the infrared has 4.0
-
-//! Layers and media that there are.
-void requireMaterials(const Options& o, const GlassWindow& window)
-{
-    for (double thickness : window.thickness)
-        if (!(thickness > 0))
-            throw Failure("--thickness=" + o.thickness + ": a layer is thicker than 0; without glass (a bare water surface) "
-                          "leave --thickness and --index out");
-    // Among several layers, one of index 1 is the gap of double glazing.
-    double most = 0.;
-    for (double index : window.index)
-    {
-        most = std::max(most, index);
-        if (!(index >= 1) || index > MOST_INDEX)
-            throw Failure("--index=" + o.index + format(": no material has the index %g; glass has 1.4 to 2, the data sheet "
-                                                        "says which", index));
-    }
-    if (!window.index.empty() && most == 1)
-        throw Failure("--index=" + o.index + ": that is air; glass has an index of 1.4 to 2, the data sheet says which");
-    const std::pair<const char*, double> media[] = {{"--inner-index", window.innerIndex}, {"--outer-index", window.outerIndex}};
-    for (const auto& medium : media)
-        if (!(medium.second >= 1) || medium.second > MOST_INDEX)
-            throw Failure(format("%s=%g: no medium has that index; air has 1, water 1.333", medium.first, medium.second));
-}
-
 const double LEAST_SOLID = 1.36;        // no solid that windows are made of has less; water has 1.333
 
 //! A liquid that was given as a layer: it stays where it is only between two others.
@@ -267,8 +216,8 @@ void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std
     for (size_t i : {(size_t)0, rig.window.index.size() - 1})
         if (!rig.window.index.empty() && rig.window.index[i] < LEAST_SOLID)
         {
-            notices.push_back("--index=" + o.index + format(": the %s has the index %.4g, as a liquid: no window is made of that. The "
-                              "medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
+            notices.push_back("--index=" + o.window.index() + format(": the %s has the index %.4g, as a liquid: no window is made of that. "
+                              "The medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
                               rig.window.index.size() == 1 ? "window" : i ? "outermost layer" : "innermost layer", rig.window.index[i]));
             return;
         }
@@ -295,113 +244,6 @@ std::vector<int> readWindowsOfCameras(const Options& o)
     return windows;
 }
 
-/** Only ratios of indices count, and the module takes none below 1: where a medium is air that is thinner than that which
-indices are relative to, all become relative to the thinner one. */
-void makeRelativeToThinnest(RigOptions& rig)
-{
-    const GivenIndex unit = rig.inner.value < rig.outer.value ? rig.inner : rig.outer;
-    if (!unit.isNamed() || unit.value >= 1.)
-        return;
-    std::vector<GivenIndex*> indices = {&rig.inner, &rig.outer};
-    for (GivenIndex& layer : rig.layers)
-        indices.push_back(&layer);
-    for (GivenIndex* index : indices)
-    {
-        if (index->isNamed())
-            index->name += index->value == unit.value ? ", which all are relative to," : ", relative to " + unit.name + ",";
-        index->value /= unit.value;
-    }
-}
-
-//! Numbers, or by the materials' names.
-void takeIndices(const Options& o, RigOptions& rig)
-{
-    const Light light = lightOf(o.images.channel, o.wavelength);
-    if (!o.index.empty())
-        rig.layers = readIndices(o.index, light, "--index");
-    rig.inner = readIndex(o.innerIndex, light, "--inner-index");
-    rig.outer = readIndex(o.outerIndex, light, "--outer-index");
-    if (o.wavelength > 0 && !rig.hasMaterials())
-        throw Failure("--wavelength: no material is named, and indices that are numbers do not depend on it; leave it out");
-    makeRelativeToThinnest(rig);
-    for (const GivenIndex& layer : rig.layers)
-        rig.window.index.push_back(layer.value);
-    rig.window.innerIndex = rig.inner.value;
-    rig.window.outerIndex = rig.outer.value;
-    rig.channel = o.images.channel;
-    if (!rig.hasMaterials())
-        return;
-    rig.window.wavelength = light.wavelength;
-    rig.window.materials = {rig.inner.material};
-    for (const GivenIndex& layer : rig.layers)
-        rig.window.materials.push_back(layer.material);
-    rig.window.materials.push_back(rig.outer.material);
-}
-
-cv::Vec3d parseVector(const std::string& text, const char* option)
-{
-    const std::vector<double> numbers = parseNumbers(text, option);
-    if (numbers.size() != 3)
-        throw Failure(std::string(option) + "=" + text + ": give three numbers, X,Y,Z in the camera's frame (x to the right, y down, "
-                      "z ahead)");
-    return cv::Vec3d(numbers.data());
-}
-
-//! Options and flags of what windows of this shape do not have.
-void requireShape(const Options& o, int flags)
-{
-    const bool isRoundWindow = o.shape == "dome" || o.shape == "tube";
-    const std::string shape = "--window=" + o.shape;
-    if (!isRoundWindow)
-    {
-        if (o.radius > 0. || flags & GLASS_FREE_RADIUS)
-            throw Failure("--radius and --free=radius are of a dome or tube, and --window is " + o.shape + ": add --window=dome or "
-                          "--window=tube, or leave them out");
-        if (!o.center.empty() || !o.axis.empty())
-            throw Failure("--center and --axis are of a dome or tube, and --window is " + o.shape + ": add --window=dome or --window=tube, "
-                          "or leave them out");
-        return;
-    }
-    if (!(o.radius > 0.))
-        throw Failure(shape + " needs --radius, of its inner face");
-    if (o.distanceGiven || flags & GLASS_FREE_DISTANCE)
-        throw Failure("--distance is of a flat window: where a " + o.shape + " is, its centre says, which is estimated (--center: where to "
-                      "start); leave it out");
-    if (flags & GLASS_FREE_WEDGE)
-        throw Failure("--free=wedge is of a flat window: the faces of a " + o.shape + " have one centre; leave it out");
-    if (flags & GLASS_FREE_CURVATURE)
-        throw Failure("--free=curvature is of a flat window; for a " + o.shape + " say --free=radius");
-    if (o.limits.normalStdDeg > 0.)
-        throw Failure("--max-normal-std is of a flat window, and a " + o.shape + " has no normal: limit the error of points, "
-                      "--max-error-at");
-    if (o.shape == "tube" && o.axis.empty())
-        throw Failure("--window=tube needs --axis, roughly the direction of its axis in the camera's frame: 0,1,0 if it is upright");
-    if (o.shape == "dome" && !o.axis.empty())
-        throw Failure("--axis is of a tube; a dome has none: leave it out");
-}
-
-//! Where a dome or tube is, to start from.
-void takePlace(const Options& o, GlassWindow& window)
-{
-    if (!isRound(window))
-        return;
-    window.radius = o.radius;
-    if (!o.center.empty())
-        window.center = parseVector(o.center, "--center");
-    if (!o.axis.empty())
-    {
-        const cv::Vec3d axis = parseVector(o.axis, "--axis");
-        if (!(cv::norm(axis) > 0.))
-            throw Failure("--axis=" + o.axis + ": that is no direction; give 0,1,0 for an upright tube");
-        window.axis = cv::normalize(axis);
-    }
-    const double offset = offsetOf(window);
-    if (!(offset < window.radius))
-        throw Failure("--center=" + o.center + format(": there the camera would be %g from the %s of the %s, outside its radius of %g: "
-                      "give the centre in the camera's frame, nearer than the radius", offset, o.shape == "dome" ? "centre" : "axis",
-                      o.shape.c_str(), window.radius));
-}
-
 //! Standard deviations of what is given.
 void takeStd(const Options& o, const Target* target, RigOptions& rig)
 {
@@ -409,55 +251,35 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.layers = rig.layers;
     given.outer = rig.outer;
     given.equalMedia = rig.window.innerIndex == rig.window.outerIndex;
-    given.distance = o.distanceGiven;
+    given.distance = o.window.isDistanceSaid();
     given.shape = rig.window.shape;
     given.square = target ? target->square() : 0.;
     given.millimetre = 1./millimetresIn(o.unit);
     given.flags = rig.flags;
     rig.std = o.std.of(given);
-    if (rig.std.wedge > 0. || rig.flags & GLASS_FREE_WEDGE)
-        rig.window.wedge.assign(rig.window.thickness.size(), cv::Vec2d());
-    const bool isBowed = rig.std.curvature > 0. || rig.flags & GLASS_FREE_CURVATURE;
-    if (isBowed)
-        rig.window.shape = WINDOW_BENT;
-    if (o.shape == "bent" && !isBowed)
-        throw Failure("--window=bent: say how much it may be bent, --bow-std=2 for 2 mm of sag per metre (tempered plate), or "
-                      "--free=curvature");
+    o.window.requireBow(rig.std, rig.flags);
+    rig.window = withEstimated(rig.window, rig.std, rig.flags);
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
 void readWindow(const Options& o, RigOptions& rig)
 {
-    GlassWindow& window = rig.window;
-    window.shape = o.shape == "bent" ? (int)WINDOW_FLAT : SHAPES.at(o.shape);       // takeStd() bends it
-    if (!o.thickness.empty())
-        window.thickness = parseNumbers(o.thickness, "--thickness");
-    takeIndices(o, rig);
     for (const std::string& name : o.free)
-        rig.flags |= FREE.at(name);
-    requireShape(o, rig.flags);
-    takePlace(o, window);
+        rig.flags |= freeFlags().at(name);
+    const GivenWindow given = o.window.of(rig.flags, o.images.channel);
+    rig.window = given.window;
+    rig.layers = given.layers;
+    rig.inner = given.inner;
+    rig.outer = given.outer;
+    rig.channel = o.images.channel;
+    if (isRound(rig.window) && o.limits.normalStdDeg > 0.)
+        throw Failure("--max-normal-std is of a flat window, and a " + o.window.shape() + " has no normal: limit the error of points, "
+                      "--max-error-at");
     rig.windows = readWindowsOfCameras(o);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
-
-    const bool equalMedia = window.innerIndex == window.outerIndex;
-    if (window.thickness.size() != window.index.size())
-        throw Failure(format("--thickness has %d, --index %d: both must have one number for each layer, with commas between layers and "
-                             "points for decimals", (int)window.thickness.size(), (int)window.index.size()));
-    requireMaterials(o, window);
-    if (window.thickness.empty() && equalMedia)
-        throw Failure("there is no window to calibrate: give --thickness and --index, or an --outer-index that differs from "
-                      "--inner-index (a bare water surface)");
-    if (window.thickness.empty() && (rig.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX)))
-        throw Failure("--free=thickness and --free=index need a layer to start from: give --thickness and --index roughly");
-    if (equalMedia && (rig.flags & GLASS_FREE_DISTANCE))
-        throw Failure("--free=distance: with the same medium on both sides of the window the distance has exactly no effect "
-                      "on the image and cannot be found; leave it out");
-    if (!equalMedia && !o.distanceGiven && !isRound(window))
+    if (rig.window.innerIndex != rig.window.outerIndex && !o.window.isDistanceSaid() && !isRound(rig.window))
         rig.flags |= GLASS_FREE_DISTANCE;
-    window.distance = o.distance;
-    window.check();
 }
 
 //! Into the place of sources that are not to be read.
@@ -511,7 +333,7 @@ void takeImages(const Options& o, const Target* target, RigImages sets, RigCalib
     }
     c.notices = noticesOf(sets, c.data);
     noticeLiquidLayers(o, c.options, c.notices);
-    if (!o.distanceGiven && c.options.flags & GLASS_FREE_DISTANCE)
+    if (!o.window.isDistanceSaid() && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
 }
 

@@ -109,7 +109,8 @@ void addOptions(CLI::App& app, Options& o)
         ->needs(history);
     app.add_option("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)")->needs(history);
     app.add_option("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
-    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found")
+    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found, of a dome's "
+        "centre as seen from a radius away")
         ->check(moreThanZero())->capture_default_str()->needs(history);
 }
 
@@ -370,7 +371,10 @@ public:
             for (int c = 0; c < (int)input.rig.cameras.size(); c++)
                 record_.byParameters.col(columnsOf(withWedges(input).rig, c).outerIndex).setZero();
         history_.checks.push_back(record_);
-        result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*o_.falseAlarm, o_.drift);
+        std::map<std::string, double> drifts;
+        for (const WindowCheck& window : check.windows)
+            drifts[window.chart] = o_.drift*(window.lengthPerDegree > 0. ? window.lengthPerDegree : 1.);
+        result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*o_.falseAlarm, drifts);
     }
 
     bool isAlarm() const { return result_.isAlarm(); }
@@ -378,7 +382,7 @@ public:
     //! @param verdict of all
     void write(const std::string& verdict, bool isGood) const
     {
-        const std::string page = historyPage(history_, result_, covariance_, {o_.calibration, o_.falseAlarm, o_.drift, verdict, isGood});
+        const std::string page = historyPage(history_, result_, covariance_, {o_.calibration, o_.falseAlarm, verdict, isGood});
         writeText(o_.pageFile(), page);
         writeHistory(o_.history, history_);
     }
@@ -394,7 +398,7 @@ public:
         if (!result_.mainTrend(history_).empty())
             std::cout << "Trend of " << result_.mainTrend(history_) << '\n';
         for (const FoundDrift& found : result_.found)
-            std::cout << foundText(found, history_, o_.drift, result_.interval) << '\n';
+            std::cout << foundText(found, history_, result_.interval) << '\n';
         std::cout << "Charts: " << o_.pageFile() << '\n';
     }
 
@@ -402,7 +406,8 @@ public:
     {
         nlohmann::ordered_json found = nlohmann::ordered_json::array();
         for (const FoundDrift& f : result_.found)
-            found.push_back({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"checks", f.checks}});
+            found.push_back({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"drift_per_month", f.perMonth},
+                             {"checks", f.checks}});
         return {{"checks", history_.checks.size()}, {"alarm", isAlarm()}, {"beyond", result_.chartsBeyond(history_)},
                 {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
                 {"ewma_limit", result_.points.back().limit}, {"found", found}};

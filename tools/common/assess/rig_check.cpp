@@ -329,6 +329,7 @@ private:
         check.center = window.center;
         check.parameters = tested.at.count();
         check.lengthPerDegree = tested.change->isShift ? window.radius/DEGREES : 0.;
+        check.chart = tested.change->chart;
         const double degrees = tested.change->isShift ? DEGREES/window.radius : DEGREES;
         // The covariance of the linear test, which holds whatever was found.
         const MatrixXd ranges = tested.change->ranges().asDiagonal();

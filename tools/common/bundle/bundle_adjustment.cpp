@@ -38,7 +38,7 @@ std::string explained(const CalibrationError& e)
     case CalibrationError::WINDOW_NOT_SEEN:
         return format("no point was seen through the window of camera %d", e.camera + 1);
     case CalibrationError::NO_IMAGE:
-        return reason + "; check the window's distance and thickness, the lens, and the units of the start";
+        return reason + "; check what is given of the windows, the lens, and the units of the start";
     default:
         return e.err;
     }
@@ -89,21 +89,20 @@ double squaredLengths(const GivenLengths& lengths, const std::vector<Point3d>& p
     return count ? squares - cross*cross/weight : 0.;
 }
 
-//! How many numbers are known beforehand: of a normal two, of a shared window once.
+//! How many numbers are known beforehand: of directions and of a tube's centre two, of a shared window once.
 int countKnown(const BundleStart& start)
 {
+    if (start.covariance.empty())
+        return 0;
     int count = 0;
-    for (int i = 0; i < start.covariance.rows; i++)
-        count += start.covariance.at<double>(i, i) > 0;
-    for (int c = 0; c < (int)start.rig.cameras.size() && count > 0; c++)
+    const auto isKnown = [&](int i) { return start.covariance.at<double>(i, i) > 0; };
+    for (int i = extrinsicsColumn(start.rig, 1); i < start.covariance.rows; i++)
+        count += isKnown(i);
+    for (int c = 0; c < (int)start.rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(start.rig, c);
-        const auto variance = [&](int i) { return start.covariance.at<double>(i, i); };
-        if (start.rig.ownsWindow(c))
-            count -= variance(at.normal) + variance(at.normal + 1) + variance(at.normal + 2) > 0;
-        else
-            for (int i = at.normal; i < at.end; i++)
-                count -= variance(i) > 0;
+        for (int i = at.lens; i < (start.rig.ownsWindow(c) ? at.end : at.window); i++)
+            count += isKnown(i) && !followsOthers(start.rig.cameras[c]->window(), at, i);
     }
     return count;
 }

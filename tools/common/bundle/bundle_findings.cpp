@@ -5,6 +5,7 @@
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
 
@@ -32,9 +33,15 @@ CameraChange changeOf(const BundleStart& start, const Fit& fit, int c)
 {
     CameraChange change;
     const GlassWindow before = start.rig.cameras[c]->window(), now = fit.rig.cameras[c]->window();
-    const double normalStd = worstStd(fit.covariance, columnsOf(fit.rig, c).normal);
-    change.normal = {normalStd > 0., std::atan2(norm(before.normal.cross(now.normal)), before.normal.dot(now.normal))*DEGREES,
-                     normalStd*DEGREES};
+    const double std = placeStd(fit.covariance, fit.rig, c);
+    change.name = placeName(now);
+    change.place = {std > 0., placeChange(before, now), std};
+    change.worstDeg = isRound(now) ? std/now.radius*DEGREES : std;
+    if (now.shape == WINDOW_TUBE)
+    {
+        const double axisStd = worstStd(fit.covariance, columnsOf(fit.rig, c).axis);
+        change.axis = {axisStd > 0., std::asin(std::min(1., norm(before.axis.cross(now.axis))))*DEGREES, axisStd*DEGREES};
+    }
     if (c == 0)
         return change;
     const RigidTransform& was = start.rig.extrinsics[c];
@@ -63,13 +70,33 @@ std::string scaleOf(const BundleStart& start, const GivenLengths& lengths, const
     return format("T of the start, +- %.2g %% (no --lengths)", 100.*std::sqrt(direction.dot(C*direction))/norm(T));
 }
 
-//! Standard deviations beyond which a value says next to nothing.
-bool isWeak(const EstimatedParameter& p)
+const double FAR_OFF = 2./DEGREES;      // of a direction: it says next to nothing
+
+//! The window that a column is of.
+GlassWindow windowOfColumn(const RigModel& rig, int column, ParameterColumns& at)
 {
+    int c = 0;
+    while (column >= columnsOf(rig, c).end)
+        c++;
+    at = columnsOf(rig, c);
+    return rig.cameras[c]->window();
+}
+
+//! Standard deviations beyond which a value says next to nothing.
+bool isWeak(const EstimatedParameter& p, const RigModel& rig)
+{
+    ParameterColumns at;
+    const GlassWindow window = windowOfColumn(rig, p.column, at);
+    const auto isOf = [&](int first, int count) { return at.has(first) && p.column >= first && p.column < first + count; };
     if (p.isNormal)
-        return p.std > 2./DEGREES;
-    const auto is = [&p](const char* word) { return p.name.find(word) != std::string::npos; };
-    return is("index") ? p.std > 0.05 : is("wedge") ? p.std > 3*ARC_MINUTE : p.std > 0.25*p.value;
+        return p.std > FAR_OFF;
+    if (isOf(at.center, 3))             // as seen from a radius away
+        return p.std > FAR_OFF*window.radius;
+    if (isOf(at.curvature, 1))          // by so much it turns the pane from the middle of an image to where it is as far as it is away
+        return p.std*window.distance > FAR_OFF;
+    if (isOf(at.index, at.layers) || isOf(at.outerIndex, 1))
+        return p.std > 0.05;
+    return isOf(at.wedge, at.curvature - at.wedge) ? p.std > 3*ARC_MINUTE : p.std > 0.25*p.value;
 }
 
 std::string nameOf(const RigModel& rig, int column)
@@ -77,9 +104,11 @@ std::string nameOf(const RigModel& rig, int column)
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(rig, c);
-        if (column < at.end)
-            return format("camera %d's ", c + 1)
-                + (column >= at.normal && column < at.normal + 3 ? "normal" : rig.cameras[c]->parameterNames()[column - at.lens]);
+        if (column >= at.end)
+            continue;
+        const auto isOf = [&](int first) { return at.has(first) && column >= first && column < first + 3; };
+        return format("camera %d's ", c + 1) + (isOf(at.normal) ? "normal" : isOf(at.center) ? "centre" : isOf(at.axis) ? "axis"
+                                                                : rig.cameras[c]->parameterNames()[column - at.lens]);
     }
     const int place = column - extrinsicsColumn(rig, 1);
     return std::string(place % 6 < 3 ? "R" : "T") + (place < 6 ? "" : std::to_string(place/6 + 2));
@@ -90,12 +119,14 @@ void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings
 {
     const double MANY = 5.;
     const Mat_<double> values = valuesOf(fit.rig), known = valuesOf(start.rig);
+    const int places = extrinsicsColumn(fit.rig, 1);
+    ParameterColumns at;
     double worst = 0.;
     int column = -1;
     for (int i = 0; i < start.covariance.rows; i++)
     {
         const double before = start.covariance.at<double>(i, i), now = fit.covariance.at<double>(i, i);
-        if (!(before > 0))
+        if (!(before > 0) || (i < places && followsOthers(windowOfColumn(fit.rig, i, at), at, i)))
             continue;
         const double change = std::abs(values(i) - known(i));
         const double ratio = change/std::sqrt(std::max(before - now, 1e-2*before));
@@ -130,7 +161,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
         findings.changes.push_back(changeOf(start, fit, c));
     findings.scale = scaleOf(start, lengths, fit);
     for (const EstimatedParameter& p : estimatedWindowParameters(fit))
-        if (isWeak(p))
+        if (isWeak(p, fit.rig))
             findings.weak.push_back(p.name + " = " + plusMinus(p.value, p.std));
     const double FEW = 60.;
     if (fit.dof < FEW)
@@ -153,7 +184,8 @@ std::string explanationOf(const std::vector<std::string>& free, double sigma,
                           const std::function<BundleAdjustment(const std::vector<std::string>&)>& adjust)
 {
     const double EXPLAINS = 0.5, AS_GOOD = 1.1;     // of the noise
-    const char* const MAY_CHANGE[] = {"normal", "extrinsics", "intrinsics", "distance", "outer-index", "thickness", "index"};
+    const char* const MAY_CHANGE[] = {"normal", "center", "extrinsics", "intrinsics", "distance", "radius", "outer-index", "thickness",
+                                      "index", "curvature"};
     std::vector<std::pair<double, std::string>> explains;
     for (const std::string name : MAY_CHANGE)
     {

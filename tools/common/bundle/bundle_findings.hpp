@@ -13,12 +13,15 @@ namespace tools {
 struct Change
 {
     bool estimated = false;
-    double by = 0., std = 0.;           //!< of a normal or R degrees, of T lengths; std along the worst direction
+    double by = 0., std = 0.;           //!< of a direction or R degrees, of a centre or T lengths; std along the worst direction
 };
 
 struct CameraChange
 {
-    Change normal, R, T;                //!< R and T of the first camera: nothing
+    std::string name;                   //!< of its window's place: "normal" or "centre"
+    Change place, R, T;                 //!< R and T of the first camera: nothing
+    Change axis;                        //!< a tube's
+    double worstDeg = 0.;               //!< the place's std; of a centre, as seen from a radius away
 };
 
 //! What is to be thought of an adjustment.

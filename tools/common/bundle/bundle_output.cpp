@@ -46,18 +46,30 @@ int worstCamera(const BundleFindings& findings)
 {
     int worst = 0;
     for (int c = 1; c < (int)findings.changes.size(); c++)
-        if (findings.changes[c].normal.std > findings.changes[worst].normal.std)
+        if (findings.changes[c].worstDeg > findings.changes[worst].worstDeg)
             worst = c;
     return worst;
 }
 
-std::string cameraLine(const BundleFindings& findings, int c)
+//! Of a camera in a tube two lines: it has an axis, too.
+std::string cameraLines(const BundleFindings& findings, int c)
 {
     const CameraChange& change = findings.changes[c];
-    std::string line = format("  camera %d: ", c + 1) + changeText("normal", change.normal);
+    const std::string head = format("  camera %d: ", c + 1);
+    std::string text = head + changeText(change.name.c_str(), change.place);
+    if (change.axis.estimated)
+        text += ", " + changeText("axis", change.axis);
     if (c > 0)
-        line += ", " + changeText("R", change.R) + ", " + changeText("T", change.T);
-    return line;
+        text += (change.axis.estimated ? ",\n" + std::string(head.size(), ' ') : ", ") + changeText("R", change.R) + ", "
+            + changeText("T", change.T);
+    return text + "\n";
+}
+
+//! A line a camera, while there is room in the ten.
+int shownCameras(const BundleFindings& findings)
+{
+    const auto hasAxis = [](const CameraChange& c) { return c.axis.estimated; };
+    return std::any_of(findings.changes.begin(), findings.changes.end(), hasAxis) ? 2 : 3;
 }
 
 double median(std::vector<double> values)
@@ -100,6 +112,18 @@ Json jsonOf(const Change& change)
     return {{"by", change.by}, {"std", change.std}};
 }
 
+//! As calib.yml names it: of a dome or tube a center, of a tube an axis.
+Json jsonOf(const CameraChange& change, double rms)
+{
+    Json json = {{"rms", rms}};
+    json[change.name == "centre" ? "center_from_start" : "normal_from_start_deg"] = jsonOf(change.place);
+    if (change.axis.estimated)
+        json["axis_from_start_deg"] = jsonOf(change.axis);
+    json["R_from_start_deg"] = jsonOf(change.R);
+    json["T_from_start"] = jsonOf(change.T);
+    return json;
+}
+
 Json parametersOf(const std::vector<EstimatedParameter>& list)
 {
     Json result = Json::object();
@@ -140,8 +164,7 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
 {
     Json cameras = Json::array();
     for (size_t c = 0; c < findings.changes.size(); c++)
-        cameras.push_back({{"rms", adjustment.rmsOfCamera[c]}, {"normal_from_start_deg", jsonOf(findings.changes[c].normal)},
-                           {"R_from_start_deg", jsonOf(findings.changes[c].R)}, {"T_from_start", jsonOf(findings.changes[c].T)}});
+        cameras.push_back(jsonOf(findings.changes[c], adjustment.rmsOfCamera[c]));
     const Json json = {
         {"verdict", findings.verdict()}, {"pass", findings.pass()}, {"rms", adjustment.fit.rms}, {"residual_sigma", adjustment.fit.sigma},
         {"degrees_of_freedom", adjustment.fit.dof}, {"unit", unit}, {"scale", findings.scale},
@@ -157,17 +180,17 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
 void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
                  const std::string& unit)
 {
-    const int SHOWN = 3, cameras = (int)findings.changes.size();
+    const int shown = shownCameras(findings), cameras = (int)findings.changes.size();
     const Fit& fit = adjustment.fit;
     out << findings.verdict()
         << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
     out << fitted("scale: ", {findings.scale}) << "\n";
     out << "found off the start (degrees, " << (unit.empty() ? "units of length" : unit)
-        << (cameras > SHOWN ? "), the camera that is known least:\n" : "):\n");
-    for (int c = 0; c < cameras && cameras <= SHOWN; c++)
-        out << cameraLine(findings, c) << "\n";
-    if (cameras > SHOWN)
-        out << cameraLine(findings, worstCamera(findings)) << "\n";
+        << (cameras > shown ? "), the camera that is known least:\n" : "):\n");
+    for (int c = 0; c < cameras && cameras <= shown; c++)
+        out << cameraLines(findings, c);
+    if (cameras > shown)
+        out << cameraLines(findings, worstCamera(findings));
     out << pointsLine(adjustment, unit) << "\n";
     if (adjustment.usedPixels < adjustment.seenPixels)
         out << format("pixels left out: %d of %d\n", adjustment.seenPixels - adjustment.usedPixels, adjustment.seenPixels);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_start.hpp"
+#include "bundle/start_covariance.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
@@ -18,10 +19,8 @@ namespace tools {
 
 namespace {
 
-const std::map<std::string, int> FREE = {
-    {"normal", 0}, {"extrinsics", GLASS_FREE_EXTRINSICS}, {"intrinsics", GLASS_FREE_INTRINSICS},
-    {"thickness", GLASS_FREE_THICKNESS}, {"index", GLASS_FREE_INDEX}, {"distance", GLASS_FREE_DISTANCE},
-    {"outer-index", GLASS_FREE_OUTER_INDEX}, {"wedge", GLASS_FREE_WEDGE}};
+//! What only a bundle has; where windows are is free unless GLASS_FIX_NORMAL says otherwise.
+const std::map<std::string, int> PLACES = {{"normal", 0}, {"center", 0}, {"extrinsics", GLASS_FREE_EXTRINSICS}};
 
 const char NONE[] = "none";
 
@@ -30,8 +29,71 @@ bool contains(const std::vector<std::string>& list, const std::string& name)
     return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+int flagOf(const std::string& name)
+{
+    const auto place = PLACES.find(name);
+    return place != PLACES.end() ? place->second : freeFlags().at(name);
+}
+
+//! What says where a window is, as --free names it: of a tube the axis, too.
+std::string placeOf(const GlassWindow& window) { return isRound(window) ? "center" : "normal"; }
+
+//! Of all windows of a rig, each once.
+std::vector<std::string> placesOf(const RigModel& rig)
+{
+    std::vector<std::string> places;
+    for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
+        if (!contains(places, placeOf(camera->window())))
+            places.push_back(placeOf(camera->window()));
+    return places;
+}
+
+//! As the options say it, in the light of the file's images.
+GivenWindow givenWindow(const BundleOptions& options, const Calibration& file)
+{
+    int flags = 0;
+    for (const std::string& name : options.free)
+        flags |= name == NONE ? 0 : flagOf(name);
+    const GivenWindow given = options.window.of(flags, file.channel);
+    const bool needsDistance = !isRound(given.window) && given.window.innerIndex != given.window.outerIndex;
+    if (needsDistance && !options.window.isDistanceSaid())
+        throw Failure("--distance is needed, from the camera's centre of projection to the window, as on its other side is another medium: "
+                      "a ruler will do (--distance-std says how well it is known)");
+    return given;
+}
+
+//! The windows of the options, where the start has none; refuses windows from both, or from nowhere.
+void takeWindows(const BundleOptions& options, const std::string& path, Calibration& file)
+{
+    const bool isNone = std::none_of(file.cameras.begin(), file.cameras.end(), [](const CameraCalibration& c) { return c.windowGiven; });
+    if (!options.window.isSaid())
+    {
+        if (isNone && !options.noWindow)
+            throw Failure("'" + path + "' has no glass_window: say what the cameras look through, --thickness=5 --index=1.49 and "
+                          "--window=dome with --radius where it is one, or --no-window if there is none");
+        requireWindows(file, path, options.noWindow);
+        return;
+    }
+    if (options.noWindow)
+        throw Failure("--no-window says that there is none: leave --window, --thickness, --index and their kin out");
+    // A glass_window without layers, in one medium, is none, either: programs that write all keys write it.
+    const auto refracts = [](const CameraCalibration& c) {
+        const GlassWindow window = c.camera->window();
+        return !window.thickness.empty() || window.innerIndex != window.outerIndex;
+    };
+    if (std::any_of(file.cameras.begin(), file.cameras.end(), refracts))
+        throw Failure("'" + path + "' has a glass_window, which says what the cameras look through: leave --window, --thickness, --index "
+                      "and their kin out, or the glass_window");
+    if (!file.covariance.empty())
+        throw Failure("'" + path + "' has a covariance, of cameras without windows: leave it out of the file, or the windows of the "
+                      "options");
+    const GivenWindow given = givenWindow(options, file);
+    for (CameraCalibration& camera : file.cameras)
+        camera.camera = copyWithWindow(camera.camera, given.window);
+}
+
 //! What is free where nothing is said: of a rig of nominal values, what a calibration is for.
-std::vector<std::string> freeOf(const Calibration& file, const BundleOptions& options)
+std::vector<std::string> freeOf(const Calibration& file, const RigModel& rig, const BundleOptions& options)
 {
     if (contains(options.free, NONE) && options.free.size() > 1)
         throw Failure("--free=none says that nothing is free: leave the other names out");
@@ -43,111 +105,74 @@ std::vector<std::string> freeOf(const Calibration& file, const BundleOptions& op
                 throw Failure("--free=" + name + " is of windows, and --no-window says that there is none");
     if (!options.free.empty() || !file.covariance.empty())
         return options.free;
-    if (options.noWindow)
-        return {"extrinsics"};
-    return {"normal", "extrinsics"};
+    std::vector<std::string> free = {"extrinsics"};
+    if (!options.noWindow)
+        for (const std::string& place : placesOf(rig))
+            free.insert(free.end() - 1, place);
+    return free;
 }
 
-//! The columns of a camera that a name stands for.
-std::vector<int> columnsOfName(const ParameterColumns& at, const std::string& name)
+//! What says where windows are goes with their shapes, and is free of all or of none where a start knows no better.
+void requirePlaces(const Calibration& file, const std::string& path, const RigModel& rig, const std::vector<std::string>& free)
 {
-    const std::map<std::string, std::pair<int, int>> ranges = {
-        {"normal", {at.normal, at.normal + 3}}, {"intrinsics", {at.lens, at.lens + at.lensCount}},
-        {"thickness", {at.thickness, at.thickness + at.layers}}, {"index", {at.index, at.index + at.layers}},
-        {"distance", {at.distance, at.distance + 1}}, {"outer-index", {at.outerIndex, at.outerIndex + 1}},
-        {"wedge", {at.wedge, at.curvature}}};
-    std::vector<int> columns;
-    const auto range = ranges.find(name);
-    for (int i = range == ranges.end() ? 0 : range->second.first; range != ranges.end() && i < range->second.second; i++)
-        columns.push_back(i);
-    return columns;
+    const std::vector<std::string> places = placesOf(rig);
+    const std::string shape = nameOfShape(rig.cameras[0]->window());
+    if (contains(free, "normal") && !contains(places, "normal"))
+        throw Failure("--free=normal is of a flat window, and '" + path + "' has cameras behind a " + shape + ": where that is, "
+                      "--free=center says");
+    if (contains(free, "center") && !contains(places, "center"))
+        throw Failure("--free=center is of a dome or tube, and '" + path + "' has flat windows: where they are, --free=normal says");
+    if (file.covariance.empty() && places.size() > 1 && contains(free, "normal") != contains(free, "center"))
+        throw Failure("'" + path + "' has flat windows and others, and no covariance: give both, --free=normal,center, or none of both");
 }
 
-//! What is free again: the earlier calibration has no say.
-void forget(const std::vector<std::string>& free, const RigModel& rig, cv::Mat& covariance)
+//! What windows have, and images can tell.
+void requireFreeOfWindows(const std::string& path, const RigModel& rig, int flags)
 {
-    std::vector<int> columns;
-    for (const std::string& name : free)
+    for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
     {
-        for (int c = 0; c < (int)rig.cameras.size(); c++)
-        {
-            const std::vector<int> own = columnsOfName(columnsOf(rig, c), name);
-            columns.insert(columns.end(), own.begin(), own.end());
-        }
-        for (int i = extrinsicsColumn(rig, 1); name == "extrinsics" && i < covariance.rows; i++)
-            columns.push_back(i);
-    }
-    for (int i : columns)
-    {
-        covariance.row(i) = 0.;
-        covariance.col(i) = 0.;
+        const GlassWindow window = camera->window();
+        requireFreeOfShape(window, flags);
+        if (window.innerIndex == window.outerIndex && (flags & GLASS_FREE_OUTER_INDEX))
+            throw Failure("--free=outer-index: '" + path + "' has a window with the same medium on both sides; that medium is what "
+                          "indices are relative to. Leave it out");
+        if (window.thickness.empty() && (flags & (GLASS_FREE_WEDGE | GLASS_FREE_CURVATURE)))
+            throw Failure("--free=wedge and curvature are of layers, and '" + path + "' has a window without: leave them out");
     }
 }
 
-//! A window without wedges gets some, which start at 0; of what was known nothing is lost.
-void addWedges(RigModel& rig, int camera, cv::Mat& covariance)
-{
-    GlassWindow window = rig.cameras[camera]->window();
-    if (!window.wedge.empty() || window.thickness.empty())
-        return;
-    const int at = columnsOf(rig, camera).end, more = 2*(int)window.thickness.size();
-    window.wedge.assign(window.thickness.size(), cv::Vec2d());
-    rig.cameras[camera]->setWindow(window);
-    if (covariance.empty())
-        return;
-    std::vector<int> kept;
-    for (int i = 0; i < covariance.rows; i++)
-        kept.push_back(i < at ? i : i + more);
-    cv::Mat larger = cv::Mat::zeros(covariance.rows + more, covariance.cols + more, CV_64F);
-    for (size_t i = 0; i < kept.size(); i++)
-        for (size_t j = 0; j < kept.size(); j++)
-            larger.at<double>(kept[i], kept[j]) = covariance.at<double>((int)i, (int)j);
-    covariance = larger;
-}
-
-GivenStd stdOf(const BundleOptions& options, const GlassWindow& window, double millimetre, int flags)
+GivenValues givenValuesOf(const GlassWindow& window, const BundleOptions& options, const Calibration& file)
 {
     GivenValues given;
-    for (size_t i = 0; i < window.index.size(); i++)
-        given.layers.push_back({window.index[i]});
+    if (options.window.isSaid())
+    {
+        const GivenWindow said = givenWindow(options, file);
+        given.layers = said.layers;
+        given.outer = said.outer;
+        return given;
+    }
+    for (double index : window.index)
+        given.layers.push_back({index});
     given.outer = {window.outerIndex};
-    given.equalMedia = window.innerIndex == window.outerIndex;
-    given.distance = !given.equalMedia;
-    given.millimetre = millimetre;
-    given.flags = flags;
-    return options.std.of(given);
+    return given;
 }
 
-//! Of nominal values: as well as a data sheet knows them, as in refract_calib.
-cv::Mat covarianceOfGiven(const BundleOptions& options, double millimetre, int flags, RigModel& rig)
+//! How well the values of windows are given.
+GivenStd stdOf(const GlassWindow& window, const RigModel& rig, const BundleOptions& options, const Calibration& file, double millimetre,
+               int flags)
 {
-    std::vector<std::pair<int, GivenStd>> owners;
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-    {
-        const GlassWindow window = rig.cameras[c]->window();
-        const GivenStd std = stdOf(options, window, millimetre, flags);
-        cv::Mat none;
-        if (std.wedge > 0.)
-            addWedges(rig, c, none);
-        if (rig.ownsWindow(c))
-            owners.push_back({c, std});
-    }
-    cv::Mat covariance = cv::Mat::zeros(columnCount(rig), columnCount(rig), CV_64F);
-    for (const auto& owner : owners)
-    {
-        const ParameterColumns at = columnsOf(rig, owner.first);
-        const auto set = [&](int column, double std) { covariance.at<double>(column, column) = std*std; };
-        for (int i = 0; i < at.layers; i++)
-        {
-            set(at.thickness + i, owner.second.thickness);
-            set(at.index + i, owner.second.indexOf(i));
-        }
-        set(at.distance, owner.second.distance);
-        set(at.outerIndex, owner.second.outerIndex);
-        for (int i = at.wedge; i < at.curvature; i++)
-            set(i, owner.second.wedge);
-    }
-    return covariance;
+    GivenValues given = givenValuesOf(window, options, file);
+    given.equalMedia = window.innerIndex == window.outerIndex;
+    given.distance = !given.equalMedia;
+    given.shape = window.shape;
+    for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
+        given.others.push_back(camera->window().shape);
+    given.millimetre = millimetre;
+    given.flags = flags;
+    const GivenStd std = options.std.of(given);
+    if (options.window.isSaid())
+        options.window.requireBow(std, flags);
+    return std;
 }
 
 std::string unitOf(const Calibration& file, const std::string& path, const BundleOptions& options)
@@ -161,26 +186,19 @@ std::string unitOf(const Calibration& file, const std::string& path, const Bundl
 
 cv::Mat_<double> valuesOf(const RigModel& rig)
 {
-    cv::Mat_<double> values;
-    const auto add = [&values](const std::vector<double>& list) {
-        if (!list.empty())
-            values.push_back(cv::Mat(list, true));
-    };
-    for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
+    cv::Mat_<double> values(columnCount(rig), 1, 0.);
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
-        const GlassWindow window = camera->window();
-        values.push_back(camera->lensParameters());
-        add({window.normal[0], window.normal[1], window.normal[2], window.distance});
-        add(window.thickness);
-        add(window.index);
-        add({window.innerIndex, window.outerIndex});
-        for (const cv::Vec2d& wedge : window.wedge)
-            add({wedge[0], wedge[1]});
+        const ParameterColumns at = columnsOf(rig, c);
+        rig.cameras[c]->lensParameters().copyTo(values(cv::Rect(0, at.lens, 1, at.lensCount)));
+        putWindow(rig.cameras[c]->window(), at, &values(0));
     }
-    for (size_t c = 1; c < rig.cameras.size(); c++)
+    for (int c = 1; c < (int)rig.cameras.size(); c++)
     {
         const cv::Vec3d rvec = rotationVector(rig.extrinsics[c].R), T = rig.extrinsics[c].T;
-        add({rvec[0], rvec[1], rvec[2], T[0], T[1], T[2]});
+        const int at = extrinsicsColumn(rig, c);
+        std::copy_n(rvec.val, 3, &values(at));
+        std::copy_n(T.val, 3, &values(at + 3));
     }
     return values;
 }
@@ -188,48 +206,38 @@ cv::Mat_<double> valuesOf(const RigModel& rig)
 std::vector<std::string> freeNames()
 {
     std::vector<std::string> names = {NONE};
-    for (const auto& entry : FREE)
-        names.push_back(entry.first);
+    for (const std::map<std::string, int>& flags : {PLACES, freeFlags()})
+        for (const auto& entry : flags)
+            names.push_back(entry.first);
     return names;
 }
 
-BundleStart startOf(const Calibration& file, const std::string& path, const BundleOptions& options)
+BundleStart startOf(Calibration file, const std::string& path, const BundleOptions& options)
 {
+    takeWindows(options, path, file);
     BundleStart start;
     start.rig = modelOf(file).clone();
     start.rig.windows = file.windows;
-    start.free = freeOf(file, options);
+    start.free = freeOf(file, start.rig, options);
+    requirePlaces(file, path, start.rig, start.free);
     for (const std::string& name : start.free)
-        start.flags |= FREE.at(name);
-    if (!contains(start.free, "normal"))
+        start.flags |= flagOf(name);
+    if (!contains(start.free, "normal") && !contains(start.free, "center"))
         start.flags |= GLASS_FIX_NORMAL;
-    for (const CameraCalibration& camera : file.cameras)
-    {
-        const GlassWindow window = camera.camera->window();
-        if (window.shape != WINDOW_FLAT)
-            throw Failure("'" + path + "' has a camera behind a " + nameOfShape(window) + "; refract_bundle takes flat windows. Calibrate "
-                          "it with refract_calib, or call refractiveBundleAdjust (opencv2/refract.hpp)");
-        if (window.innerIndex == window.outerIndex && (start.flags & (GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX)))
-            throw Failure("--free=distance and --free=outer-index: '" + path + "' has a window with the same medium on both sides; "
-                          "there the distance has no effect on the image, and that medium is what indices are relative to. Leave "
-                          "them out");
-        if (window.thickness.empty() && (start.flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_WEDGE)))
-            throw Failure("--free=thickness, index and wedge are of layers, and '" + path + "' has a window without: leave them out");
-    }
+    requireFreeOfWindows(path, start.rig, start.flags);
     const double millimetre = 1./millimetresIn(unitOf(file, path, options));
     if (file.covariance.empty())
     {
+        const auto std = [&](const GlassWindow& window) { return stdOf(window, start.rig, options, file, millimetre, start.flags); };
         if (!options.noWindow)
-            start.covariance = covarianceOfGiven(options, millimetre, start.flags, start.rig);
+            start.covariance = covarianceOfGiven(std, start.flags, start.rig);
         return start;
     }
     if (options.std.isSaid())
         throw Failure("--thickness-std and its kin are for a start of nominal values: '" + path + "' has a covariance, which says how "
                       "well each value is known; leave them out, or free what it does not know (--free)");
     start.covariance = file.covariance.clone();
-    if (start.flags & GLASS_FREE_WEDGE)
-        for (int c = 0; c < (int)start.rig.cameras.size(); c++)
-            addWedges(start.rig, c, start.covariance);
+    addFree(start.flags, start.rig, start.covariance);
     forget(start.free, start.rig, start.covariance);
     return start;
 }

@@ -5,8 +5,7 @@
 #define REFRACT_TOOLS_BUNDLE_START_HPP
 
 #include "bundle/matches.hpp"
-#include "calibrate/given_std.hpp"
-#include "calibrate/rig_model.hpp"
+#include "calibrate/given_window.hpp"
 
 /* What a bundle adjustment starts from, and what is known beforehand. */
 namespace tools {
@@ -14,6 +13,7 @@ namespace tools {
 struct BundleOptions
 {
     std::vector<std::string> free;      //!< --free; empty: not said
+    GivenWindowOptions window;          //!< of a start that has none
     GivenStdOptions std;
     std::string unit;                   //!< of lengths; empty: not said
     bool noWindow = false;
@@ -36,7 +36,7 @@ std::vector<std::string> freeNames();
 /** Three kinds of parameters: what --free names starts at the file's values and follows from the matches alone; what has a
 variance in the file, or a --...-std where the file has none, is estimated within that; the rest is exact. Throws Failure where
 options and file do not go together. */
-BundleStart startOf(const Calibration& file, const std::string& path, const BundleOptions& options);
+BundleStart startOf(Calibration file, const std::string& path, const BundleOptions& options);
 
 /** Throws Failure if nothing tells the scale, or if the lengths, measured with the start, look as if they were in another unit. */
 void requireScale(const BundleStart& start, const std::string& path, const Matches& matches, const GivenLengths& lengths);

@@ -46,13 +46,17 @@ WindowStd windowStd(const Fit& fit, int camera)
     return result;
 }
 
-//! Of a unit vector two numbers are told: the third follows. They are those that its direction changes most.
-static void appendDirection(std::vector<EstimatedParameter>& list, const Fit& fit, const std::string& name, int column, const Vec3d& unit)
+int followingOf(const Vec3d& unit)
 {
-    const int follows = std::abs(unit[2]) >= std::max(std::abs(unit[0]), std::abs(unit[1])) ? 2 : std::abs(unit[1]) >= std::abs(unit[0]);
-    for (int i = 0; i < 3; i++)
-        if (i != follows)
-            append(list, fit, name + " " + "xyz"[i], column + i, unit[i], true);
+    return std::abs(unit[2]) >= std::max(std::abs(unit[0]), std::abs(unit[1])) ? 2 : std::abs(unit[1]) >= std::abs(unit[0]);
+}
+
+bool followsOthers(const GlassWindow& window, const ParameterColumns& at, int column)
+{
+    if (at.has(at.normal))
+        return column == at.normal + followingOf(window.normal);
+    const int follows = followingOf(window.axis);
+    return at.has(at.axis) && (column == at.center + follows || column == at.axis + follows);
 }
 
 //! Where the window is: the first surface.
@@ -66,10 +70,13 @@ static void appendPlace(std::vector<EstimatedParameter>& list, const Fit& fit, c
         append(list, fit, prefix + "distance", at.distance, window.distance);
         return;
     }
+    const int follows = at.has(at.axis) ? followingOf(window.axis) : -1;
     for (int i = 0; i < 3; i++)
-        append(list, fit, prefix + "centre " + "xyz"[i], at.center + i, window.center[i]);
-    if (at.has(at.axis))
-        appendDirection(list, fit, prefix + "axis", at.axis, window.axis);
+        if (i != follows)
+            append(list, fit, prefix + "centre " + "xyz"[i], at.center + i, window.center[i]);
+    for (int i = 0; i < 3 && at.has(at.axis); i++)
+        if (i != follows)
+            append(list, fit, prefix + "axis " + "xyz"[i], at.axis + i, window.axis[i], true);
     append(list, fit, prefix + "radius", at.radius, window.radius);
 }
 

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_ESTIMATED_PARAMETERS_HPP
 
 #include "calibrate/fit.hpp"
+#include "calibrate/parameter_columns.hpp"
 
 /* What a fit has estimated, by name and with its standard deviation. */
 namespace tools {
@@ -18,7 +19,13 @@ struct EstimatedParameter
     bool isNormal;              //!< or a tube's axis
 };
 
-//! Window parameters that were free, camera after camera; of the normal x and y (z follows), of a shared window once.
+/** Of a unit vector two numbers are told, those that its direction changes most: this one follows. So it does of a point of a tube's axis,
+which may be anywhere along it. */
+int followingOf(const cv::Vec3d& unit);
+//! Whether a column is of such a number.
+bool followsOthers(const cv::refract::GlassWindow& window, const ParameterColumns& at, int column);
+
+//! Window parameters that were free, camera after camera; of directions and of a tube's centre two, of a shared window once.
 std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit);
 
 //! Lens parameters and R (rotation vector), T of each camera but the first that were free.

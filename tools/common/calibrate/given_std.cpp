@@ -7,6 +7,7 @@
 #include "console/failure.hpp"
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 using namespace cv::refract;
@@ -50,7 +51,7 @@ bool GivenStd::ofWindow() const
     return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0. || radius > 0. || center > 0. || curvature > 0.;
 }
 
-void GivenStdOptions::addTo(CLI::App& app, bool all)
+void GivenStdOptions::addTo(CLI::App& app, bool target)
 {
     std::fill(said_, said_ + COUNT, std::numeric_limits<double>::quiet_NaN());
     const auto add = [&](const char* name, int which, const std::string& about) {
@@ -63,12 +64,12 @@ void GivenStdOptions::addTo(CLI::App& app, bool all)
     add("--distance-std", DISTANCE, "the same of --distance (default: 1 mm)");
     add("--wedge-std", WEDGE, "the same of the angle between the faces of each layer, about 0, in arc minutes: polished optics 0.2, plate "
         "glass 1 to 3 (default: 1)");
-    if (all)
+    add("--radius-std", RADIUS, "the same of --radius (default: 0.1 mm)");
+    add("--center-std", CENTER, "the same of each coordinate of --center, with --window=dome (default: nothing is known of it)");
+    add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; "
+        "its curvature is then estimated within it (default: 0, flat; a pane that bows by 2 is off by 2 to 4 times the stated +- then)");
+    if (target)
     {
-        add("--radius-std", RADIUS, "the same of --radius (default: 0.1 mm)");
-        add("--center-std", CENTER, "the same of each coordinate of --center, with --window=dome (default: nothing is known of it)");
-        add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; "
-            "its curvature is then estimated within it (default: 0, flat)");
         add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");
@@ -84,16 +85,21 @@ bool GivenStdOptions::isSaid() const
 //! Deviations of what windows of this shape have.
 void GivenStdOptions::requireShape(const GivenValues& v) const
 {
-    const bool isFlat = v.shape == WINDOW_FLAT || v.shape == WINDOW_BENT;
-    if (!isFlat && isMoreThanZero(WEDGE))
+    std::vector<int> shapes = v.others;
+    shapes.push_back(v.shape);
+    const auto any = [&shapes](const std::function<bool(int)>& is) { return std::any_of(shapes.begin(), shapes.end(), is); };
+    const bool hasFlat = any([](int shape) { return shape == WINDOW_FLAT || shape == WINDOW_BENT; });
+    const bool hasDome = any([](int shape) { return shape == WINDOW_DOME; });
+    const bool hasRound = hasDome || any([](int shape) { return shape == WINDOW_TUBE; });
+    if (!hasFlat && isMoreThanZero(WEDGE))
         throw Failure("--wedge-std is of a flat window: the faces of a dome or tube have one centre; leave it out");
-    if (!isFlat && isMoreThanZero(DISTANCE))
+    if (!hasFlat && isMoreThanZero(DISTANCE))
         throw Failure("--distance-std is of a flat window: where a dome or tube is, its centre says, which is estimated; leave it out");
-    if (!isFlat && isMoreThanZero(BOW))
+    if (!hasFlat && isMoreThanZero(BOW))
         throw Failure("--bow-std is of a flat window; how well a dome's or tube's radius is known is --radius-std");
-    if (isFlat && isMoreThanZero(RADIUS))
+    if (!hasRound && isMoreThanZero(RADIUS))
         throw Failure("--radius-std is of a dome or tube: add --window=dome and --radius, or leave it out");
-    if (v.shape != WINDOW_DOME && isMoreThanZero(CENTER))
+    if (!hasDome && isMoreThanZero(CENTER))
         throw Failure("--center-std is of a dome: add --window=dome and --radius, or leave it out");
 }
 
@@ -129,7 +135,7 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
                           !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
     std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && isFlat && !isFree(GLASS_FREE_WEDGE));
     std.radius = choose(RADIUS, 1., Std(RADIUS_MM*v.millimetre, DEFAULT), !isFlat && !isFree(GLASS_FREE_RADIUS));
-    std.center = choose(CENTER, 1., Std(), false);
+    std.center = v.shape == WINDOW_DOME ? choose(CENTER, 1., Std(), false) : Std();
     std.bow = choose(BOW, 1., Std(), false);
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);

@@ -53,6 +53,7 @@ struct GivenValues
     bool equalMedia = true;             //!< on both sides of the window
     bool distance = false;              //!< was given
     int shape = cv::refract::WINDOW_FLAT;
+    std::vector<int> others = {};       //!< shapes of the rig's other windows, of which deviations may be said, too
     double square = 0.;                 //!< of a board; 0: there is none
     double millimetre = 1.;             //!< in the unit of lengths
     int flags = 0;                      //!< GLASS_FREE_...: what is estimated from the images alone has no default
@@ -62,8 +63,8 @@ struct GivenValues
 class GivenStdOptions
 {
 public:
-    //! @param all also what is known of windows that are not flat, of a board and its placement
-    void addTo(CLI::App& app, bool all = true);
+    //! @param target also what is known of a board and its placement
+    void addTo(CLI::App& app, bool target = true);
     bool isSaid() const;                //!< any of them
     //! What was said; of all else what is usual. Throws Failure where a deviation is said of what there is not.
     GivenStd of(const GivenValues& values) const;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/starting_model.hpp"
+#include "calibrate/given_window.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/failure.hpp"
@@ -209,20 +210,7 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
     const ParameterColumns at = columnsOf(camera);
     Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
     known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
-    const auto set = [&covariance](int first, int count, double std) {
-        for (int i = first; i < first + count; i++)
-            covariance.at<double>(i, i) = std*std;
-    };
-    set(at.thickness, at.layers, options.std.thickness);
-    for (int i = 0; i < at.layers; i++)
-        set(at.index + i, 1, options.std.indexOf(i));
-    set(at.wedge, at.curvature - at.wedge, options.std.wedge);
-    const bool equalMedia = options.window.innerIndex == options.window.outerIndex;
-    set(at.distance, at.has(at.distance) && !equalMedia ? 1 : 0, options.std.distance);
-    set(at.radius, at.has(at.radius) ? 1 : 0, options.std.radius);
-    set(at.center, at.has(at.center) ? 3 : 0, options.std.center);
-    set(at.curvature, at.has(at.curvature) ? 1 : 0, options.std.curvature);
-    set(at.outerIndex, 1, options.std.outerIndex);
+    putVariances(options.std, at, covariance);
     known.covariance = covariance;
     return known;
 }
@@ -280,8 +268,7 @@ Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd&
 
 bool RigOptions::hasMaterials() const
 {
-    const auto named = [](const GivenIndex& index) { return index.isNamed(); };
-    return named(inner) || named(outer) || std::any_of(layers.begin(), layers.end(), named);
+    return GivenWindow{window, layers, inner, outer}.hasMaterials();
 }
 
 double startDistance(const RigData& data, double square)

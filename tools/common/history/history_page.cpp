@@ -173,7 +173,7 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("causes", causesIn(result, history));
     data found{data::type::list};
     for (const FoundDrift& f : result.found)
-        found << data{"text", foundText(f, history, facts.driftDeg, result.interval)};
+        found << data{"text", foundText(f, history, result.interval)};
     page.set("found", found);
     page.set("t2", t2Figure(history, result));
     page.set("figures", figures(history, result, covariance));

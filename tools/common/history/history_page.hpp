@@ -12,7 +12,7 @@ namespace tools {
 struct HistoryFacts
 {
     std::string calibration;            //!< its file
-    double falseAlarm, driftDeg;
+    double falseAlarm;
     std::string verdict;                //!< of the last check
     bool isGood;
 };

@@ -11,9 +11,6 @@ namespace {
 
 std::string monthAt(double seconds) { return timeAt(seconds).substr(0, 7); }
 
-//! Of a window, as only these are named by what a user can say in advance.
-bool isTilt(const ChartedChange& change) { return change.name.find(": tilt") != std::string::npos; }
-
 } // namespace
 
 std::vector<std::string> HistoryResult::chartsBeyond(const CheckHistory& history) const
@@ -52,7 +49,8 @@ std::string HistoryResult::mainTrend(const CheckHistory& history) const
     return text;
 }
 
-HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm, double driftDeg)
+HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm,
+                           const std::map<std::string, double>& drifts)
 {
     HistoryResult result;
     const std::vector<ChartLimit> limits = chartLimits(history, covariance, falseAlarm);
@@ -62,8 +60,12 @@ HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covarian
     if (result.isAlarm())
         result.causes = driftCauses(history, covariance);
     for (int c : history.checks.back().changes)
-        if (isTilt(history.changes[c]))
-            result.found.push_back({c, checksUntilFound(history, covariance, limits.back(), c, driftDeg, result.interval)});
+    {
+        const auto drift = drifts.find(history.changes[c].name);
+        if (drift != drifts.end())
+            result.found.push_back({c, drift->second,
+                                    checksUntilFound(history, covariance, limits.back(), c, drift->second, result.interval)});
+    }
     return result;
 }
 
@@ -78,10 +80,11 @@ std::string causesIn(const HistoryResult& result, const CheckHistory& history)
     return text;
 }
 
-std::string foundText(const FoundDrift& found, const CheckHistory& history, double driftDeg, double interval)
+std::string foundText(const FoundDrift& found, const CheckHistory& history, double interval)
 {
-    const std::string drift = history.changes[found.change].name
-        + cv::format(": a drift of %g degrees a month that begins now is ", driftDeg);
+    const ChartedChange& change = history.changes[found.change];
+    const std::string drift = change.name + cv::format(": a drift of %.3g", found.perMonth) + (change.unit.empty() ? "" : " " + change.unit)
+        + " a month that begins now is ";
     const std::string every = cv::format(", one every %.3g days", interval/86400.), plural = found.checks == 1 ? "" : "s";
     return found.checks ? drift + cv::format("found within %d check", found.checks) + plural + every + ", with a probability of 95 %"
                         : drift + cv::format("not sure to be found within %d checks", LONGEST) + every + ": take more pairs at each";
