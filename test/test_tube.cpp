@@ -276,6 +276,59 @@ TEST_CASE("No light goes along a tube's axis, and none comes from inside it", "[
     checkProjectedArrays(points, expected, window);
 }
 
+TEST_CASE("A plane, or another ray, is met where light has left a tube or dome, not on its far side", "[tube][dome][plane]")
+{
+    const Matx33d K(1200, 0, 639.5, 0, 1200, 511.5, 0, 0, 1);
+    const double turn = 70*CV_PI/180;
+    const GlassWindow tube = GlassWindow::tube(Vec3d(), Vec3d(0, std::cos(turn), std::sin(turn)), 50, 5, 1.5, 1.333);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), tube);
+    const std::vector<Point2d> pixel = { Point2d(700, 700) };
+    std::vector<Point3d> points;
+    std::vector<uchar> status;
+    refractivePointsOnPlane(pixel, points, camera, Vec4d(0, 0, 1, 100), status);
+    CHECK(status[0] == REFRACT_BEHIND_WINDOW);
+    // There the line of the ray is met by that of a camera that is free.
+    const Vec3d met(-14.9404, 97.7025, 100);
+    std::vector<Point3d> origins, directions;
+    refractiveUnprojectPoints(pixel, origins, directions, camera);
+    const Vec3d onLine = Vec3d(origins[0]) + (met - Vec3d(origins[0])).dot(Vec3d(directions[0]))*Vec3d(directions[0]);
+    REQUIRE(norm(onLine - met) < 1e-2);
+    const Ptr<RefractiveCamera> other = RefractiveCamera::create(K, noArray());
+    const Vec3d T(20, -80, 200);
+    std::vector<Point2d> seen;
+    refractiveProjectPoints(std::vector<Point3d>{ Point3d(onLine) }, Vec3d(), T, other, seen);
+    for (int flags : { (int)TRIANGULATE_MIDPOINT, (int)TRIANGULATE_OPTIMAL })
+    {
+        triangulateRefractive(camera, other, Matx33d::eye(), T, pixel, seen, points, status, flags);
+        CHECK(status[0] != REFRACT_OK);
+        CHECK(std::isnan(points[0].x));
+    }
+    CAPTURE(seed());
+    Random random;
+    int met1 = 0, behind = 0;
+    for (int i = 0; i < 4000; i++)
+    {
+        GlassWindow window = randomTube(random, i % 3 == 0);
+        if (i % 2 == 0)
+            window = GlassWindow::dome(across(window.center, window.axis), window.radius, window.thickness[0], window.index[0], 1.333);
+        const Ptr<RefractiveCamera> one = RefractiveCamera::create(K, noArray(), window);
+        const Vec4d plane(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), window.radius*random.logUniform(0.5, 20));
+        const std::vector<Point2d> any = { Point2d(random.uniform(-2e3, 3e3), random.uniform(-2e3, 3e3)) };
+        refractivePointsOnPlane(any, points, one, plane, status);
+        behind += status[0] == REFRACT_BEHIND_WINDOW;
+        if (status[0] != REFRACT_OK || norm(points[0]) > 1e4*window.radius)
+            continue;
+        std::vector<uchar> projected;
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), one, seen, projected);
+        if (projected[0] != REFRACT_OK || window.innerIndex > 1)     // near a caustic another image may be found
+            continue;
+        QUICK_REQUIRE(norm(seen[0] - any[0]) < 1e-6*(1 + norm(any[0])), i, any[0], seen[0]);
+        met1++;
+    }
+    CHECK(met1 > 1000);
+    CHECK(behind > 20);
+}
+
 TEST_CASE("Every instruction set gives the same answer behind a tube", "[tube][kernels]")
 {
     CAPTURE(seed());

@@ -126,6 +126,9 @@ TEST_CASE("What is known of domes and bent panes has its own options", "[given]"
     CHECK(read({"--radius-std=0.02", "--center-std=0.5"}, dome).radius == 0.02);
     CHECK(read({"--center-std=0.5"}, dome).center == 0.5);
     CHECK(read({"--exact"}, dome).radius == 0.);
+    GivenValues tube = dome;
+    tube.shape = cv::refract::WINDOW_TUBE;
+    CHECK(read({"--center-std=0.5"}, tube).center == 0.5);
     dome.flags = cv::refract::GLASS_FREE_RADIUS;
     CHECK(read({}, dome).radius == 0.);
     // A sag of 2 mm over a metre is a radius of 62.5 m.

@@ -65,7 +65,7 @@ void GivenStdOptions::addTo(CLI::App& app, bool target)
     add("--wedge-std", WEDGE, "the same of the angle between the faces of each layer, about 0, in arc minutes: polished optics 0.2, plate "
         "glass 1 to 3 (default: 1)");
     add("--radius-std", RADIUS, "the same of --radius (default: 0.1 mm)");
-    add("--center-std", CENTER, "the same of each coordinate of --center, with --window=dome (default: nothing is known of it)");
+    add("--center-std", CENTER, "the same of each coordinate of --center, of a dome or tube (default: nothing is known of it)");
     add("--bow-std", BOW, "how much a flat window may be bent, one standard deviation, in mm of sag per metre: tempered plate 1 to 3; "
         "its curvature is then estimated within it (default: 0, flat; a pane that bows by 2 is off by 2 to 4 times the stated +- then)");
     if (target)
@@ -89,8 +89,7 @@ void GivenStdOptions::requireShape(const GivenValues& v) const
     shapes.push_back(v.shape);
     const auto any = [&shapes](const std::function<bool(int)>& is) { return std::any_of(shapes.begin(), shapes.end(), is); };
     const bool hasFlat = any([](int shape) { return shape == WINDOW_FLAT || shape == WINDOW_BENT; });
-    const bool hasDome = any([](int shape) { return shape == WINDOW_DOME; });
-    const bool hasRound = hasDome || any([](int shape) { return shape == WINDOW_TUBE; });
+    const bool hasRound = any([](int shape) { return shape == WINDOW_DOME || shape == WINDOW_TUBE; });
     if (!hasFlat && isMoreThanZero(WEDGE))
         throw Failure("--wedge-std is of a flat window: the faces of a dome or tube have one centre; leave it out");
     if (!hasFlat && isMoreThanZero(DISTANCE))
@@ -99,8 +98,8 @@ void GivenStdOptions::requireShape(const GivenValues& v) const
         throw Failure("--bow-std is of a flat window; how well a dome's or tube's radius is known is --radius-std");
     if (!hasRound && isMoreThanZero(RADIUS))
         throw Failure("--radius-std is of a dome or tube: add --window=dome and --radius, or leave it out");
-    if (!hasDome && isMoreThanZero(CENTER))
-        throw Failure("--center-std is of a dome: add --window=dome and --radius, or leave it out");
+    if (!hasRound && isMoreThanZero(CENTER))
+        throw Failure("--center-std is of a dome or tube: add --window=dome and --radius, or leave it out");
 }
 
 GivenStd GivenStdOptions::of(const GivenValues& v) const
@@ -135,7 +134,7 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
                           !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
     std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && isFlat && !isFree(GLASS_FREE_WEDGE));
     std.radius = choose(RADIUS, 1., Std(RADIUS_MM*v.millimetre, DEFAULT), !isFlat && !isFree(GLASS_FREE_RADIUS));
-    std.center = v.shape == WINDOW_DOME ? choose(CENTER, 1., Std(), false) : Std();
+    std.center = isFlat ? Std() : choose(CENTER, 1., Std(), false);
     std.bow = choose(BOW, 1., Std(), false);
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
