@@ -50,10 +50,11 @@ for sample in build/release/bin/sample_*; do
 done
 
 # One build for the module's suite and the fuzzers, which want clang.
-targets="refract_tests fuzzers"
+targets="refract_tests fuzzers"     # of build()
 build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
   -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
+# shellcheck disable=SC2034  # read by build()
 targets=""
 # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
 # One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.

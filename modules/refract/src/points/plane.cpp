@@ -33,7 +33,8 @@ static uchar meetPlaneOne(const Layers& layers, const Vec3d& abc, double planeD,
     X = d + m*tau*layers.normal() + m*offset;
     return std::isnan(planeD) ? REFRACT_NOT_FINITE : along == 0 ? REFRACT_PARALLEL_RAYS :
            !(m >= 0) || std::signbit(m) || std::isinf(m) ? REFRACT_NO_INTERSECTION :
-           layers.refracts() && !isBeyondAlong(layers.lastSurface(), X[0], X[1], X[2], m, d[0], d[1], d[2]) ? REFRACT_BEHIND_WINDOW : REFRACT_OK;
+           layers.refracts() && !isBeyondAlong(layers.lastSurface(), X[0], X[1], X[2], m, d[0], d[1], d[2]) ? REFRACT_BEHIND_WINDOW :
+           REFRACT_OK;
 }
 
 void meetPlane(const Layers& layers, int n, const Vec3d& abc, const double* planeD, const Rays& rays,
