@@ -61,7 +61,8 @@ Eigen::Matrix<double, 3, 2> across(const Vec3d& normal)
     return basis;
 }
 
-const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known
+const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known;
+const double AT_MOST = 0.6;             // beyond this part boards reach into it
 
 /** Between equal media a calibration holds the distance, which parallel faces are indifferent to. A wedge is not: its glass is as thick as
 where the light goes through, and cameras that share it look through it at two places. Whatever is tested, it is then somewhere before the
@@ -74,12 +75,12 @@ bool holdsDistanceOfWedge(const Fit& fit, int camera)
         && fit.stdDeviations.at<double>(at.wedge) > 0. && !(fit.stdDeviations.at<double>(at.distance) > 0.);
 }
 
-double somewhereBefore(const Fit& fit)
+double nearestBoard(const Fit& fit)
 {
     double nearest = INFINITY;
     for (const Vec3d& tvec : fit.tvecs)
         nearest = std::min(nearest, norm(tvec));
-    return BEFORE_BOARDS*nearest;
+    return nearest;
 }
 
 //! What the fit estimated, a column each.
@@ -236,7 +237,10 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
         if (holdsDistanceOfWedge(fit, c))
         {
             const int distance = columnsOf(rig_, c).distance;
-            const double somewhere = somewhereBefore(fit);
+            const double nearest = nearestBoard(fit), somewhere = BEFORE_BOARDS*nearest;
+            Eigen::Index column;
+            free_.row(distance).maxCoeff(&column);
+            bounds_.push_back({distance, (int)column, AT_MOST*nearest});
             known_[distance] = start_.before[distance] = somewhere;
             information_(distance, distance) = 1./(somewhere*somewhere);
             rig_ = withVector(rig_, start_.before);
@@ -370,6 +374,35 @@ static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double dam
     return scale.asDiagonal()*scaled.ldlt().solve(scale.asDiagonal()*right);
 }
 
+/** Distances stay before the boards: where a step would carry one beyond, it ends at the bound, and all else is solved for with that. A fit
+that goes on meets points before the window, and gets no further in any direction. */
+VectorXd RelaxedFit::stepFrom(const Relaxed& at, const Normal& normal, double damping) const
+{
+    const VectorXd step = solved(normal.matrix, normal.right, damping);
+    VectorXd held = VectorXd::Zero(step.size());
+    std::vector<int> columns;
+    for (const Bound& bound : bounds_)
+    {
+        const double distance = at.before[bound.number], wanted = distance + step[bound.column];
+        if (wanted > 0. && wanted < bound.most)
+            continue;
+        columns.push_back(bound.column);
+        held[bound.column] = (wanted < bound.most ? 0.5*distance : bound.most) - distance;     // never quite at the camera
+    }
+    if (columns.empty())
+        return step;
+    MatrixXd matrix = normal.matrix;
+    VectorXd right = normal.right - normal.matrix*held;
+    for (int column : columns)
+    {
+        matrix.row(column).setZero();
+        matrix.col(column).setZero();
+        matrix(column, column) = 1.;
+        right[column] = 0.;
+    }
+    return solved(matrix, right, damping) + held;
+}
+
 Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) const
 {
     Relaxed at = start;
@@ -380,7 +413,7 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
     for (int i = 0; i < ITERATIONS && normal.isFinite() && damping < MOST_DAMPING; i++)
     {
         Relaxed next = at;
-        const VectorXd step = solved(normal.matrix, normal.right, damping);
+        const VectorXd step = stepFrom(at, normal, damping);
         if (!step.allFinite() || !move(normal, freed, step, next))
         {
             damping = std::max(1e-6, 30.*damping);

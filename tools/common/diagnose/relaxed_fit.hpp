@@ -55,11 +55,18 @@ public:
 private:
     struct Normal;
     struct Rows;
+    //! Of a distance that is held by the calibration: where it is among the rig's numbers and in free_, and how large it may be.
+    struct Bound
+    {
+        int number, column;
+        double most;
+    };
     Rows rowsOf(const Relaxed& at, size_t view, const std::vector<MatrixXd>& changes) const;
     Normal linearize(const Relaxed& at, const std::vector<Shift>& freed) const;
     bool setRigs(const std::vector<Shift>& freed, Relaxed& at) const;
     bool move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const;
     double priorOf(const VectorXd& numbers) const;
+    VectorXd stepFrom(const Relaxed& at, const Normal& normal, double damping) const;
 
     RigModel rig_;
     Relaxed start_;
@@ -68,6 +75,7 @@ private:
     VectorXd known_;                    //!< their means
     std::vector<MatrixXd> poseInformation_;     //!< of each view; empty: nothing is known; infinite: exact
     std::vector<VectorXd> knownPoses_;
+    std::vector<Bound> bounds_;
     double noise_, dof_;
 };
 
