@@ -123,9 +123,12 @@ std::string drawnScene(cv::RNG& random, int number)
     draw("square: ", 25, 0.0005*25);
     const double water = 1.333 + random.gaussian(0.001);        // both cameras are in it
     draw("outer_index: ", water, 0);
-    const std::string motion = "tvec: [ 0.02, -0.015, 0.02 ]", seed = "seed: 5";
-    rig.replace(rig.find(motion), motion.size(), cv::format("tvec: [ %.5f, %.5f, %.5f ]", random.gaussian(0.02), random.gaussian(0.02),
-                                                            random.gaussian(0.02)));
+    // A turn about where the boards are, and 0.02 mm.
+    const std::string motion = "rvec: [ 0., 0., 0. ], tvec: [ 0.02, -0.015, 0.02 ]", seed = "seed: 5";
+    const double turnX = random.gaussian(0.02/130), turnY = random.gaussian(0.02/130), turnZ = random.gaussian(0.02/130), away = 500;
+    rig.replace(rig.find(motion), motion.size(),
+                cv::format("rvec: [ %.7f, %.7f, %.7f ], tvec: [ %.5f, %.5f, %.5f ]", turnX, turnY, turnZ,
+                           random.gaussian(0.02) - turnY*away, random.gaussian(0.02) + turnX*away, random.gaussian(0.02)));
     rig.replace(rig.find(seed), seed.size(), cv::format("seed: %d", number));
     return rig;
 }
