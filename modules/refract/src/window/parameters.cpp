@@ -76,7 +76,7 @@ std::vector<double> windowParameters(const GlassWindow& window)
     const bool isRound = hasCenter(window.shape);
     const Vec3d& where = isRound ? window.center : window.normal;
     std::copy(where.val, where.val + 3, p.begin() + at.normal);
-    std::copy(window.axis.val, window.axis.val + at.media - at.axis, p.begin() + at.axis);
+    std::copy(window.axis.val, window.axis.val + (at.media - at.axis), p.begin() + at.axis);
     p[at.distance] = isRound ? window.radius : window.distance;
     std::copy(window.thickness.begin(), window.thickness.end(), p.begin() + at.thickness);
     std::copy(window.index.begin(), window.index.end(), p.begin() + at.index);
