@@ -57,6 +57,16 @@ inline RigTruth paperStereo()
     return rig;
 }
 
+//! How images are taken, and what of it is estimated.
+struct Flow
+{
+    const char* name;
+    int cameras;
+    bool shared, paired;        //!< one window for all cameras; pairs or hand-held
+    double outerIndex;
+    int views, flags;
+};
+
 //! What all cameras see: [camera][view].
 struct RigScene
 {
@@ -145,6 +155,16 @@ struct RigCall
         return cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
                                               covariance, perViewErrors, imageStatus, inliers, otherMinima, flags,
                                               poseCovariances);
+    }
+
+    //! @param priors of each camera; of the targets, see targetCovariance(): empty, they are exact
+    double run(int flags, const std::vector<cv::Mat>& priors, const cv::Mat& ofTargets = cv::Mat())
+    {
+        cv::Mat targetErrors;
+        return cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance,
+                                              perViewErrors, imageStatus, inliers, otherMinima, ofTargets, targetErrors, flags,
+                                              cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 300, 1e-12),
+                                              priors);
     }
 
     static std::vector<cv::Mat> mats(const PixelViews& views)

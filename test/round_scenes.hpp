@@ -37,7 +37,7 @@ inline RigTruth roundRig(MakeWindow make, int count, bool shared, double outerIn
     return truth;
 }
 
-//! The centres begin at the cameras; all else is what the rig says.
+//! The centres begin at the cameras, axes upright in the image; all else is what the rig says.
 inline RigCall callFromCentre(const RigTruth& rig, const RigScene& scene, bool paired)
 {
     RigCall call(rig, scene, paired);
@@ -45,17 +45,11 @@ inline RigCall callFromCentre(const RigTruth& rig, const RigScene& scene, bool p
     {
         GlassWindow window = rig.cameras[c]->window();
         window.center = cv::Vec3d();
+        if (window.shape == cv::refract::WINDOW_TUBE)
+            window.axis = cv::Vec3d(0, 1, 0);
         call.cameras[c]->setWindow(window);
     }
     return call;
-}
-
-inline void runWithPriors(RigCall& call, const std::vector<cv::Mat>& priors, int flags)
-{
-    cv::refract::calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                                   call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                                   call.otherMinima, flags, cv::noArray(),
-                                   cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 300, 1e-12), priors);
 }
 
 //! Rows of a covariance that hold a window's place, of the camera before which so many parameters stand: a center; of a tube its axis.
@@ -70,6 +64,16 @@ inline std::vector<int> placeRows(const GlassWindow& window, int before = 0)
 
 //! Degrees of freedom of a place.
 inline int freedomOfPlace(const GlassWindow& window) { return window.shape == cv::refract::WINDOW_TUBE ? 4 : 3; }
+
+//! How far off a centre is, or an axis passes the point given of the true one, mm; the angle between axes, radians.
+inline cv::Vec2d placeErrors(const RigCall& call, const RigTruth& truth, int c = 0)
+{
+    const GlassWindow found = call.cameras[c]->window(), exact = truth.cameras[c]->window();
+    const cv::Vec3d off = found.center - exact.center;
+    if (found.shape != cv::refract::WINDOW_TUBE)
+        return { norm(off), 0 };
+    return { norm(off.cross(found.axis)), std::asin(norm(found.axis.cross(exact.axis))) };
+}
 
 //! What was found less what is true, of all parameters of a window; a tube's center where its axis is nearest to what was found.
 inline std::vector<double> windowErrors(const GlassWindow& found, GlassWindow exact)
@@ -122,15 +126,6 @@ struct Given
     double tilt = 0.03;         //!< radians; of a tube's axis, which is only a start
 };
 
-struct Flow
-{
-    const char* name;
-    int cameras;
-    bool shared, paired;
-    double outerIndex;
-    int views, flags;
-};
-
 inline GlassWindow drawn(GlassWindow window, const Given& given, Random& random)
 {
     window.radius += random.normal(given.radius);
@@ -179,11 +174,7 @@ inline RoundTrial runRoundTrial(MakeWindow make, const Flow& flow, const Given& 
     std::vector<cv::Mat> priors;
     for (const cv::Ptr<RefractiveCamera>& camera : call.cameras)
         priors.push_back(priorOf(camera->window(), given));
-    cv::Mat errors;
-    cv::refract::calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                                   call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                                   call.otherMinima, targetCovariance(given.scale, given.rotation, given.translation), errors, flow.flags,
-                                   cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 300, 1e-12), priors);
+    call.run(flow.flags, priors, targetCovariance(given.scale, given.rotation, given.translation));
     const GlassWindow exact = truth.cameras[0]->window();
     const std::vector<double> ofFirst = windowErrors(call.cameras[0]->window(), exact);
     std::vector<int> rows;

@@ -165,10 +165,7 @@ TEST_CASE("Panes bent by 2 mm a metre: with a prior, normals and points are as g
                 RigCall call = callOfPanes(truth, scene, flow.paired, WINDOW_BENT);
                 const int flags = flow.outerIndex > 1 ? GLASS_FREE_DISTANCE : 0;
                 const std::vector<Mat> priors(2, priorOf(isConsidered ? 2 : 0, 0));
-                calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                                  call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                                  call.otherMinima, flags, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12),
-                                  priors);
+                call.run(flags, priors);
                 const Vec3d error = call.cameras[0]->window().normal - truth.cameras[0]->window().normal;
                 (isConsidered ? ofNormal : ignoredNormal) +=
                     squaredMahalanobis({ error[0], error[1], error[2] }, call.covariance, { NORMAL, NORMAL + 1, NORMAL + 2 })/(2*TRIALS);

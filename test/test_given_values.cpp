@@ -20,15 +20,6 @@ struct Given
     double scale = 2e-4, rotation = 3e-4, translation = 0.03;
 };
 
-struct Flow
-{
-    const char* name;
-    int cameras;
-    bool shared, paired;
-    double outerIndex;
-    int views, flags;
-};
-
 GlassWindow drawnWindow(GlassWindow window, const Given& given, Random& random)
 {
     const bool isAir = window.outerIndex == window.innerIndex;
@@ -100,11 +91,7 @@ Trial runTrial(const Flow& flow, const Given& given, int seedOfTrial)
         camera->setWindow(window);
         covariances.push_back(covarianceOf(camera, given));
     }
-    Mat errors;
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima,
-                      targetCovariance(given.scale, given.rotation, given.translation), errors, flow.flags, noArray(),
-                      TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 300, 1e-12), covariances);
+    call.run(flow.flags, covariances, targetCovariance(given.scale, given.rotation, given.translation));
 
     const Camera& inner = static_cast<const Camera&>(*call.cameras[0]);
     const WindowLayout& at = inner.layers().at();

@@ -59,8 +59,11 @@ CameraRays raysOf(const PlacedCameras& cameras, int c, PixelBlock& block, int n,
 //! Lines of rays that leave a round window have come in through its far side: a point there is none that is seen.
 void checkWayOut(const PlacedCamera& placed, int c, const Rays& rays, int n, PixelBlock& block)
 {
-    const Surface last = inFrame(placed.camera->layers().lastSurface(), placed.place.R.val, placed.place.t.val);
-    for (int i = 0; i < n && last.curvature > 0; i++)
+    const Surface& own = placed.camera->layers().lastSurface();
+    if (!(own.curvature > 0))
+        return;
+    const Surface last = inFrame(own, placed.place.R.val, placed.place.t.val);
+    for (int i = 0; i < n; i++)
         if (block.status[i] == REFRACT_OK && block.isSeen(c, i) &&
             !isBeyondAlong(last, block.x[i], block.y[i], block.z[i], 1., rays.dx[i], rays.dy[i], rays.dz[i]))
             block.status[i] = REFRACT_BEHIND_WINDOW;
