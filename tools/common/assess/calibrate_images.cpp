@@ -49,10 +49,11 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     PlainFit plain;
     if (!isSlowToStart(input))
     {
-        const bool lookedAtImages = requireNoMixUp(input);
+        const MixUps mixUps = findMixUps(input);
+        const bool lookedAtImages = requireNoMixUp(input, mixUps);
         plain = fitPlainly(input);
         if (!(plain.px < largestSoundError(c.data)))
-            requireNoCause(input, plain, !lookedAtImages);
+            requireNoCause(input, mixUps, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {
         return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };

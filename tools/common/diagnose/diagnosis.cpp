@@ -5,7 +5,6 @@
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/image_mistakes.hpp"
-#include "diagnose/image_mixups.hpp"
 #include "diagnose/target_mistakes.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "console/failure.hpp"
@@ -211,9 +210,8 @@ std::vector<std::string> toldBeside(const Contradiction& value, const std::vecto
 
 } // namespace
 
-std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain, bool imagesToo)
+std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)
 {
-    const MixUps mixUps = findMixUps(input);
     std::vector<std::string> sentences = imagesToo ? imageMistakes(input, mixUps) : std::vector<std::string>();
     if (!sentences.empty())
         return sentences;
@@ -248,7 +246,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit&
     return sentences;
 }
 
-std::vector<std::string> diagnose(const CalibrationInput& input) { return diagnose(input, fitPlainly(input), true); }
+std::vector<std::string> diagnose(const CalibrationInput& input) { return diagnose(input, findMixUps(input), fitPlainly(input), true); }
 
 void requirePlausible(const RigData& data, const std::vector<Residual>& residuals, double rmsOfSeparateFits,
                       const CalibrationInput& input)
@@ -281,9 +279,8 @@ namespace {
 
 } // namespace
 
-bool requireNoMixUp(const CalibrationInput& input)
+bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
 {
-    const MixUps mixUps = findMixUps(input);
     if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
         return false;
     const double px = medianErrorOfFit(input.data, input.options);
@@ -295,9 +292,9 @@ bool requireNoMixUp(const CalibrationInput& input)
     return true;
 }
 
-void requireNoCause(const CalibrationInput& input, const PlainFit& plain, bool imagesToo)
+void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)
 {
-    const std::vector<std::string> reasons = diagnose(input, plain, imagesToo);
+    const std::vector<std::string> reasons = diagnose(input, mixUps, plain, imagesToo);
     if (!reasons.empty())
         refuse(input, plain.px, reasons);
 }

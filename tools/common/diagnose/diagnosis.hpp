@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_DIAGNOSIS_HPP
 
 #include "diagnose/calibration_input.hpp"
+#include "diagnose/image_mixups.hpp"
 #include "diagnose/plain_fit.hpp"
 #include "calibrate/fit.hpp"
 
@@ -16,7 +17,7 @@ namespace tools {
 //! The mistakes that explain images which do not fit, the likely ones first; empty if no known mistake does.
 std::vector<std::string> diagnose(const CalibrationInput& input);
 //! @param imagesToo also mix-ups of images, which requireNoMixUp may have looked for
-std::vector<std::string> diagnose(const CalibrationInput& input, const PlainFit& plain, bool imagesToo);
+std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo);
 
 /** Throws Failure with the explanations if a calibration cannot be right.
 @param data what is left without outliers. @param residuals of the fit to them
@@ -27,10 +28,10 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
 /** Throws Failure if images are mixed up: turned, mirrored, exchanged, of another moment. A fit to such images creeps, so that they are
 looked at before any that is not short.
 @return whether it has looked for all of them */
-bool requireNoMixUp(const CalibrationInput& input);
+bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps);
 
 //! Throws Failure if a mistake explains why the images fit no better.
-void requireNoCause(const CalibrationInput& input, const PlainFit& plain, bool imagesToo);
+void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo);
 
 //! An error of a calibration, with the explanations.
 std::string explainError(const std::string& error, const CalibrationInput& input);

@@ -82,16 +82,19 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
     for (const Cause& cause : causes)
         sets.push_back(cause.freed);
     const std::vector<double> gains = relaxed.gains(trial.given, sets);
+    std::vector<Relaxed> found(causes.size());
+    const auto isTried = [&](size_t i) { return causes[i].posesToo || gains[i] > PROMISING; };
+    parallel_for_(Range(0, (int)causes.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            if (isTried(i))
+                found[i] = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
+                                              : relaxed.fit(startOf(causes[i]), causes[i].freed); }, (double)causes.size());
     for (size_t i = 0; i < causes.size(); i++)
     {
-        if (!causes[i].posesToo && !(gains[i] > PROMISING))
+        if (!isTried(i) || !canBe(found[i], trial.given))
             continue;
-        const Relaxed found = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
-                                                 : relaxed.fit(startOf(causes[i]), causes[i].freed);
-        if (!canBe(found, trial.given))
-            continue;
-        const int parameters = causes[i].posesToo ? 6*(int)found.views.size() : (int)causes[i].freed.size();
-        trial.tested.push_back({&causes[i], found, found.chiSquare, parameters});
+        const int parameters = causes[i].posesToo ? 6*(int)found[i].views.size() : (int)causes[i].freed.size();
+        trial.tested.push_back({&causes[i], found[i], found[i].chiSquare, parameters});
     }
     return trial;
 }

@@ -15,7 +15,7 @@ namespace tools {
 
 namespace {
 
-const int ITERATIONS = 100;
+const int ITERATIONS = 40;
 const double LEFT_BY_CAUSE = 0.8;       // of the residuals, at most, if a wrong value is what is wrong,
 const double CLEAN = 1.3;               // and no more than this times what each image has by itself
 

@@ -47,6 +47,8 @@ void TrustRegion::solve(ceres::Problem& problem)
     options.gradient_tolerance = options.parameter_tolerance = 1e-14;
     options.max_num_consecutive_invalid_steps = 20;     // a step that takes a point's image away is shortened
     options.num_threads = 1;        // the cost has its own
+    // At bounds Ceres searches along each step. What is not found soon is not found: the step is refused, and the next is shorter.
+    options.max_num_line_search_step_size_iterations = 3;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
