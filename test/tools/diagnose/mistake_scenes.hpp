@@ -24,10 +24,10 @@ enum RigKind { ONE_IN_AIR, STEREO_IN_AIR, STEREO_IN_WATER, SHARED_WINDOW, RIG_KI
 const char* const RIG_NAMES[] = {"one, air", "stereo, air", "stereo, water", "shared window"};
 
 enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, NUDGE, WEDGE, FOCUS, PLACE, TURNED, MIRRORED,
-               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, MISTAKES };
+               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, MISTAKES };
 const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "boards nudged", "wedge", "focus",
                                      "camera moved", "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated",
-                                     "board size"};
+                                     "board size", "all turned", "shuffled"};
 
 const int COLUMNS = 9, ROWS = 6;
 const double BOARD_SQUARE = 25., NOISE = 0.1;
@@ -249,6 +249,8 @@ inline bool applies(Mistake mistake, RigKind kind)
     case MIRRORED: return true;
     case PLACE:
     case SWAPPED_CAMERAS:
+    case ALL_TURNED:
+    case SHUFFLED:
     case UNRELATED: return kind != ONE_IN_AIR;
     case TURNED: return true;
     default: return true;
@@ -307,8 +309,9 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
     for (size_t i = 0; i < views.size(); i++)
     {
         View& view = views[i];
-        if (mistake == TURNED)
-            turnByHalf(view.glass[last], c.data.imageSize[last]);
+        for (int k = 0; k <= last; k++)
+            if (mistake == ALL_TURNED || (mistake == TURNED && k == last))
+                turnByHalf(view.glass[k], c.data.imageSize[k]);
         if (mistake == MIRRORED)
         {
             mirror(view.glass[last], c.data.imageSize[last]);
@@ -320,14 +323,15 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
                 std::swap(view.direct[k], view.glass[k]);
         if (mistake == SWAPPED_CAMERAS)
             std::swap(view.glass[0], view.glass[last]);
-        if (mistake == UNRELATED)
+        if (mistake == UNRELATED || mistake == SHUFFLED)
         {
             // The next one of the same states.
             size_t next = i;
             do
                 next = (next + 1) % right.size();
             while (right[next].countGlass() == 0 && view.countGlass() > 0);
-            view.direct[last] = right[next].direct[last];
+            if (mistake == UNRELATED)
+                view.direct[last] = right[next].direct[last];
             if (view.countGlass() > 0)
                 view.glass[last] = right[next].glass[last];
         }

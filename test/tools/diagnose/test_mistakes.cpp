@@ -28,10 +28,12 @@ std::vector<std::string> namesOf(Mistake mistake)
     case FOCUS: return {"focus or zoom"};
     case PLACE: return {"moved in the rig"};
     case TURNED: return {"turned by 180 degrees"};
+    case ALL_TURNED: return {"all cameras are turned by 180 degrees"};
     case MIRRORED: return {"mirrored"};
     case SWAPPED_STATES: return {"--direct and --glass exchanged"};
     case SWAPPED_CAMERAS: return {"--glass and --glass", "--direct and --direct"};
     case UNPAIRED: return {"--unpaired"};
+    case SHUFFLED:
     case UNRELATED: return {"not the same moment"};
     case BOARD_SIZE: return {"--size is smaller than the board"};
     default: return {};
@@ -135,7 +137,7 @@ TEST_CASE("Every mistake is called by its name: a sample", "[mistakes][slow]")
     std::cout << "seed " << scenes::seed() << '\n';
     checkMatrix({{THICKNESS, ONE_IN_AIR}, {INDEX, STEREO_IN_AIR}, {SQUARE, SHARED_WINDOW}, {MOTION, STEREO_IN_AIR}, {WEDGE, ONE_IN_AIR},
                  {FOCUS, ONE_IN_AIR}, {PLACE, STEREO_IN_AIR}, {TURNED, ONE_IN_AIR}, {TURNED, STEREO_IN_WATER}, {MIRRORED, STEREO_IN_AIR},
-                 {SWAPPED_STATES, SHARED_WINDOW}, {SWAPPED_CAMERAS, STEREO_IN_AIR}}, 1);
+                 {SWAPPED_STATES, SHARED_WINDOW}, {SWAPPED_CAMERAS, STEREO_IN_AIR}, {ALL_TURNED, STEREO_IN_AIR}, {SHUFFLED, STEREO_IN_AIR}}, 1);
 }
 
 TEST_CASE("A distance that the calibration held stays before the boards while causes are tried", "[mistakes][slow]")

@@ -3,6 +3,7 @@
 
 #include "assess/calibrate_images.hpp"
 #include "diagnose/diagnosis.hpp"
+#include "diagnose/fit_quality.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/failure.hpp"
@@ -13,15 +14,19 @@ namespace tools {
 
 namespace {
 
-const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep
+const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep;
+const int FEW_ROBUST_ITERATIONS = 15;   // and where nothing fits, each of many
 
-void fit(RigCalibration& c, bool robust, const std::function<void()>& step, int maxIterations)
+void start(RigCalibration& c, bool robust, int maxIterations)
 {
     if (robust)
-        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources);
+        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations);
     else
         c.start = startModel(c.data, c.options, c.lensSources);
-    step();
+}
+
+void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations)
+{
     c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations);
     c.residuals = residualsOf(c.data, c.fit);
     step();
@@ -47,19 +52,26 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     const CalibrationInput input{c.data, c.options, c.square, c.notices};
     // A wrong value makes good points look wrong, and the search for these long: so look first.
     PlainFit plain;
+    bool isSound = true, mayFit = true;
     if (!isSlowToStart(input))
     {
         const MixUps mixUps = findMixUps(input);
         const bool lookedAtImages = requireNoMixUp(input, mixUps);
         plain = fitPlainly(input);
-        if (!(plain.px < largestSoundError(c.data)))
+        isSound = plain.px < largestSoundError(c.data);
+        if (!isSound)
             requireNoCause(input, mixUps, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {
         return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
     try
     {
-        fit(c, robust && !plain.explained, step, plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);
+        start(c, robust && !plain.explained, isSound ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS);
+        step();
+        // No mistake that is known of explains it. If wrong points do not either, a fit would creep for minutes.
+        mayFit = isSound || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
+        if (mayFit)
+            fit(c, step, plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);
     }
     catch (const CalibrationError& e)
     {
@@ -75,6 +87,8 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
             throw;
         throw Failure(explained(std::string(e.what()), e.what()));
     }
+    if (!mayFit)
+        refuseUnexplained(input, plain);
     requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
 }
 

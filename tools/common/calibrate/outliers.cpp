@@ -60,15 +60,15 @@ bool losesPairs(const RigData& data, const Fit& fit)
 
 /** The robust fit of everything. Where it would lose more than a third of the pairs, a wrong given value may be why: the pairs
 are then evidence of it. The fit with that value free knows which points are wrong. */
-Fit robustFit(const RigData& data, const RigModel& start, int flags)
+Fit robustFit(const RigData& data, const RigModel& start, int flags, int maxIterations)
 {
-    const Fit fit = fitImages(data, start, allViews(data), flags | GLASS_ROBUST);
+    const Fit fit = fitImages(data, start, allViews(data), flags | GLASS_ROBUST, maxIterations);
     if (!losesPairs(data, fit))
         return fit;
     for (int value : {GLASS_FREE_THICKNESS, GLASS_FREE_INDEX, GLASS_FREE_OUTER_INDEX})
         try
         {
-            const Fit freed = fitImages(data, start, allViews(data), flags | value | GLASS_ROBUST);
+            const Fit freed = fitImages(data, start, allViews(data), flags | value | GLASS_ROBUST, maxIterations);
             if (!losesPairs(data, freed))
                 return freed;
         }
@@ -95,12 +95,12 @@ std::string Rejected::sentence() const
                   image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
 }
 
-Outliers rejectOutliers(RigData& data, const RigModel& start, int flags)
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, int maxIterations)
 {
     Fit fit;
     try
     {
-        fit = robustFit(data, start, flags);
+        fit = robustFit(data, start, flags, maxIterations);
     }
     catch (const cv::Exception& e)
     {
@@ -130,14 +130,14 @@ static int pointsOfRejectedImages(const Outliers& outliers)
     return points;
 }
 
-Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources)
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources, int maxIterations)
 {
     RigData freed = data;
-    const Outliers byHeld = rejectOutliers(data, start, flags);
+    const Outliers byHeld = rejectOutliers(data, start, flags, maxIterations);
     const bool mayBeLens = fromImages(lensSources) && !(flags & GLASS_FREE_INTRINSICS);
     if (!mayBeLens || (byHeld.fault.empty() && pointsOfRejectedImages(byHeld) == 0))
         return byHeld;
-    const Outliers byFreed = rejectOutliers(freed, start, flags | GLASS_FREE_INTRINSICS);
+    const Outliers byFreed = rejectOutliers(freed, start, flags | GLASS_FREE_INTRINSICS, maxIterations);
     if (byHeld.fault.empty() && (!byFreed.fault.empty() || pointsOfRejectedImages(byFreed) >= pointsOfRejectedImages(byHeld)))
         return byHeld;
     data = freed;
@@ -145,7 +145,7 @@ Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const s
 }
 
 Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,
-                              std::vector<LensSource>& lensSources)
+                              std::vector<LensSource>& lensSources, int maxIterations)
 {
     const int MOST_ROUNDS = 5;
     const RigData all = data;
@@ -155,7 +155,7 @@ Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel
     for (int round = 0; round < MOST_ROUNDS && !settled; round++)
     {
         RigData rest = all;
-        const Outliers found = rejectOutliers(rest, start, options.flags, lensSources);
+        const Outliers found = rejectOutliers(rest, start, options.flags, lensSources, maxIterations);
         if (!found.fault.empty() && round > 0)
             break;
         settled = areSame(found.rejected, outliers.rejected);

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_OUTLIERS_HPP
 #define REFRACT_TOOLS_OUTLIERS_HPP
 
+#include "calibrate/image_fit.hpp"
 #include "calibrate/starting_model.hpp"
 
 /* Outliers: hidden, smeared or wrongly detected points (dirty glass), and images whose target was moved. A robust fit of all data
@@ -29,18 +30,19 @@ struct Outliers
     std::string fault;          //!< why the robust fit failed, so that nothing is rejected; empty: it did not fail
 };
 
-//! Removes outliers from the data. Removes nothing if the robust fit is not possible.
-Outliers rejectOutliers(RigData& data, const RigModel& start, int flags);
+//! Removes outliers from the data. Removes nothing if the robust fit is not possible. @param maxIterations of each of its many solutions
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, int maxIterations = MAX_ROBUST_ITERATIONS);
 
 /** The same, where a lens from few direct images is less exact than the corners, so that good images contradict it. If whole images
 would be rejected, or the fit fails, the fit with a free lens (as in the calibration itself) decides what is an outlier. */
-Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources);
+Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const std::vector<LensSource>& lensSources,
+                        int maxIterations = MAX_ROBUST_ITERATIONS);
 
 /** The same, where the initial values come from the data and contain their outliers. All data are tested again, from the initial values
 of the inliers, until the outliers do not change.
 @param start, lensSources result: as of startModel, from the inliers */
 Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,
-                              std::vector<LensSource>& lensSources);
+                              std::vector<LensSource>& lensSources, int maxIterations = MAX_ROBUST_ITERATIONS);
 
 } // namespace tools
 

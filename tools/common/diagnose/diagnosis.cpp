@@ -24,7 +24,6 @@ const double MIN_IMPLAUSIBLE_PX = 1.;   // then the given values do not belong t
 const double CLEAN = 1.3;               // times what the lens's own images leave: no more than noise
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
 const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
-const double UNRELATED_PX = 4.*WINDOWS_PX;      // of boards, by cameras whose lens is a pinhole and whose windows are left out
 const double AS_GOOD = 3.;              // as the best of them
 const size_t MOST_POSSIBLE = 4;         // mix-ups that are fitted without geometry asking for it: a second each
 
@@ -73,7 +72,7 @@ bool sharesWindows(const CalibrationInput& input)
 }
 
 //! Two cameras see another board, or it moved between their images.
-bool areUnrelated(const CalibrationInput& input) { return camerasApart(input.data, input.options) > UNRELATED_PX; }
+bool areUnrelated(const CalibrationInput& input) { return camerasApart(input.data, input.options) > MOMENTS_PX; }
 
 bool isRig(const CalibrationInput& input) { return input.data.cameraCount > 1; }
 
@@ -176,14 +175,21 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
     for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
         if (!sentence.empty())
             return {sentence};
-    const Explanation unpaired = pairsFromOneMap(input.data) > WINDOWS_PX ? unpairedImages(input) : Explanation{"", NO_FIT};
+    const bool isUnpaired = pairsFromOneMap(input.data) > WINDOWS_PX;
+    if (isUnpaired && areUnrelated(input))
+    {
+        const Explanation other = imagesOfOtherMoments(input);
+        if (other.px < sound)
+            return {fits(other, clean)};
+    }
+    const Explanation unpaired = isUnpaired ? unpairedImages(input) : Explanation{"", NO_FIT};
     if (unpaired.px < sound)
         return {fits(unpaired, clean)};
     if (!areUnrelated(input))
         return {};
     std::vector<MixUp> relating;        // they explain as much with less
     std::copy_if(mixUps.possible.begin(), mixUps.possible.end(), std::back_inserter(relating), [](const MixUp& mixUp) {
-        return !(mixUp.camerasApart > UNRELATED_PX); });
+        return !(mixUp.camerasApart > MOMENTS_PX); });
     sentences = confirmed(input, relating, MOST_POSSIBLE, clean);
     if (!sentences.empty())
         return sentences;
@@ -298,6 +304,8 @@ void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const P
     if (!reasons.empty())
         refuse(input, plain.px, reasons);
 }
+
+void refuseUnexplained(const CalibrationInput& input, const PlainFit& plain) { refuse(input, plain.px, {}); }
 
 namespace {
 

@@ -33,6 +33,9 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps);
 //! Throws Failure if a mistake explains why the images fit no better.
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo);
 
+//! Throws Failure: requireNoCause found nothing, and without outliers the images fit no better.
+[[noreturn]] void refuseUnexplained(const CalibrationInput& input, const PlainFit& plain);
+
 //! An error of a calibration, with the explanations.
 std::string explainError(const std::string& error, const CalibrationInput& input);
 

@@ -10,6 +10,7 @@
 namespace tools {
 
 const double WINDOWS_PX = 20.;          //!< less is a window's doing
+const double MOMENTS_PX = 4.*WINDOWS_PX;    //!< more is of boards that are not the same, if two cameras are pinholes without windows
 
 //! Pinholes that are good enough to tell boards that are turned or elsewhere; zeros: there is none.
 struct RoughLenses

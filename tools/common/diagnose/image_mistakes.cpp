@@ -3,6 +3,7 @@
 
 #include "diagnose/image_mistakes.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "diagnose/image_disagreement.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 
@@ -93,6 +94,51 @@ Explanation mirroredPoints(const CalibrationInput& input)
         for (Mirror mirror : {ROWS, COLUMNS})
             attempt(mirror, c, format("u or v of camera %d counted from the other side: its images are mirrored to those of the "
                                       "others", c + 1));
+    return best;
+}
+
+namespace {
+
+//! The images of one camera and one state, each in a view of its own.
+RigData apartFromOthers(const RigData& given, int camera, bool glass)
+{
+    RigData data = given;
+    for (const View& view : given.views)
+    {
+        const std::vector<cv::Point2d>& pixels = (glass ? view.glass : view.direct)[camera];
+        if (pixels.empty())
+            continue;
+        View alone = view;
+        for (int c = 0; c < data.cameraCount; c++)
+        {
+            alone.direct[c].clear();
+            alone.glass[c].clear();
+        }
+        (glass ? alone.glass : alone.direct)[camera] = pixels;
+        View& others = data.views[&view - given.views.data()];
+        (glass ? others.glass : others.direct)[camera].clear();
+        data.views.push_back(alone);
+    }
+    data.views.erase(std::remove_if(data.views.begin(), data.views.end(), [](const View& v) { return !v.hasGlass() && !v.countDirect(); }),
+                     data.views.end());
+    return data;
+}
+
+} // namespace
+
+Explanation imagesOfOtherMoments(const CalibrationInput& input)
+{
+    Explanation best{"", NO_FIT};
+    for (int c = 0; c < input.data.cameraCount; c++)
+        for (bool glass : {true, false})
+        {
+            const RigData data = apartFromOthers(input.data, c, glass);
+            if (pairsFromOneMap(data) > WINDOWS_PX || camerasApart(data, input.options) > MOMENTS_PX)
+                continue;       // another is wrong, or not only this one
+            const std::string option = (glass ? "--glass" : "--direct") + cameraSuffix(c);
+            best = better(best, {"each " + option + " image fitted alone, so equal names of " + option + " and of the other options are not "
+                                 "the same moment (another order of files, or the board moved)", medianErrorOfFit(data, input.options)});
+        }
     return best;
 }
 

@@ -20,6 +20,9 @@ Explanation swappedStatesOfOneCamera(const CalibrationInput& input);
 //! Equal names of different cameras are not of the same moment.
 Explanation unrelatedViews(const CalibrationInput& input);
 
+//! Equal names of the images of one option and of all others are not of the same moment.
+Explanation imagesOfOtherMoments(const CalibrationInput& input);
+
 //! Equal names of a direct and a glass image are not of one pose of the board.
 Explanation unpairedImages(const CalibrationInput& input);
 

@@ -129,6 +129,15 @@ RigData changedBack(const RigData& given, Change change, int camera, bool direct
     return data;
 }
 
+//! The images of all cameras through their windows.
+RigData changedBack(const RigData& given, Change change)
+{
+    RigData data = given;
+    for (int camera = 0; camera < data.cameraCount; camera++)
+        data = changedBack(data, change, camera, false);
+    return data;
+}
+
 RigData exchanged(const RigData& given, int a, int b, bool direct)
 {
     RigData data = given;
@@ -182,9 +191,10 @@ bool isNowhereWorse(const Disagreements& before, const Disagreements& after)
     return true;
 }
 
+const char* const WORDS[] = {"turned by 180 degrees", "mirrored", "turned by 90 degrees", "turned by 90 degrees"};    // of Change
+
 std::string sentenceOf(Change change, const RigData& data, int camera, bool directToo)
 {
-    static const char* const WORDS[] = {"turned by 180 degrees", "mirrored", "turned by 90 degrees", "turned by 90 degrees"};
     const std::string of = data.cameraCount == 1 ? "" : format(" of camera %d", camera + 1);
     if (directToo)
         return "the images" + of + " are " + WORDS[change] + " to those of the other cameras";
@@ -222,15 +232,18 @@ MixUps findMixUps(const CalibrationInput& input)
                 direct ? std::swap(now.direct[a], now.direct[b]) : std::swap(now.glass[a], now.glass[b]);
                 attempt(exchanged(data, a, b, direct), now, option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
             }
+    const auto mayBe = [&](int change, int camera) {
+        return change <= MIRROR || data.imageSize[camera].width == data.imageSize[camera].height; };
     for (int camera = 0; camera < data.cameraCount; camera++)
         for (bool directToo : {false, true})
             for (int change = 0; change < CHANGES && (data.cameraCount > 1 || !directToo); change++)
-            {
-                const bool square = data.imageSize[camera].width == data.imageSize[camera].height;
-                if (change <= MIRROR || square)
+                if (mayBe(change, camera))
                     attempt(changedBack(data, (Change)change, camera, directToo), lenses,
                             sentenceOf((Change)change, data, camera, directToo));
-            }
+    for (int change = 0; change < CHANGES && data.cameraCount > 1; change++)
+        if (mayBe(change, 0))
+            attempt(changedBack(data, (Change)change), lenses,
+                    std::string("the --glass images of all cameras are ") + WORDS[change] + " to their direct images");
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.left < b.left; });
     MixUps found;
     for (const Candidate& candidate : candidates)
