@@ -5,6 +5,7 @@
 #include "measure/consistency.hpp"
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
+#include "measure/length_scale.hpp"
 #include "measure/target_lengths.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
@@ -51,8 +52,9 @@ one, and what is not known of the index (--outer-index-std) is in sx, sy, sz.
 The table compares the distances between neighbouring points with --square, which must be in the unit of the calibration.
 
 Exit code: 0 done, 1 could not do it, 2 done and written, but not to be trusted: more than half of the points have status 9 or
-11, or the distances between neighbouring points are on average more than 20 % off. Then a target tells the cause: images exchanged,
-turned, mirrored or of two moments, a moved camera or window, another focus, medium or square; what fits as well follows after "or".)";
+11, or the distances between neighbouring points contradict --square: triangulated ones by five standard deviations, those on a plane
+by 20 %, on average. Then a target tells the cause: images exchanged, turned, mirrored or of two moments, a moved camera or window,
+another focus, medium or square; what fits as well follows after "or".)";
 
 namespace {
 
@@ -286,23 +288,21 @@ bool mostContradict(const std::vector<Measurement>& results)
     return 2*wrong > all;
 }
 
-//! What lengths say that are far from the target's, or empty.
-std::string wrongLengths(double square, const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
+//! What lengths say that are not the target's, or empty.
+std::string wrongLengths(const Options& options, double square, const Calibration& calibration,
+                         const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
 {
-    const double FAR_OFF = 0.2;
-    double sum = 0;
-    int count = 0;
-    for (size_t k = 0; k < results.size(); k++)
-        for (const double ratio : lengthRatios(measured[k], results[k].points))
-        {
-            sum += ratio;
-            count++;
-        }
-    if (!count || std::abs(sum/count - 1) <= FAR_OFF)
+    const double FAR_OFF = 0.2, CONTRADICTING = 5.;     // of a plane, whose error is not said; standard deviations, as those of a point
+    const LengthScale scale = lengthScaleOf(calibration, {measured.begin(), measured.end()}, results, pixelSigma(options, calibration),
+                                            USUAL_SQUARE_STD);
+    const bool isFar = std::abs(scale.ratio - 1.) > FAR_OFF, contradicts = options.triangulates() && scale.deviations() > CONTRADICTING;
+    if (!isFar && !contradicts)
         return "";
-    return format("the distances between neighbouring points are on average %.3g times those of the target: is --square=%g "
-                  "right, in the unit of the calibration, and are images and calibration of the same cameras?", sum/count,
-                  square);
+    return format("the distances between neighbouring points are on average %.*g times those of the target", isFar ? 3 : 6, scale.ratio)
+        + (contradicts ? format(", %.3g standard deviations of noise, calibration and a printed board from 1", scale.deviations())
+                       : std::string())
+        + format(": is --square=%g right, in the unit of the calibration, and are ", square)
+        + (isFar ? "images and calibration of the same cameras?" : "cameras and windows where they were when they were calibrated?");
 }
 
 //! What would explain a contradiction, if a target's shape is known; or empty.
@@ -526,7 +526,7 @@ int main(int argc, char** argv)
         for (const std::string& text : {outside, contradiction})
             if (!text.empty())
                 command.warn(text);
-        const std::string lengths = options.lengthsMeasured() ? wrongLengths(target->square(), measured, results) : "";
+        const std::string lengths = options.lengthsMeasured() ? wrongLengths(options, target->square(), calibration, measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
         const bool isDoubtful = mostContradict(results) || !lengths.empty();

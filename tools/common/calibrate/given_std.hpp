@@ -25,6 +25,8 @@ struct Std
     std::string text(const std::string& unit, double factor = 1.) const;
 };
 
+const double USUAL_SQUARE_STD = 5e-4;        //!< relative, of a printed board
+
 //! Of an index where nothing is said: of a material's name its tolerance and the light's band, 0.001 of a number; air as a number is exact.
 Std usualStdOf(const GivenIndex& index);
 

@@ -11,9 +11,6 @@ namespace tools {
 //! Distances between neighbouring points, measured minus true.
 std::vector<double> lengthErrors(const View& view, const std::vector<cv::Point3d>& points);
 
-//! Distances between neighbouring points, measured over true.
-std::vector<double> lengthRatios(const View& view, const std::vector<cv::Point3d>& points);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_TARGET_LENGTHS_HPP

@@ -1,0 +1,30 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_LENGTH_SCALE_HPP
+#define REFRACT_TOOLS_LENGTH_SCALE_HPP
+
+#include "measure/measurement.hpp"
+
+/* Do lengths that were measured agree with those of a target? Their mean ratio is known far better than any of them, by the noise of all
+pixels and the calibration's covariance, in which their errors are common. */
+namespace tools {
+
+struct LengthScale
+{
+    double ratio = 1.;      //!< measured over true, the mean of all neighbours on the target; 1 where there are none
+    double sigma;           //!< one standard deviation of it; NaN: unknown
+
+    //! Standard deviations from 1; 0 where unknown.
+    double deviations() const;
+};
+
+/** Of points that were triangulated.
+@param views the target's shape and neighbours. @param results of each view; points that contradict themselves are left out
+@param pixelSigma px, NaN: unknown. @param targetSigma of the target's scale, relative */
+LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View>& views, const std::vector<Measurement>& results,
+                          double pixelSigma, double targetSigma);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_LENGTH_SCALE_HPP
