@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_output.hpp"
+#include "bundle/moments.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -115,6 +116,7 @@ int main(int argc, char** argv)
         const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
         const BundleStart start = startOf(file, options.start, options.bundle);
         requireScale(start, options.start, matches, lengths);
+        requireSameMoments(start, matches);
         const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
         const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : file.sigma;
         BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);

@@ -71,6 +71,29 @@ TEST_CASE("A camera that turned and a wrong square show in lengths", "[length_sc
     CHECK(seenBy(modelOf(calibration), calibration, random, 0.).deviations() < 5.);
 }
 
+TEST_CASE("Lengths on a plane are judged by one camera", "[length_scale]")
+{
+    const Calibration calibration = calibrated();
+    scenes::Random random(7713);
+    std::cout << "seed " << scenes::seed() << '\n';
+    View view;
+    view.objectPoints = board(6, 5);
+    for (int i = 0; i < 24; i++)
+        view.neighbours.push_back({i, i + 6});
+    std::vector<Point3d> points;
+    for (const Point3d& X : view.objectPoints)
+        points.push_back(X + Point3d(-90, -70, 620));
+    const std::vector<Point2d> pixels = pixelsOf(modelOf(calibration), points, SIGMA, random)[0];
+    for (double z : {620., 640.})
+    {
+        const Vec4d plane(0, 0, 1, z);
+        const LengthScale scale = lengthScaleOf(calibration, {view}, {measureOnPlane(calibration, pixels, plane, SIGMA)}, SIGMA, TARGET_STD,
+                                                plane);
+        CAPTURE(z, scale.ratio, scale.sigma);
+        CHECK((scale.deviations() < 5.) == (z == 620.));
+    }
+}
+
 TEST_CASE("Of lengths that nothing is known of nothing is said", "[length_scale]")
 {
     Calibration calibration = calibrated();

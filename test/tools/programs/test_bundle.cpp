@@ -124,6 +124,24 @@ TEST_CASE("refract_bundle leaves wrong matches out and names them", "[tools][bun
     CHECK(mentions(all.err, "limit not met"));
 }
 
+TEST_CASE("refract_bundle names the camera whose pixels are of other moments, before any fit", "[tools][bundle]")
+{
+    for (int cameras : {2, 3})
+    {
+        Wand wand(31, cameras);
+        std::vector<Point2d>& pixels = wand.pixels[cameras - 1];
+        std::rotate(pixels.begin(), pixels.end() - 4, pixels.end());        // two moments of two marks
+        const TemporaryFolder f;
+        wand.write(f);
+        const ToolResult result = bundle(f);
+        CAPTURE(scenes::seed(), cameras, result.err);
+        CHECK(result.code == 1);
+        CHECK((mentions(result.err, format("the pixels of camera %d stand 2 image(s) too far down", cameras))
+               || (cameras == 2 && mentions(result.err, "the pixels of camera 1 stand 2 image(s) too far up"))));
+        CHECK_FALSE(std::filesystem::exists(f / "calib.yml"));
+    }
+}
+
 TEST_CASE("refract_measure finds the points that refract_bundle wrote", "[tools][bundle]")
 {
     Wand wand(9, 3, 60);

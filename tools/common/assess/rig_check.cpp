@@ -292,8 +292,10 @@ private:
         // Of a large contradiction a small share is much: where one explains it all, what the noise refutes is no other explanation.
         if (result_.explained)
             named_.erase(std::remove_if(named_.begin(), named_.end(), [&](const Candidate& c) { return !isExplained(c); }), named_.end());
-        for (const Candidate& c : named_)
-            result_.changes.push_back(c.named);
+        std::vector<NamedChange>& changes = result_.changes;
+        for (const Candidate& c : named_)           // a board that looks the same turned by half can be numbered in two ways
+            if (std::none_of(changes.begin(), changes.end(), [&](const NamedChange& n) { return n.sentence == c.named.sentence; }))
+                changes.push_back(c.named);
         if (named_.empty())
             return;
         result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));

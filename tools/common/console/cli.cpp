@@ -99,15 +99,18 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     removeLeftoversOnSignals();
     Command command(argc, argv, manual);
+    const auto sayRotated = [&command] {
+        const std::string turned = takeRotationNotice();
+        if (!turned.empty())
+            command.warn(turned);
+    };
     std::string error;
     try
     {
         const int code = body(command);
         if (!std::cout.flush())
             throw Failure("the output could not be written: is the disk full?");
-        const std::string turned = takeRotationNotice();
-        if (!turned.empty())
-            command.warn(turned);
+        sayRotated();
         return code;
     }
     catch (const CLI::Success& e)       // --help, --version
@@ -134,6 +137,7 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
         error = oneLine(e.what());
     }
     std::cerr << command.app.get_name() << ": " << error << std::endl;
+    sayRotated();           // it may be why
     return CANNOT;
 }
 

@@ -42,12 +42,4 @@ std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypoth
     return ranked;
 }
 
-std::string joinedByOr(const std::vector<Hypothesis>& explanations)
-{
-    std::string text;
-    for (const Hypothesis& h : explanations)
-        text += (text.empty() ? "" : "; or ") + h.sentence;
-    return text;
-}
-
 } // namespace tools

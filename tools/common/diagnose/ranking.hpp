@@ -28,9 +28,6 @@ better than nothing wrong (a difference of 10, "very strong evidence" of Kass an
 @param noise px, the least standard deviation that a coordinate of these observations can have; 0: not known */
 std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise);
 
-//! "a; or b; or c"
-std::string joinedByOr(const std::vector<Hypothesis>& explanations);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_RANKING_HPP

@@ -47,7 +47,7 @@ double LengthScale::deviations() const
 }
 
 LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View>& views, const std::vector<Measurement>& results,
-                          double pixelSigma, double targetSigma)
+                          double pixelSigma, double targetSigma, const std::optional<Vec4d>& plane)
 {
     double sum = 0., ofNoise = 0.;
     int count = 0;
@@ -59,7 +59,7 @@ LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View
             continue;
         sum += ratios.sum;
         count += ratios.count;
-        const JointError joint = jointErrorOf(calibration, results[k].points, results[k].pixels, std::nullopt);
+        const JointError joint = jointErrorOf(calibration, results[k].points, results[k].pixels, plane);
         for (size_t i = 0; i < ratios.byPoint.size(); i++)
         {
             if (results[k].status[i] != refract::REFRACT_OK)

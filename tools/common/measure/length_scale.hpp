@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_LENGTH_SCALE_HPP
 
 #include "measure/measurement.hpp"
+#include <optional>
 
 /* Do lengths that were measured agree with those of a target? Their mean ratio is known far better than any of them, by the noise of all
 pixels and the calibration's covariance, in which their errors are common. */
@@ -19,11 +20,11 @@ struct LengthScale
     double deviations() const;
 };
 
-/** Of points that were triangulated.
+/** Of points that were triangulated, or lie on a plane that is exact.
 @param views the target's shape and neighbours. @param results of each view; points that contradict themselves are left out
 @param pixelSigma px, NaN: unknown. @param targetSigma of the target's scale, relative */
 LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View>& views, const std::vector<Measurement>& results,
-                          double pixelSigma, double targetSigma);
+                          double pixelSigma, double targetSigma, const std::optional<cv::Vec4d>& plane = std::nullopt);
 
 } // namespace tools
 
