@@ -24,10 +24,11 @@ enum RigKind { ONE_IN_AIR, STEREO_IN_AIR, STEREO_IN_WATER, SHARED_WINDOW, RIG_KI
 const char* const RIG_NAMES[] = {"one, air", "stereo, air", "stereo, water", "shared window"};
 
 enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, NUDGE, WEDGE, FOCUS, PLACE, TURNED, MIRRORED,
-               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, MISTAKES };
+               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, SHAPE,
+               MISTAKES };
 const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "boards nudged", "wedge", "focus",
                                      "camera moved", "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated",
-                                     "board size", "all turned", "shuffled"};
+                                     "board size", "all turned", "shuffled", "shape"};
 
 const int COLUMNS = 9, ROWS = 6;
 const double BOARD_SQUARE = 25., NOISE = 0.1;
@@ -247,6 +248,7 @@ inline bool applies(Mistake mistake, RigKind kind)
     case MOTION:
     case NUDGE: return !water;         // needs pairs
     case MIRRORED: return true;
+    case SHAPE: return water;           // in air a dome about its camera does nothing
     case PLACE:
     case SWAPPED_CAMERAS:
     case ALL_TURNED:
@@ -289,6 +291,14 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
         place = transformOf(normalize(normalVector(random, 1.))*0.15*CV_PI/180, normalVector(random, 0.3))*place;
         scene.throughWindow = withVector(scene.throughWindow, toVector(scene.throughWindow));
     }
+    if (mistake == SHAPE)
+        for (int k = 0; k <= last; k++)
+        {
+            const Vec3d center(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(0, 6));
+            const GlassWindow dome = GlassWindow::dome(center, random.uniform(45, 60), 5., 1.49, scene.truth.cameras[k]->window().outerIndex);
+            scene.truth.cameras[k]->setWindow(dome);
+            scene.throughWindow.cameras[k]->setWindow(dome);
+        }
     if (mistake == SQUARE)
         scene.truth.targetScale *= 1.04, scene.throughWindow.targetScale *= 1.04;
     takeImages(scene, mistake == UNPAIRED, random);

@@ -35,6 +35,7 @@ std::vector<std::string> namesOf(Mistake mistake)
     case UNPAIRED: return {"--unpaired"};
     case SHUFFLED:
     case UNRELATED: return {"not the same moment"};
+    case SHAPE: return {"--window=dome"};
     case BOARD_SIZE: return {"--size is smaller than the board"};
     default: return {};
     }
@@ -152,17 +153,45 @@ TEST_CASE("A distance that the calibration held stays before the boards while ca
     }
 }
 
+TEST_CASE("A dome given as a pane is named where there are pairs, too", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random random(5900);
+    Scene scene = makeScene(ONE_IN_AIR, random);
+    const GlassWindow dome = GlassWindow::dome(Vec3d(2, -1, 4), 50., 5., 1.49, 1.333);
+    scene.truth.cameras[0]->setWindow(dome);
+    scene.throughWindow.cameras[0]->setWindow(dome);
+    RigOptions& options = scene.calibration.options;
+    options.window = GlassWindow(Vec3d(0, 0, 1), 5., 1.49, BOARD_SQUARE, 1.333);
+    options.std.wedge = 0.;
+    options.flags = GLASS_FREE_DISTANCE;
+    takeImages(scene, false, random);
+    const std::string text = saidOf(scene);
+    CAPTURE(text);
+    CHECK(text.substr(0, text.find("; or ")).find("--window=dome") != std::string::npos);
+}
+
 TEST_CASE("Every mistake is called by its name: the matrix", "[.monte-carlo][mistakes]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
     const char* only = std::getenv("ONLY");         // a mistake, or "mistake, rig"
     std::vector<std::pair<Mistake, RigKind>> cases;
-    for (int m = NONE_AT_ALL + 1; m < MISTAKES; m++)
+    for (int m = NONE_AT_ALL + 1; m < SHAPE; m++)
         for (int k = 0; k < RIG_KINDS; k++)
             if (applies((Mistake)m, (RigKind)k) && (!only || only == std::string(MISTAKE_NAMES[m])
                                                     || only == MISTAKE_NAMES[m] + std::string(", ") + RIG_NAMES[k]))
                 cases.push_back({(Mistake)m, (RigKind)k});
     checkMatrix(cases, scenes::trials(5));
+}
+
+TEST_CASE("Hand-held boards before domes that are given as panes: how often is the shape named", "[.monte-carlo][mistakes]")
+{
+    // Another index of the medium, or a place of each camera, makes up for much of a dome.
+    std::cout << "seed " << scenes::seed() << '\n';
+    const int trials = scenes::trials(12);
+    const Score score = scoreOf(SHAPE, STEREO_IN_WATER, trials);
+    CHECK(score.first >= 0.7*trials);
+    CHECK(score.silent == 0);
 }
 
 TEST_CASE("Of right images and values no cause is named", "[mistakes][slow]")

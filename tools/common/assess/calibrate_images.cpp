@@ -45,6 +45,14 @@ bool isSlowToStart(const CalibrationInput& input)
     return solid && !known;
 }
 
+//! Not of what was given, but of where a fit ended.
+bool isOfBadFit(CalibrationError::Cause cause)
+{
+    return cause == CalibrationError::NOT_CONVERGED || cause == CalibrationError::UNDETERMINED
+        || cause == CalibrationError::PAIRS_CONTRADICT || cause == CalibrationError::PAIRS_SWAPPED
+        || cause == CalibrationError::TOO_FEW_INLIERS;
+}
+
 } // namespace
 
 void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>& step)
@@ -52,38 +60,39 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     const CalibrationInput input{c.data, c.options, c.square, c.notices};
     // A wrong value makes good points look wrong, and the search for these long: so look first.
     PlainFit plain;
-    bool isSound = true, mayFit = true;
+    bool fitsPlainly = true, mayFit = true;
     if (!isSlowToStart(input))
     {
         const MixUps mixUps = findMixUps(input);
         const bool lookedAtImages = requireNoMixUp(input, mixUps);
         plain = fitPlainly(input);
-        isSound = plain.px < largestSoundError(c.data);
-        if (!isSound)
+        fitsPlainly = isSound(input, plain);
+        if (!fitsPlainly)
             requireNoCause(input, mixUps, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {
         return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
     try
     {
-        start(c, robust && !plain.explained, isSound ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS);
+        start(c, robust && !plain.explained, fitsPlainly ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS);
         step();
         // No mistake that is known of explains it. If wrong points do not either, a fit would creep for minutes.
-        mayFit = isSound || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
-        if (mayFit)
-            fit(c, step, plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);
+        mayFit = fitsPlainly || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
+        fit(c, step, !mayFit ? 1 : plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);      // one tells what has no fit at all
     }
     catch (const CalibrationError& e)
     {
-        throw Failure(explained(e, e.reason));
+        if (!mayFit && isOfBadFit(e.cause))
+            refuseUnexplained(input, plain);
+        throw Failure(mayFit ? explained(e, e.reason) : e.err);
     }
     catch (const cv::Exception& e)
     {
-        throw Failure(explained(e.err, e.err));
+        throw Failure(mayFit ? explained(e.err, e.err) : e.err);
     }
     catch (const Failure& e)
     {
-        if (isSlowToStart(input))
+        if (isSlowToStart(input) || !mayFit)
             throw;
         throw Failure(explained(std::string(e.what()), e.what()));
     }

@@ -25,6 +25,7 @@ const double CLEAN = 1.3;               // times what the lens's own images leav
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
 const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
 const double AS_GOOD = 3.;              // as the best of them
+const double MEDIAN = 1.1774;           // length of an error of two coordinates, in their standard deviations
 const size_t MOST_POSSIBLE = 4;         // mix-ups that are fitted without geometry asking for it: a second each
 
 const char* const NOTHING_TRIED = "neither another square, thickness, index or medium, nor images exchanged or wrongly paired "
@@ -102,7 +103,8 @@ const Mistake MISTAKES[] = {
     SCALE,
     {[](const CalibrationInput& input) { return !hasPairs(input.data) && !(input.square > 0); }, wrongUnitOfPoints},
     {[](const CalibrationInput& input) { return hasPairs(input.data) && isRig(input); }, swappedStatesOfOneCamera},
-    {[](const CalibrationInput& input) { return hasPairs(input.data) && input.options.window.index.size() == 1; }, wrongIndex}};
+    {[](const CalibrationInput& input) { return hasPairs(input.data) && input.options.window.index.size() == 1; }, wrongIndex},
+    {[](const CalibrationInput& input) { return !input.options.window.thickness.empty(); }, wrongShape}};
 
 //! What gives each image or each camera a place of its own explains any mistake in what they have in common: if nothing else does.
 const Mistake LAST_MISTAKES[] = {
@@ -152,16 +154,29 @@ std::string fits(const Explanation& e, double clean)
 
 namespace {
 
+/** What explains images by themselves. Images exchanged, turned or of other places hide much of a window of another shape, which none of
+that makes right: then the shape explains far more. */
+std::vector<std::string> told(const CalibrationInput& input, const std::vector<Explanation>& explaining, double clean)
+{
+    double best = NO_FIT;
+    for (const Explanation& e : explaining)
+        best = std::min(best, e.px);
+    const Explanation shape = best > clean && best < NO_FIT ? wrongShape(input) : Explanation{"", NO_FIT};
+    if (AS_GOOD*shape.px < best)
+        return {fits(shape, clean)};
+    std::vector<std::string> sentences;
+    for (const Explanation& e : explaining)
+        sentences.push_back(fits(e, clean));
+    return sentences;
+}
+
 //! Of what makes the images agree, what fits. @param most that are tried
 std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps, size_t most, double clean)
 {
     std::vector<Explanation> tried;
     for (size_t i = 0; i < std::min(most, mixUps.size()); i++)
         tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options)});
-    std::vector<std::string> sentences;
-    for (const Explanation& e : bestBelow(largestSoundError(input.data), tried))
-        sentences.push_back(fits(e, clean));
-    return sentences;
+    return told(input, bestBelow(largestSoundError(input.data), tried), clean);
 }
 
 /** What is wrong with images whatever the window is: each image and each camera is right by itself. Those that give images or cameras
@@ -180,11 +195,11 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
     {
         const Explanation other = imagesOfOtherMoments(input);
         if (other.px < sound)
-            return {fits(other, clean)};
+            return told(input, {other}, clean);
     }
     const Explanation unpaired = isUnpaired ? unpairedImages(input) : Explanation{"", NO_FIT};
     if (unpaired.px < sound)
-        return {fits(unpaired, clean)};
+        return told(input, {unpaired}, clean);
     if (!areUnrelated(input))
         return {};
     std::vector<MixUp> relating;        // they explain as much with less
@@ -195,14 +210,13 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         return sentences;
     const Explanation unrelated = unrelatedViews(input);
     if (unrelated.px < sound)
-        return {fits(unrelated, clean)};
+        return told(input, {unrelated}, clean);
     return {};
 }
 
 //! A contradicted value and others that explain the images about as well, the best first.
 std::vector<std::string> toldBeside(const Contradiction& value, const std::vector<Explanation>& others, double clean)
 {
-    const double MEDIAN = 1.1774;       // length of an error of two coordinates, in their standard deviations
     std::vector<std::string> sentences = {value.sentence};
     for (const Explanation& e : bestBelow(AS_GOOD*MEDIAN*value.sigma, others))
     {
@@ -232,6 +246,8 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
                 others.push_back(e);
         else if (plain.px > sound && SCALE.appliesTo(input))    // another unit is too far for a fit that starts from what was given
             others.push_back(SCALE.undo(input));
+        if (clean > 0. && MEDIAN*plain.explained->sigma > clean)        // it leaves more than noise
+            others.push_back(wrongShape(input));
         return toldBeside(*plain.explained, others, clean);
     }
     const double most = std::min(EXPLAINS*plain.px, sound);
@@ -296,6 +312,14 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
     if (!reasons.empty())
         refuse(input, px, reasons);
     return true;
+}
+
+bool isSound(const CalibrationInput& input, const PlainFit& plain)
+{
+    if (!(plain.px < largestSoundError(input.data)))
+        return false;
+    const double clean = plain.px > MIN_IMPLAUSIBLE_PX ? cleanError(input) : 0.;
+    return !(clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean);
 }
 
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)

@@ -30,6 +30,10 @@ looked at before any that is not short.
 @return whether it has looked for all of them */
 bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps);
 
+/** Whether a fit to all images is near enough for one without wrong points to be looked for: half of the corners are where detectors find
+them, and not far more off than the lens's own images leave them. */
+bool isSound(const CalibrationInput& input, const PlainFit& plain);
+
 //! Throws Failure if a mistake explains why the images fit no better.
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo);
 

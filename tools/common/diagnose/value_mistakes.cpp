@@ -4,6 +4,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/starting_model.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <numeric>
@@ -125,6 +126,39 @@ Explanation wrongMedium(const CalibrationInput& input)
     return {format("--outer-index=%g in place of %s (the medium in which the board was)", window.outerIndex,
                    typedIndex(outer.isNamed() ? outer : GivenIndex{input.options.window.outerIndex}, 6).c_str()),
             medianErrorOfFit(input.data, options)};
+}
+
+Explanation wrongShape(const CalibrationInput& input)
+{
+    const GlassWindow& given = input.options.window;
+    Explanation best{"", NO_FIT};
+    const auto attempt = [&](const GlassWindow& window, int flags, const std::string& sentence) {
+        RigOptions options = input.options;
+        options.window = window;
+        options.flags = (options.flags & ~(GLASS_FREE_DISTANCE | GLASS_FREE_RADIUS | GLASS_FREE_CURVATURE | GLASS_FREE_WEDGE)) | flags;
+        const double px = medianErrorOfFit(input.data, options);
+        if (px < best.px)
+            best = {sentence, px};
+    };
+    GlassWindow other;
+    other.thickness = given.thickness;
+    other.index = given.index;
+    other.innerIndex = given.innerIndex;
+    other.outerIndex = given.outerIndex;
+    if (isRound(given))
+    {
+        const bool tellsDistance = given.outerIndex != given.innerIndex;
+        other.distance = tellsDistance ? startDistance(input.data, input.square) : 0.;
+        attempt(other, tellsDistance ? GLASS_FREE_DISTANCE : 0, "a flat pane: leave --window out");
+    }
+    if (given.shape != WINDOW_DOME)
+    {
+        other.shape = WINDOW_DOME;
+        other.distance = 0.;
+        other.radius = 2.*startDistance(input.data, input.square);          // hardly larger than a board
+        attempt(other, GLASS_FREE_RADIUS, "--window=dome --radius=... (of the drawing)");
+    }
+    return best;
 }
 
 Explanation separateWindows(const CalibrationInput& input)

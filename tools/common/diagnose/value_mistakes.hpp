@@ -23,6 +23,9 @@ Explanation wrongIndex(const CalibrationInput& input);
 //! Water taken for air, or air for water.
 Explanation wrongMedium(const CalibrationInput& input);
 
+//! A dome taken for a pane, or a pane for a dome; the radius is estimated.
+Explanation wrongShape(const CalibrationInput& input);
+
 //! Cameras that were said to share a window have one each.
 Explanation separateWindows(const CalibrationInput& input);
 
