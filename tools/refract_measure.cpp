@@ -527,7 +527,8 @@ int main(int argc, char** argv)
         for (const std::string& text : {outside, contradiction})
             if (!text.empty())
                 command.warn(text);
-        const std::string lengths = options.lengthsMeasured() ? wrongLengths(options, target->square(), calibration, measured, results) : "";
+        const std::string lengths = options.lengthsMeasured()
+            ? wrongLengths(options, target->square(), calibration, measured, results) : "";
         if (!lengths.empty())
             command.warn(lengths);
         const bool isDoubtful = mostContradict(results) || !lengths.empty();

@@ -295,7 +295,8 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
         for (int k = 0; k <= last; k++)
         {
             const Vec3d center(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(0, 6));
-            const GlassWindow dome = GlassWindow::dome(center, random.uniform(45, 60), 5., 1.49, scene.truth.cameras[k]->window().outerIndex);
+            const double radius = random.uniform(45, 60);
+            const GlassWindow dome = GlassWindow::dome(center, radius, 5., 1.49, scene.truth.cameras[k]->window().outerIndex);
             scene.truth.cameras[k]->setWindow(dome);
             scene.throughWindow.cameras[k]->setWindow(dome);
         }

@@ -53,7 +53,8 @@ TEST_CASE("The mean ratio of lengths is as far from 1 as is stated", "[length_sc
         most = std::max(most, scale.deviations());
     }
     const double rms = std::sqrt(squares/trials);
-    std::cout << format("[numbers] mean ratio of lengths, %d rigs: error over stated %.3f RMS, at most %.2f", trials, rms, most) << std::endl;
+    std::cout << format("[numbers] mean ratio of lengths, %d rigs: error over stated %.3f RMS, at most %.2f", trials, rms, most)
+              << std::endl;
     CHECK(rms > 0.88);
     CHECK(rms < 1.12);
     CHECK(most < 5.);

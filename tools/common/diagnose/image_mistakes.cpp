@@ -136,8 +136,9 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input)
             if (pairsFromOneMap(data) > WINDOWS_PX || camerasApart(data, input.options) > MOMENTS_PX)
                 continue;       // another is wrong, or not only this one
             const std::string option = (glass ? "--glass" : "--direct") + cameraSuffix(c);
-            best = better(best, {"each " + option + " image fitted alone, so equal names of " + option + " and of the other options are not "
-                                 "the same moment (another order of files, or the board moved)", medianErrorOfFit(data, input.options)});
+            best = better(best, {"each " + option + " image fitted alone, so equal names of " + option + " and of the other options are "
+                                 "not the same moment (another order of files, or the board moved)",
+                                 medianErrorOfFit(data, input.options)});
         }
     return best;
 }

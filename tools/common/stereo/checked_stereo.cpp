@@ -94,8 +94,8 @@ void StereoChecker::judgeRange(const WideDepths& seen, CheckedStereo& result) co
 {
     if (crop_ || !result.refusal.empty() || seen.outside() <= MOST_OUTSIDE)
         return;
-    result.warnings.push_back(rangeText(rig_.depthRange()) + format(": %.0f %% of what both images show lies outside and is left out; what they "
-                              "show is at depths of ", 100*seen.outside()) + seenRange(seen) + " (--crop: on purpose)");
+    result.warnings.push_back(rangeText(rig_.depthRange()) + format(": %.0f %% of what both images show lies outside and is left out; what "
+                              "they show is at depths of ", 100*seen.outside()) + seenRange(seen) + " (--crop: on purpose)");
 }
 
 void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchSupport& support, CheckedStereo& result) const
