@@ -177,7 +177,7 @@ TEST_CASE("Every mistake is called by its name: the matrix", "[.monte-carlo][mis
     std::cout << "seed " << scenes::seed() << '\n';
     const char* only = std::getenv("ONLY");         // a mistake, or "mistake, rig"
     std::vector<std::pair<Mistake, RigKind>> cases;
-    for (int m = NONE_AT_ALL + 1; m < SHAPE; m++)
+    for (int m = NONE_AT_ALL + 1; m < SHAPE; m++)       // a shape has tests of its own
         for (int k = 0; k < RIG_KINDS; k++)
             if (applies((Mistake)m, (RigKind)k) && (!only || only == std::string(MISTAKE_NAMES[m])
                                                     || only == MISTAKE_NAMES[m] + std::string(", ") + RIG_NAMES[k]))

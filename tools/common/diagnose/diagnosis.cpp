@@ -73,7 +73,7 @@ bool sharesWindows(const CalibrationInput& input)
 }
 
 //! Two cameras see another board, or it moved between their images.
-bool areUnrelated(const CalibrationInput& input) { return camerasApart(input.data, input.options) > MOMENTS_PX; }
+bool areUnrelated(const MixUps& mixUps) { return mixUps.camerasApart > MOMENTS_PX; }
 
 bool isRig(const CalibrationInput& input) { return input.data.cameraCount > 1; }
 
@@ -191,7 +191,7 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         if (!sentence.empty())
             return {sentence};
     const bool isUnpaired = pairsFromOneMap(input.data) > WINDOWS_PX;
-    if (isUnpaired && areUnrelated(input))
+    if (isUnpaired && areUnrelated(mixUps))
     {
         const Explanation other = imagesOfOtherMoments(input);
         if (other.px < sound)
@@ -200,7 +200,7 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
     const Explanation unpaired = isUnpaired ? unpairedImages(input) : Explanation{"", NO_FIT};
     if (unpaired.px < sound)
         return told(input, {unpaired}, clean);
-    if (!areUnrelated(input))
+    if (!areUnrelated(mixUps))
         return {};
     std::vector<MixUp> relating;        // they explain as much with less
     std::copy_if(mixUps.possible.begin(), mixUps.possible.end(), std::back_inserter(relating), [](const MixUp& mixUp) {
@@ -303,7 +303,7 @@ namespace {
 
 bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
 {
-    if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(input))
+    if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(mixUps))
         return false;
     const double px = medianErrorOfFit(input.data, input.options);
     if (px < largestSoundError(input.data))

@@ -246,6 +246,7 @@ MixUps findMixUps(const CalibrationInput& input)
                     std::string("the --glass images of all cameras are ") + WORDS[change] + " to their direct images");
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.left < b.left; });
     MixUps found;
+    found.camerasApart = before.camerasApart();
     for (const Candidate& candidate : candidates)
         (candidate.isClear && candidate.left <= AS_GOOD*least ? found.clear : found.possible).push_back(candidate.mixUp);
     return found;

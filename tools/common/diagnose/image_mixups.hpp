@@ -20,6 +20,7 @@ struct MixUp
 struct MixUps
 {
     std::vector<MixUp> clear;           //!< those that make the images agree best, if any makes them agree clearly better
+    double camerasApart = 0.;           //!< of the images as given, px: see Disagreements; 0 where all kinds agree
     std::vector<MixUp> possible;        //!< others that make them agree no worse, the best first: tilted windows in water hide an exchange
 };
 
