@@ -9,7 +9,8 @@ enum Kind
 {
     ARRAY, ARRAY_OR_NUMBER, ARRAYS, ARRAYS_OF_VIEWS,    // read; None is an empty one
     OUTPUT, OUTPUTS,                                    // an array to write into
-    CAMERA, CAMERAS, WINDOW, NUMBER, NUMBER_OR_NONE, INTEGER, BOOLEAN, PAIR, VECTOR, INTEGERS, TEXT, TEXTS, CRITERIA, NODE, STORAGE,
+    CAMERA, CAMERAS, WINDOW, NUMBER, NUMBER_OR_NONE,
+    INTEGER, INTEGER_64, BOOLEAN, PAIR, VECTOR, INTEGERS, TEXT, TEXTS, CRITERIA, NODE, STORAGE,
     GlassCalibrationFlags, TriangulateFlags, RectifyFlags
 };
 
@@ -53,6 +54,16 @@ static bool isInteger(PyObject* o)
     return (PyLong_Check(o) && !PyBool_Check(o)) || PyArray_IsScalar(o, Integer);
 }
 
+//! An integer that C++'s int holds.
+static bool isInt(PyObject* o)
+{
+    PySafeObject number(isInteger(o) ? PyNumber_Index(o) : NULL);
+    const long value = number ? PyLong_AsLong(number) : 0;
+    const bool holds = number && value == (int)value && !PyErr_Occurred();
+    PyErr_Clear();
+    return holds;
+}
+
 static bool isList(PyObject* o) { return PyList_Check(o) || PyTuple_Check(o); }
 
 static bool isListOfTexts(PyObject* o)
@@ -86,8 +97,9 @@ static const char* mismatch(PyObject* o, const Argument& argument)
     case WINDOW: return o == Py_None || isOf(o, pyopencv_refract_GlassWindow_TypePtr) ? NULL : "a GlassWindow";
     case NUMBER: return isNumber(o) ? NULL : "a number";
     case NUMBER_OR_NONE: return o == Py_None || isNumber(o) ? NULL : "a number";
-    case INTEGER: return isInteger(o) ? NULL : "an integer";
-    case BOOLEAN: return isTruth(o) || isInteger(o) ? NULL : "True or False";
+    case INTEGER: return isInt(o) ? NULL : isInteger(o) ? "an integer of 32 bits" : "an integer";
+    case INTEGER_64: return isInteger(o) ? NULL : "an integer";
+    case BOOLEAN: return isTruth(o) || isInt(o) ? NULL : "True or False";
     case PAIR: return PyArray_Check(o) || isList(o) ? NULL : "two integers";
     case VECTOR: return PyArray_Check(o) || isList(o) ? NULL : "a tuple, a list or an array of numbers";
     case INTEGERS: return PyArray_Check(o) || isList(o) ? NULL : "a list of integers";

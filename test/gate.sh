@@ -24,6 +24,7 @@ rm -f build/*.code
   # OpenCV itself is not compiled here: that takes the whole script, without --short. OpenCV 4 with Ceres, 5 without.
   beside opencv4 test/opencv_in_tree.sh 4.14.0.94 --short
   beside opencv5 test/opencv_in_tree.sh 5.0.0.93 --short
+  beside bindings test/bindings.sh
 } &
 lane=$!
 
@@ -67,4 +68,5 @@ run "fuzzing: every parser and every public call, some seconds each" test/fuzz/r
 run "Python package, its tests and samples" result_of python
 run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
 run "in OpenCV 5.0's tree, without Ceres: the same" result_of opencv5
+run "Python bindings for the headers of OpenCV 4.6, 4.14 and 5.0" result_of bindings
 run "the same hundred values from every build" test/agreement/run.sh build/release

@@ -17,31 +17,15 @@ version=${1:-}
 short=no
 [ "${2:-}" = --short ] && short=yes
 case $version in
-  4.14.0.94) hash=6cd98a20010c80bf9e6a9cff6189dd2c10bd111fb0aa4d5c6361389514a0ff6c ;;
-  5.0.0.93) hash=6a8c34de905f59b038f6ab0475e73fb0a0f345c3582ec3aeaeb1c0912e80cddb ;;
+  4.14.0.94 | 5.0.0.93) ;;
   *) echo "usage: $0 4.14.0.94|5.0.0.93 [--short]" >&2; exit 1 ;;
 esac
 
 tools/install_dependencies.sh in-tree
 . tools/compiler_cache.sh
-package=opencv-contrib-python-headless
-python=/usr/bin/python3                 # the one that Debian's NumPy belongs to
-work=$PWD/build/opencv-$version
-source=$work/source/opencv
+. test/opencv_source.sh
+opencv_source "$version"
 build=$work/build
-mkdir -p "$work"
-
-if [ ! -e "$work/source.complete" ]; then
-  echo "Getting the source of OpenCV $version"
-  echo "$package==$version --hash=sha256:$hash" >"$work/requirements.txt"
-  "$python" -m pip download --quiet --no-deps --no-binary $package --require-hashes -r "$work/requirements.txt" -d "$work" ||
-    { echo "skipped: pip cannot get the source of OpenCV $version"; exit 77; }
-  rm -rf "$work/source"
-  mkdir "$work/source"
-  tar -xzf "$work"/opencv_contrib_python_headless-*.tar.gz -C "$work/source" --strip-components=1
-  rm "$work"/opencv_contrib_python_headless-*.tar.gz
-  touch "$work/source.complete"
-fi
 
 configure() {   # configure DIRECTORY OPTIONS...: the smallest OpenCV that holds refract, its tests and Python
   directory=$1; shift

@@ -111,9 +111,22 @@ def load_generator(directory):
     import gen2
     import hdr_parser
 
+    class Declaration(list):
+        place = ""          # file:line
+
+    class Variant(gen2.FuncVariant):
+        def __init__(self, namespace, classname, name, decl, *args):
+            super().__init__(namespace, classname, name, decl, *args)
+            self.place = decl.place
+
     class MatOnlyParser(hdr_parser.CppHeaderParser):        # no overloads for UMat and GpuMat
         def __init__(self, preprocessor_definitions=None, **_):
             super().__init__(preprocessor_definitions=preprocessor_definitions)
+
+        def parse_func_decl(self, *args, **keywords):
+            decl = Declaration(super().parse_func_decl(*args, **keywords) or [])
+            decl.place = f"{self.hname}:{self.lineno}"
+            return decl
 
     class Generator(gen2.PythonWrapperGenerator):
         def clear(self):
@@ -121,6 +134,7 @@ def load_generator(directory):
             self.typing_stubs_generator.generate = lambda output: None      # stubs.py writes them
 
     hdr_parser.CppHeaderParser = MatOnlyParser
+    gen2.FuncVariant = Variant
     gen2.FuncInfo = call_forms(gen2)
     return Generator()
 
@@ -149,4 +163,7 @@ def main(generator, output, persistence, header, *custom_headers):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    try:
+        main(*sys.argv[1:])
+    except signatures.Unknown as what:
+        sys.exit(str(what))

@@ -21,11 +21,12 @@ EMPTY = {"imagePoints|dst|distorted|lines": (2, "CV_64F"), "points3D|origins|dir
          "distances|depths|rvec|tvec|T|reprojectionError": (1, "CV_64F")}
 REQUIRED_BUT_NONE = "depth"     # and arrays and windows: None is an empty array, and no window
 
+# Kinds of calls.hpp. Types that are not here have that of what OpenCV takes for them in Python.
 KINDS = {"Mat": "ARRAY", "vector_Mat": "ARRAYS", "vector_vector_Mat": "ARRAYS_OF_VIEWS", "GlassWindow": "WINDOW",
-         "Ptr<RefractiveCamera>": "CAMERA", "vector_Ptr_RefractiveCamera": "CAMERAS", "double": "NUMBER", "float": "NUMBER",
-         "int": "INTEGER", "bool": "BOOLEAN", "Size": "PAIR", "Vec2d": "VECTOR", "Vec3d": "VECTOR", "Vec4d": "VECTOR",
-         "vector_int": "INTEGERS", "String": "TEXT", "TermCriteria": "CRITERIA", "vector_String": "TEXTS", "c_string": "TEXT",
-         "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
+         "Ptr<RefractiveCamera>": "CAMERA", "vector_Ptr_RefractiveCamera": "CAMERAS", "int": "INTEGER", "Size": "PAIR",
+         "TermCriteria": "CRITERIA", "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
+KINDS_OF_PYTHON = {"int": "INTEGER_64", "float": "NUMBER", "bool": "BOOLEAN", "str": "TEXT", "Sequence[int]": "INTEGERS",
+                   "Sequence[float]": "VECTOR", "Sequence[str]": "TEXTS"}
 DEFAULTS = {"noArray()": "None", "GlassWindow()": "None", "String()": "''", "Size()": "(0, 0)", "true": "True", "false": "False",
             "std::vector<int>()": "()", "std::vector<Mat>()": "()", "std::vector<std::vector<Mat> >()": "()",
             "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None",
@@ -59,8 +60,21 @@ def enumeration_of(function):
     return next((enumeration for pattern, enumeration in FLAGS if re.fullmatch(pattern, function)), None)
 
 
+class Unknown(Exception):
+    """What the tables here lack: a type, or a default."""
+
+
+def python_type(cpp):
+    """What OpenCV takes a C++ type for, as its own stubs say: int, Sequence[float]; a name of C++ if they do not."""
+    from typing_stubs_generation.types_conversion import create_type_node       # its path is known once gen2 has been loaded
+    node = create_type_node(cpp)
+    return getattr(node, "value", node).typename.replace("_typing.", "")        # a Vec2d by what it is
+
+
 def kind_of(function, argument):
-    kind = KINDS[argument.tp]
+    kind = KINDS.get(argument.tp) or KINDS_OF_PYTHON.get(python_type(argument.tp))
+    if not kind:
+        raise Unknown(f"the type {argument.tp}, which neither KINDS of signatures.py nor OpenCV's generator knows")
     if argument.outputarg and kind in ("ARRAY", "ARRAYS"):
         if is_in_out(function, argument):
             return kind
@@ -82,7 +96,10 @@ def default_of(value):
     if value in DEFAULTS:
         return DEFAULTS[value]
     number = value.rstrip("f") if re.fullmatch(r"-?[\d.]+f", value) else value
-    float(number)       # or this table lacks something
+    try:
+        float(number)
+    except ValueError:
+        raise Unknown(f"the default {value}, which DEFAULTS of signatures.py lacks") from None
     return number + "0" if number.endswith(".") else number
 
 
@@ -92,9 +109,12 @@ def arguments_of(function, variant):
     for position, (_, number) in enumerate(variant.py_arglist):
         argument = variant.args[number]
         default = ""
-        if variant.is_arg_optional(position):
-            default = default_of(argument.defval) if argument.inputarg and argument.defval else "None"
-        found.append(Argument(argument.export_name, kind_of(function, argument), argument.tp, default))
+        try:
+            if variant.is_arg_optional(position):
+                default = default_of(argument.defval) if argument.inputarg and argument.defval else "None"
+            found.append(Argument(argument.export_name, kind_of(function, argument), argument.tp, default))
+        except Unknown as what:
+            raise Unknown(f"{variant.place}: {function}: {argument.name} has {what}") from None
     return found
 
 

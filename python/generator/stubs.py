@@ -10,16 +10,14 @@ import signatures
 BASES = {"GlassCalibrationFlags": "StrictFlags", "TriangulateFlags": "IntFlag", "RectifyFlags": "IntFlag"}      # others: IntEnum
 TYPES = {"ARRAY_OR_NUMBER": "Numbers | Number", "ARRAYS": "Arrays", "ARRAYS_OF_VIEWS": "Views", "OUTPUT": "Array",
          "OUTPUTS": "Sequence[Array]", "CAMERA": "RefractiveCamera", "CAMERAS": "Sequence[RefractiveCamera]",
-         "WINDOW": "GlassWindow | None", "NUMBER": "Number", "NUMBER_OR_NONE": "Number | None", "INTEGER": "int", "BOOLEAN": "bool",
-         "PAIR": "Integers", "VECTOR": "Numbers", "INTEGERS": "Integers", "TEXT": "str", "TEXTS": "Sequence[str]",
+         "WINDOW": "GlassWindow | None", "NUMBER": "Number", "NUMBER_OR_NONE": "Number | None", "INTEGER": "int",
+         "INTEGER_64": "int", "BOOLEAN": "bool", "PAIR": "Integers", "VECTOR": "Numbers", "INTEGERS": "Integers", "TEXT": "str", "TEXTS": "Sequence[str]",
          "CRITERIA": "Sequence[float]", "NODE": "FileNode", "STORAGE": "FileStorage",
          "GlassCalibrationFlags": "GlassCalibrationFlags | Literal[0]", "TriangulateFlags": "int", "RectifyFlags": "int"}
-RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "double": "float", "float": "float", "int": "int", "bool": "bool",
-           "GlassWindow": "GlassWindow", "Ptr<RefractiveCamera>": "RefractiveCamera", "vector_Ptr_RefractiveCamera":
-           "tuple[RefractiveCamera, ...]", "Vec2d": "tuple[float, float]", "Rect*": "tuple[int, int, int, int]", "Rect":
-           "tuple[int, int, int, int]", "Size": "tuple[int, int]", "vector_int": "tuple[int, ...] | Array", "String": "str",
-           "vector_String": "tuple[str, ...]", "std::vector<String>": "tuple[str, ...]", "std::string": "str",
-           "FileNode": "FileNode", "size_t": "int"}
+RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "GlassWindow": "GlassWindow", "Ptr<RefractiveCamera>":
+           "RefractiveCamera", "vector_Ptr_RefractiveCamera": "tuple[RefractiveCamera, ...]", "Vec2d": "tuple[float, float]",
+           "Rect*": "tuple[int, int, int, int]", "Rect": "tuple[int, int, int, int]", "Size": "tuple[int, int]",
+           "vector_int": "tuple[int, ...] | Array", "FileNode": "FileNode"}     # others: what OpenCV takes them for
 FIELDS = {"normal": ("tuple[float, float, float]", "Numbers"), "thickness": ("tuple[float, ...]", "Numbers"), "index":
           ("tuple[float, ...]", "Numbers"), "wedge": ("tuple[tuple[float, float], ...]", "Array | Sequence[Numbers]"),
           "materials": ("tuple[str, ...]", "Sequence[str]"), "center": ("tuple[float, float, float]", "Numbers"),
@@ -104,8 +102,18 @@ def type_of(argument):
     return text
 
 
+def result_type(variant, cpp):
+    if cpp in RESULTS:
+        return RESULTS[cpp]
+    text = signatures.python_type(cpp)
+    if text not in signatures.KINDS_OF_PYTHON:
+        raise signatures.Unknown(f"{variant.place}: {variant.name} returns the type {cpp}, which neither RESULTS of stubs.py nor "
+                                 "OpenCV's generator knows")
+    return re.sub(r"Sequence\[(\w+)\]", r"tuple[\1, ...]", text)
+
+
 def result_of(variant):
-    results = [RESULTS[cpp] for _, cpp in signatures.results_of(variant)]
+    results = [result_type(variant, cpp) for _, cpp in signatures.results_of(variant)]
     return "None" if not results else results[0] if len(results) == 1 else f"tuple[{', '.join(results)}]"
 
 
@@ -114,13 +122,13 @@ def returns(name, variant):
 
 
 def functions(name, function, texts, indent=""):
-    """One def, or an overload for each form; two that differ only in whether depth is a number or an array are one."""
+    """One def, or an overload for each form. Forms that look the same are one; so are two of which depth is a number or an array."""
     forms = {}
     texts = texts + [""]*len(function.variants)
     for variant, text in zip(function.variants, texts):
         arguments = signatures.arguments_of(name, variant)
         names = tuple(argument.name for argument in arguments)
-        key = names if "depth" in names else (names, tuple(argument.kind for argument in arguments))
+        key = names if "depth" in names else (names, tuple(type_of(argument) for argument in arguments))
         parts = [f"{argument.name}: {type_of(argument)}" + (f" = {argument.default}" if argument.default else "")
                  for argument in arguments]
         result = returns(name, variant) if len(signatures.results_of(variant)) == 1 else \

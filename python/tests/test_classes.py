@@ -225,6 +225,15 @@ def test_a_camera_in_a_file_of_ones_own():
         refract.RefractiveCamera.read(storage.getNode("right"))
 
 
+@pytest.mark.parametrize("value", [7, -7, 2**31 - 1, 2**31, -2**40, 0.5])
+def test_numbers_in_a_file_of_ones_own(value):
+    """What does not fit into an int is an integer of 64 bits where OpenCV has these (4.14), else a real number."""
+    storage = refract.FileStorage(".json", refract.FILE_STORAGE_WRITE | refract.FILE_STORAGE_MEMORY)
+    storage.write("number", value)
+    storage = refract.FileStorage(storage.releaseAndGetString(), refract.FILE_STORAGE_READ | refract.FILE_STORAGE_MEMORY)
+    assert storage.getNode("number").real() == value
+
+
 def test_a_saved_camera_is_read_back(tmp_path):
     window = refract.GlassWindow((0.1, 0.05, 1), 20, 1.5437, 50)
     camera = refract.RefractiveCamera.create(K, np.array([-0.1, 0.01, 0, 0]), window)
