@@ -10,7 +10,7 @@ if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")
 endif()
 
 # refract_precompile(TARGET HEADERS...): these, once for all sources of a target. The sources include what they use all the same:
-# test/run.sh --release compiles them without (CMAKE_DISABLE_PRECOMPILE_HEADERS=ON). Headers of the system only: with a header of
+# test/run.sh --slice plain compiles them without (CMAKE_DISABLE_PRECOMPILE_HEADERS=ON). Headers of the system only: with a header of
 # this tree, whose path differs in each clone, a compiler cache would find nothing of another clone.
 function(refract_precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})

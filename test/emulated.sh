@@ -7,20 +7,25 @@
 # vectors of that processor compute against what this machine does. Then everything: the tests, the samples, and the tools on the
 # bundled images. Kept in build/ARCH: the first run takes most of an hour on two cores, the next ones some ten minutes.
 #
-# Usage: test/emulated.sh aarch64|powerpc64le|riscv64 [--short]     --short compiles and runs the kernels only: half a minute
+# Usage: test/emulated.sh aarch64|powerpc64le|riscv64 [--short | --module | --tools]
+#   --short compiles and runs the kernels only: half a minute; --module of the rest the library, its tests and the samples;
+#   --tools the tools, their tests and the images
 #   aarch64: 64-bit ARM, NEON; powerpc64le: POWER8, VSX; riscv64: RISC-V, vectors of 128 bits, the kernels only, as Debian 12 has no
 #   libraries for it
 set -eu
 cd "$(dirname "$0")/.."
 arch=${1:-}
-short=no
-[ "${2:-}" = --short ] && short=yes
+part=${2:-all}
 # How roots of two lanes and of one look there.
 case $arch in
   aarch64) debian=arm64 qemu=qemu-aarch64 two='fsqrt[[:space:]]*v[0-9]*\.2d' one='fsqrt[[:space:]]*d' ;;
   powerpc64le) debian=ppc64el qemu=qemu-ppc64le two=xvsqrtdp one='xssqrtdp\|fsqrt[[:space:]]' ;;
-  riscv64) debian="" qemu="qemu-riscv64 -cpu rv64,v=true,vext_spec=v1.0,vlen=128" two='vfsqrt\.v' one='fsqrt\.d' short=yes ;;
-  *) echo "usage: $0 aarch64|powerpc64le|riscv64 [--short]" >&2; exit 1 ;;
+  riscv64) debian="" qemu="qemu-riscv64 -cpu rv64,v=true,vext_spec=v1.0,vlen=128" two='vfsqrt\.v' one='fsqrt\.d' part=--short ;;
+  *) part=unknown ;;
+esac
+case $part in
+  all | --short | --module | --tools) ;;
+  *) echo "usage: $0 aarch64|powerpc64le|riscv64 [--short | --module | --tools]" >&2; exit 1 ;;
 esac
 
 tools/install_dependencies.sh "$arch"
@@ -75,7 +80,7 @@ if [ "$roots" = 0 ] || [ "$single" != 0 ]; then
   exit 1
 fi
 echo "passed: the kernels on $arch"
-[ $short = no ] || exit 0
+[ $part != --short ] || exit 0
 
 if [ ! -e "$root.complete" ]; then
   echo "Unpacking the libraries of the other architecture"
@@ -83,9 +88,16 @@ if [ ! -e "$root.complete" ]; then
   touch "$root.complete"
 fi
 
+of_module="refract_tests opencv_test_refract samples/all" of_tools="refract_program_tests refract_tools_tests tools/all"
+case $part in
+  --module) targets=$of_module ;;
+  --tools) targets=$of_tools ;;
+  all) targets="$of_module $of_tools" ;;
+esac
 # shellcheck disable=SC2086  # lists of options
 logged "$work/build.log" cmake -S . -B "$work/build" -G Ninja $toolchain -DREFRACT_ROOT="$root" -DREFRACT_WERROR=ON
-cmake --build "$work/build"
+# shellcheck disable=SC2086  # names without blanks
+cmake --build "$work/build" --target $targets
 
 # Whoever runs a tool, the tests too, gets a script that starts the emulator, whatever his PATH.
 bin=$work/build/bin
@@ -95,31 +107,35 @@ for program in "$bin"/*."$arch"; do
   chmod +x "${program%."$arch"}"
 done
 
-failed=0
+failed=0; counted=""
 run() {         # run NAME COMMAND...: its output, kept for the counts
   name=$1; shift
   echo "$name:"
   { "$@" 2>&1 || echo "FAILED: $name"; } | tee "$work/$name.txt"
   ! grep -q "^FAILED: $name" "$work/$name.txt" || failed=$((failed + 1))
+  counted="$counted $name"
 }
-# As with the sanitizers: what is slow by design is left out; and the tests that make thousands of threads, as the emulator
-# (qemu-user 7.2) keeps the memory of each that has ended.
-run refract_tests "$bin/refract_tests" '~[slow]~[.]~[threads]'
-run refract_program_tests "$bin/refract_program_tests" '~[slow]~[.]'
-run refract_tools_tests "$bin/refract_tools_tests" '~[.]'
-run opencv_test_refract "$bin/opencv_test_refract" --gtest_brief=1
-for sample in "$bin"/sample_*."$arch"; do
-  run "$(basename "$sample" ".$arch")" "${sample%."$arch"}"
-done
-rm -rf "$work/main_job"
-mkdir "$work/main_job"
-cp -r samples/data/stereo "$work/main_job/data"
-run main_job env -C "$work/main_job" PATH="$bin:$PATH" "$PWD/test/main_job.sh"
+if [ $part != --tools ]; then
+  run refract_tests "$bin/refract_tests" '~[slow]~[.]'      # as with the sanitizers: what is slow by design is left out
+  run opencv_test_refract "$bin/opencv_test_refract" --gtest_brief=1
+  for sample in "$bin"/sample_*."$arch"; do
+    run "$(basename "$sample" ".$arch")" "${sample%."$arch"}"
+  done
+fi
+if [ $part != --module ]; then
+  run refract_program_tests "$bin/refract_program_tests" '~[slow]~[.]'
+  run refract_tools_tests "$bin/refract_tools_tests" '~[.]'
+  rm -rf "$work/main_job"
+  mkdir "$work/main_job"
+  cp -r samples/data/stereo "$work/main_job/data"
+  run main_job env -C "$work/main_job" PATH="$bin:$PATH" "$PWD/test/main_job.sh"
+fi
 
 echo
 tail -n 2 "$work/kernels.txt"
-for name in refract_tests refract_program_tests refract_tools_tests opencv_test_refract; do
-  echo "$name: $(grep -E '^(All tests passed|test cases:|\[  PASSED|\[  FAILED)' "$work/$name.txt")"
+for name in $counted; do
+  counts=$(grep -E '^(All tests passed|test cases:|\[  PASSED|\[  FAILED)' "$work/$name.txt") || continue
+  echo "$name: $counts"
 done
 echo "$failed programs failed on $arch"
 [ $failed = 0 ]

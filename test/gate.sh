@@ -1,9 +1,9 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-# shellcheck shell=sh
+# shellcheck shell=sh disable=SC2034,SC2154  # variables of test/run.sh
 
-# What `test/run.sh --all` does: sourced by it.
+# What `test/run.sh --all` and `--release` do: sourced by it.
 
 # Beside the suites, one after the other: what waits for networks and configures for most of its time.
 beside() {  # beside NAME COMMAND...
@@ -25,6 +25,7 @@ rm -f build/*.code
   beside opencv4 test/opencv_in_tree.sh 4.14.0.94 --short
   beside opencv5 test/opencv_in_tree.sh 5.0.0.93 --short
   beside bindings test/bindings.sh
+  beside cache test/compiler_cache.sh
 } &
 lane=$!
 
@@ -52,15 +53,9 @@ done
 
 # One build for the module's suite and the fuzzers, which want clang.
 targets="refract_tests fuzzers"     # of build()
-build build/sanitize -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Debug \
-  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
-  -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
-# shellcheck disable=SC2034  # read by build()
+sanitize_build
 targets=""
-# Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
-# One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
-export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
-# What reads files is under them in the fuzzers; the tools' fits take ten times as long so: with --release.
+# What reads files is under them in the fuzzers; the tools' fits take ten times as long so: a slice.
 suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|real'
 unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
 run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh
@@ -69,4 +64,10 @@ run "Python package, its tests and samples" result_of python
 run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
 run "in OpenCV 5.0's tree, without Ceres: the same" result_of opencv5
 run "Python bindings for the headers of OpenCV 4.6, 4.14 and 5.0" result_of bindings
+run "what one clone has compiled another one finds in the compiler's cache" result_of cache
+turn=$(slice_of_the_turn)
+[ "$scope" = --all ] || turn=$(names_of_slices)
+for slice in $turn; do
+  run "the slice $slice" slice_in_time "$slice"
+done
 run "the same hundred values from every build" test/agreement/run.sh build/release

@@ -1,7 +1,7 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-# shellcheck shell=sh
+# shellcheck shell=sh disable=SC2034  # variables of the script that sources it
 
 # The source of OpenCV: sourced by test/opencv_in_tree.sh and test/bindings.sh, at the top of the tree.
 #

@@ -4,21 +4,28 @@
 
 # Installs what is missing, builds with warnings as errors, runs tests, and ends with a line that counts them.
 #
-# Usage: test/run.sh [--all | --release]
+# Usage: test/run.sh [--all | --release | --slices | --slice NAME [--record]]
 #   without an option: the library, its tests and those of the tools that do not take a minute each. Ten minutes on two cores.
-#   --all      all of them, and what else a change may break: instruction sets, sanitizers, fuzzers, Python, OpenCV's own tree,
-#              packages, samples, the commands of the documentation
-#   --release  also what is rare or slow: the wheel, bare machines, other processors, every build, long fuzzing, Monte Carlo, the
-#              site. Hours.
+#   --all      the gate: all of them, what else a change may break (instruction sets, sanitizers, fuzzers, Python, OpenCV's own
+#              tree, packages, samples, the commands of the documentation), and one slice of what is rare or slow, by turns
+#   --release  the gate and all of the slices: hours
+#   --slices   lists the slices (test/slices.sh): at which commit each was last green, and since when its inputs have changed
+#   --slice NAME    runs one of them; --record writes into test/slices.txt that it was green
 # A single test, once built: ctest --test-dir build/release -R 'part of its name'; by topic: -L pnp, see --print-labels.
 set -eu
 cd "$(dirname "$0")/.."
+usage() { sed -n 's/^# \(Usage: \)/\1/p' "$0" >&2; exit 1; }
+. test/slices.sh
 scope=${1:-quick}
 case $scope in
   quick) kinds="test" ;;
-  --all) kinds="test lint in-tree fuzz" ;;
-  --release) kinds="test lint in-tree fuzz aarch64 powerpc64le riscv64 windows wheel bare site" ;;
-  *) echo "usage: $0 [--all | --release]" >&2; exit 1 ;;
+  --all | --release) kinds="test lint in-tree fuzz" ;;
+  --slices) list_slices; exit 0 ;;
+  --slice) [ -n "$(of_slice "${2:-}" 1)" ] || usage
+           [ "${3:---record}" = --record ] || usage
+           slice_in_time "$2" "${3:-}"; exit ;;
+  --untimed) kinds=$(of_slice "$2" 3 | tr , ' ') ;;         # what --slice starts
+  *) usage ;;
 esac
 begun=$(date +%s)
 after() { echo "$(($(date +%s) - begun)) s"; }      # since the beginning: what takes long shows
@@ -27,14 +34,17 @@ for kind in $kinds; do      # all at once, as what runs side by side must not wa
 done
 . tools/compiler_cache.sh
 mkdir -p build
+installing=$(($(date +%s) - begun)); compiling=0
 echo "installed after $(after)"
 
 passed=0; failed=0; skipped=0; failures=""; failing_logs=""
 build() {   # build DIRECTORY OPTIONS...; only the targets in $targets, if there are any
   directory=$1; shift
+  since=$(date +%s)
   cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
   # shellcheck disable=SC2086  # names without blanks
   cmake --build "$directory" --target ${targets:-all}
+  compiling=$((compiling + $(date +%s) - since))
   echo "built after $(after): $directory"
 }
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
@@ -79,18 +89,19 @@ finish() {  # what failed once more at the end, where one looks first
     tail -20 "$log"
   done
   [ -z "$failures" ] || echo "FAILED: ${failures#; }"
-  echo "It took $(after)."
+  total=$(($(date +%s) - begun))
+  echo "It took $total s: installing $installing, compiling $compiling, testing $((total - installing - compiling))."
   echo "$passed passed, $failed failed, $skipped skipped"
-  [ $failed = 0 ]
-  exit
+  [ $failed = 0 ] || exit 1
+  [ $passed != 0 ] || exit 77
+  exit 0
 }
 
-if [ $scope = quick ]; then
-  build build/release -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
-  suite "tests" build/release -LE slow
-  finish
-fi
-
-. test/gate.sh
-[ $scope = --all ] || . test/release.sh
+case $scope in
+  quick) build build/release -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
+         suite "tests" build/release -LE slow ;;
+  --untimed) "slice_$(echo "$2" | tr - _)" ;;
+  *) . test/gate.sh
+     list_slices ;;
+esac
 finish

@@ -11,7 +11,8 @@ BASES = {"GlassCalibrationFlags": "StrictFlags", "TriangulateFlags": "IntFlag", 
 TYPES = {"ARRAY_OR_NUMBER": "Numbers | Number", "ARRAYS": "Arrays", "ARRAYS_OF_VIEWS": "Views", "OUTPUT": "Array",
          "OUTPUTS": "Sequence[Array]", "CAMERA": "RefractiveCamera", "CAMERAS": "Sequence[RefractiveCamera]",
          "WINDOW": "GlassWindow | None", "NUMBER": "Number", "NUMBER_OR_NONE": "Number | None", "INTEGER": "int",
-         "INTEGER_64": "int", "BOOLEAN": "bool", "PAIR": "Integers", "VECTOR": "Numbers", "INTEGERS": "Integers", "TEXT": "str", "TEXTS": "Sequence[str]",
+         "INTEGER_64": "int", "BOOLEAN": "bool", "PAIR": "Integers", "VECTOR": "Numbers", "INTEGERS": "Integers", "TEXT": "str",
+         "TEXTS": "Sequence[str]",
          "CRITERIA": "Sequence[float]", "NODE": "FileNode", "STORAGE": "FileStorage",
          "GlassCalibrationFlags": "GlassCalibrationFlags | Literal[0]", "TriangulateFlags": "int", "RectifyFlags": "int"}
 RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "GlassWindow": "GlassWindow", "Ptr<RefractiveCamera>":
