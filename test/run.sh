@@ -38,6 +38,7 @@ installing=$(($(date +%s) - begun)); compiling=0
 echo "installed after $(after)"
 
 passed=0; failed=0; skipped=0; failures=""; failing_logs=""
+logs=build/step${2:+-$2-}       # a slice beside the gate that has started it
 build() {   # build DIRECTORY OPTIONS...; only the targets in $targets, if there are any
   directory=$1; shift
   since=$(date +%s)
@@ -50,7 +51,7 @@ build() {   # build DIRECTORY OPTIONS...; only the targets in $targets, if there
 run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
   name=$1; shift
   code=0
-  step=build/step$((passed + failed + skipped)).log
+  step=$logs$((passed + failed + skipped)).log
   "$@" >"$step" 2>&1 || code=$?
   cat "$step"
   case $code in
