@@ -78,8 +78,7 @@ Points throughWindow(const Kernels& kernels, const Points& points)
 {
     const Medium media[] = { medium(50, 1, false), medium(0, 1.333, true), medium(20, 1.5437, false) };
     const double heights[] = { 50, 20 }, indices[] = { 1, 1.5437 };
-    const Stack stack = { { 0.28, 0.2688, 0.9216 }, true, 70, 1, 1.333, 1, media, 3, heights, indices, 2,
-                          { 1, 0, 3, 3, 4, 5, 6, 7, 8 } };
+    const Stack stack = { { 0.28, 0.2688, 0.9216 }, true, 70, 1, 1.333, 1, media, 3, heights, indices, 2, {} };     // no derivatives
     Points inner, outer;
     Array tau;
     print("solveIn", kernels.layer.solveIn(stack, N, points.x.data(), points.y.data(), points.z.data(), nullptr,
