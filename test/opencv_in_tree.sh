@@ -3,22 +3,23 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Builds modules/refract unchanged inside OpenCV's own tree and tests it there: warnings as errors in the module, its ts
-# tests, one pass of its performance tests, its sample, its Python test, its documentation; the same tests where Ceres and
-# Eigen are missing. Everything is kept in build/opencv-VERSION: the first run
+# tests, one pass of its performance tests, its sample, its Python test, its documentation; its tests where Ceres and
+# Eigen are missing, too. Everything is kept in build/opencv-VERSION: the first run
 # compiles OpenCV (some 15 minutes on two cores), the next ones only what has changed.
 #
-# Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93 [--short]
+# Usage: test/opencv_in_tree.sh 4.14.0.94|5.0.0.93 [--short | --with-ceres | --without-ceres]
 #   the version is one of the package opencv-contrib-python-headless, whose source holds OpenCV's
 #   --short reads the module, its tests and its sample in the tree (OpenCV 4 with Ceres, 5 without), and generates its Python
 #           bindings, but neither compiles OpenCV nor runs anything
+#   --with-ceres, --without-ceres: of the rest what is tested with Ceres and Eigen, or without
 set -eu
 cd "$(dirname "$0")/.."
 version=${1:-}
-short=no
-[ "${2:-}" = --short ] && short=yes
-case $version in
-  4.14.0.94 | 5.0.0.93) ;;
-  *) echo "usage: $0 4.14.0.94|5.0.0.93 [--short]" >&2; exit 1 ;;
+part=${2:-all}
+case "$version $part" in
+  4.14.0.94\ all | 5.0.0.93\ all | 4.14.0.94\ --short | 5.0.0.93\ --short) ;;
+  4.14.0.94\ --with*-ceres | 5.0.0.93\ --with*-ceres) ;;
+  *) echo "usage: $0 4.14.0.94|5.0.0.93 [--short | --with-ceres | --without-ceres]" >&2; exit 1 ;;
 esac
 
 tools/install_dependencies.sh in-tree
@@ -73,7 +74,7 @@ universal() {   # OpenCV's universal intrinsics, of every level, as compilers wi
   echo "passed: kernels on OpenCV $version's universal intrinsics"
 }
 
-if [ $short = yes ]; then   # of the four combinations the diagonal: OpenCV 4 with Ceres, 5 without
+if [ $part = --short ]; then   # of the four combinations the diagonal: OpenCV 4 with Ceres, 5 without
   case $version in
     4.*) configure "$build" -DREFRACT_WITH_CERES=AUTO
          commands "$build" >"$work/commands.txt" ;;
@@ -89,36 +90,37 @@ if [ $short = yes ]; then   # of the four combinations the diagonal: OpenCV 4 wi
   exit 0
 fi
 
-# Where one of the two is missing the module is built all the same: in OpenCV 4 as C++14, as it is Ceres that asks for C++17.
-for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
-  configure "$work/without" $missing
-  without_ceres "$work/without" "$work/commands_without.txt"
-  echo "passed: left the calibrators out with $missing"
-done
-compile "$work/without" "$work/commands_without.txt"
-rm -rf "$work/without"
-echo "passed: compiled so"
+tests() {       # the module's own, in C++ and Python
+  "$build/bin/opencv_test_refract"
+  PYTHONPATH=$build/python_loader:$source/modules/python/test \
+    "$python" -B modules/refract/misc/python/test/test_refract.py
+}
+if [ $part != --with-ceres ]; then
+  # Where one of the two is missing the module is built all the same: in OpenCV 4 as C++14, as it is Ceres that asks for C++17.
+  for missing in -DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON -DWITH_EIGEN=OFF; do
+    configure "$work/without" $missing
+    without_ceres "$work/without" "$work/commands_without.txt"
+    echo "passed: left the calibrators out with $missing"
+  done
+  compile "$work/without" "$work/commands_without.txt"
+  rm -rf "$work/without"
+  echo "passed: compiled so"
+
+  configure "$build" -DREFRACT_WITH_CERES=OFF
+  without_ceres "$build" "$work/commands_without.txt"
+  ninja -C "$build" opencv_test_refract opencv_python3
+  tests
+  rm "$build"/lib/libopencv_refract.so*      # test/agreement/run.sh compares those with Ceres
+  echo "passed: OpenCV $version, without Ceres"
+fi
+[ $part != --without-ceres ] || exit 0
 
 configure "$build" -DREFRACT_WITH_CERES=AUTO
 universal
 ninja -C "$build" opencv_test_refract opencv_perf_refract opencv_python3 example_refract_measure_behind_glass
-
-"$build/bin/opencv_test_refract"
+tests
 "$build/bin/opencv_perf_refract" --perf_min_samples=1 --perf_force_samples=1
 "$build/bin/example_refract_measure_behind_glass"
-PYTHONPATH=$build/python_loader:$source/modules/python/test \
-  "$python" -B modules/refract/misc/python/test/test_refract.py
-
-# The same OpenCV with the module without Ceres.
-configure "$build" -DREFRACT_WITH_CERES=OFF
-without_ceres "$build" "$work/commands_without.txt"
-ninja -C "$build" opencv_test_refract opencv_python3
-"$build/bin/opencv_test_refract"
-PYTHONPATH=$build/python_loader:$source/modules/python/test \
-  "$python" -B modules/refract/misc/python/test/test_refract.py
-configure "$build" -DREFRACT_WITH_CERES=AUTO
-ninja -C "$build" opencv_test_refract opencv_python3
-echo "passed: tests without Ceres"
 
 # Typing stubs: OpenCV writes them only where all of its own modules are wrapped, too. That takes their headers alone.
 rm -rf "$work/stubs"
