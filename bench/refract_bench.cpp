@@ -7,8 +7,9 @@
 #include "growth.hpp"
 #include "rows.hpp"
 
-#include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
 #include <cstdio>
+#include <iostream>
 #include <unistd.h>
 
 using namespace bench;
@@ -53,27 +54,57 @@ bool printRow(const Row& row, const Times& t, bool avx512)
     return answers == row.count && !(error > row.tolerance);
 }
 
+struct Options
+{
+    bool quick, growth, bundles;
+    std::string only, isa;
+    int points, rounds;
+};
+
+const char KEYS[] =
+    "{ help h  |        | }"
+    "{ quick   |        | few points, one round: a check of the answers only }"
+    "{ growth  |        | time against points, layers, incidence and views instead of the table }"
+    "{ bundles |        | large bundle adjustments, processor time, instead of the table }"
+    "{ only    |        | rows whose key begins with this }"
+    "{ isa     | avx512 | the highest instruction set to use: baseline, avx2, avx512 }"
+    "{ points  | 100000 | points in an array }"
+    "{ rounds  | 15     | rounds of which the median is taken }";
+
+//! Throws for a name that there is not: OpenCV's parser passes over it.
+Options optionsOf(int argc, char** argv)
+{
+    cv::CommandLineParser parser(argc, argv, KEYS);
+    parser.about("Speed and accuracy of refract beside OpenCV, mrcal and the straightforward scalar program.\n"
+                 "Exit code 2: an answer was missing or wrong. Times never change the exit code.");
+    if (parser.has("help"))
+    {
+        parser.printMessage();
+        std::exit(0);
+    }
+    for (int i = 1; i < argc; i++)
+    {
+        const std::string argument = argv[i], name = argument.substr(0, argument.find('='));
+        if (name.compare(0, 2, "--") != 0 || std::string(KEYS).find("{ " + name.substr(2) + ' ') == std::string::npos)
+            throw std::runtime_error("there is no option " + argument + ", see --help");
+    }
+    const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.get<std::string>("only"),
+                        parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds") };
+    if (!parser.check() || o.points < 1 || o.rounds < 1 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
+        throw std::runtime_error("--points and --rounds are numbers from 1 on, --isa is baseline, avx2 or avx512");
+    return o;
+}
+
 } // namespace
 
 int main(int argc, char** argv)
+try
 {
-    CLI::App app("Speed and accuracy of refract beside OpenCV, mrcal and the straightforward scalar program.\n"
-                 "Exit code 2: an answer was missing or wrong. Times never change the exit code.");
-    bool quick = false, growth = false, bundles = false;
-    std::string only, isa = "avx512";
-    int count = 100000, rounds = 15;
-    app.add_flag("--quick", quick, "few points, one round: a check of the answers only");
-    app.add_flag("--growth", growth, "time against points, layers, incidence and views instead of the table");
-    app.add_flag("--bundles", bundles, "large bundle adjustments, processor time, instead of the table");
-    app.add_option("--only", only, "rows whose key begins with this");
-    app.add_option("--isa", isa, "the highest instruction set to use")->check(CLI::IsMember({ "baseline", "avx2", "avx512" }));
-    app.add_option("--points", count, "points in an array")->check(CLI::PositiveNumber);
-    app.add_option("--rounds", rounds, "rounds of which the median is taken")->check(CLI::PositiveNumber);
-    CLI11_PARSE(app, argc, argv);
-    restartFor(isa, argv);
-    if (quick)
-        count = 2000, rounds = 1;
-    if (bundles)
+    Options o = optionsOf(argc, argv);
+    restartFor(o.isa, argv);
+    if (o.quick)
+        o.points = 2000, o.rounds = 1;
+    if (o.bundles)
     {
         printBundles();
         return 0;
@@ -83,28 +114,33 @@ int main(int argc, char** argv)
     pin(1);
     cv::setNumThreads(1);
 
-    if (growth)
+    if (o.growth)
     {
         std::printf("instructions: %s, processor time of one thread\n", instructions().c_str());
         printGrowth();
         return 0;
     }
     std::vector<Row> rows;
-    addPointRows(rows, count);
-    addWedgeRows(rows, count);
-    addCurvedRows(rows, count);
-    addSplinedRows(rows, count);
-    addPairRows(rows, count);
+    addPointRows(rows, o.points);
+    addWedgeRows(rows, o.points);
+    addCurvedRows(rows, o.points);
+    addSplinedRows(rows, o.points);
+    addPairRows(rows, o.points);
     addRobustRows(rows);
-    addCallRows(rows, count);
+    addCallRows(rows, o.points);
     addStereoRows(rows);
     addCalibrationRows(rows);
-    std::printf("instructions: %s, points: %d, rounds: %d, ns per point\n", instructions().c_str(), count, rounds);
+    std::printf("instructions: %s, points: %d, rounds: %d, ns per point\n", instructions().c_str(), o.points, o.rounds);
     std::printf("%-39s %-30s%10s%10s%10s%10s%10s%10s%10s%10s%10s %-12s answers\n", "work", "peer (without window)", "ours", "peer",
                 "scalar", "mrcal", "memory", "ratio", "target", "error", "peer's", "unit");
     bool right = true;
     for (const Row& row : rows)
-        if (row.key.compare(0, only.size(), only) == 0)
-            right = printRow(row, measure(row, rounds), instructions() == "AVX-512") && right;
+        if (row.key.compare(0, o.only.size(), o.only) == 0)
+            right = printRow(row, measure(row, o.rounds), instructions() == "AVX-512") && right;
     return right ? 0 : 2;
+}
+catch (const std::exception& e)
+{
+    std::cerr << "refract_bench: " << e.what() << std::endl;
+    return 1;
 }

@@ -61,35 +61,35 @@ struct Options
     bool noWindow = false, verbose = false;
 };
 
-void addOptions(CLI::App& app, Options& o)
+void addOptions(OptionParser& parser, Options& o)
 {
-    app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
-    app.add_option("IMAGE", o.boards, "of camera 1, of camera 2, ...: boards, in place of --points");
-    app.add_option("--points", o.points, "measured points, as refract_measure writes them");
-    app.add_option("--lengths", o.lengths, "certified lengths: name,image1,id1,image2,id2,length,U")->required();
-    app.add_option("--max-error", o.maxError, "maximum permissible error: a length, or A+L/K of the tested length L")->required();
-    app.add_option("--plane", o.plane, "a,b,c,d: one camera saw the points, on a x + b y + c z = d in its frame");
-    app.add_option("--images", o.images, "images (quoted globs) of the points of --points: whether one calibrated is told by SHA-256, too");
-    app.add_option("--volume", o.volume, "xmin,xmax,ymin,ymax,zmin,zmax in the frame of camera 1 (default: where it was calibrated)");
-    o.target.addTo(app, false);
-    o.conditions.addTo(app);
-    app.add_option("--unit", o.unit, "unit of lengths, where calib.yml does not say it")->check(CLI::IsMember(unitNames()));
-    app.add_flag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
-    app.add_option("--pixel-sigma", o.pixelSigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
-                   "residuals)")->check(moreThanZero());
-    app.add_option("--certificate", o.certificate, "HTML page to print and sign");
-    app.add_option("--dcc", o.dcc, "digital calibration certificate to write, XML");
-    app.add_option("--summary", o.summary, "JSON file with all that is said, and more");
-    app.add_flag("--verbose", o.verbose, "all lengths and budgets");
-    app.add_option("--number", o.label.number, "of the certificate (default: made of what was read)");
-    app.add_option("--date", o.label.date, "of the test, year-month-day");
-    app.add_option("--serial", o.label.serial, "of cameras and windows (default: window_serial of calib.yml)");
-    app.add_option("--customer", o.label.customer, "for whom");
-    app.add_option("--laboratory", o.label.laboratory, "where");
-    app.add_option("--operator", o.label.person, "who tested");
-    app.add_option("--country", o.label.country, "of the laboratory, two letters (ISO 3166-1), for --dcc");
-    app.add_option("--standard", o.label.standard, "standard of length: kind, serial number, certificate");
-    app.add_option("--environment", o.label.environment, "what was measured in: temperatures, medium");
+    parser.add("calib.yml", o.calibration, "what refract_calib wrote").required();
+    parser.add("IMAGE", o.boards, "of camera 1, of camera 2, ...: boards, in place of --points");
+    parser.add("--points", o.points, "measured points, as refract_measure writes them");
+    parser.add("--lengths", o.lengths, "certified lengths: name,image1,id1,image2,id2,length,U").required();
+    parser.add("--max-error", o.maxError, "maximum permissible error: a length, or A+L/K of the tested length L").required();
+    parser.add("--plane", o.plane, "a,b,c,d: one camera saw the points, on a x + b y + c z = d in its frame");
+    parser.add("--images", o.images, "images (quoted globs) of the points of --points: whether one calibrated is told by SHA-256, too");
+    parser.add("--volume", o.volume, "xmin,xmax,ymin,ymax,zmin,zmax in the frame of camera 1 (default: where it was calibrated)");
+    o.target.addTo(parser, false);
+    o.conditions.addTo(parser);
+    parser.add("--unit", o.unit, "unit of lengths, where calib.yml does not say it").check(isMember(unitNames()));
+    parser.addFlag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
+    parser.add("--pixel-sigma", o.pixelSigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
+               "residuals)").check(moreThanZero());
+    parser.add("--certificate", o.certificate, "HTML page to print and sign");
+    parser.add("--dcc", o.dcc, "digital calibration certificate to write, XML");
+    parser.add("--summary", o.summary, "JSON file with all that is said, and more");
+    parser.addFlag("--verbose", o.verbose, "all lengths and budgets");
+    parser.add("--number", o.label.number, "of the certificate (default: made of what was read)");
+    parser.add("--date", o.label.date, "of the test, year-month-day");
+    parser.add("--serial", o.label.serial, "of cameras and windows (default: window_serial of calib.yml)");
+    parser.add("--customer", o.label.customer, "for whom");
+    parser.add("--laboratory", o.label.laboratory, "where");
+    parser.add("--operator", o.label.person, "who tested");
+    parser.add("--country", o.label.country, "of the laboratory, two letters (ISO 3166-1), for --dcc");
+    parser.add("--standard", o.label.standard, "standard of length: kind, serial number, certificate");
+    parser.add("--environment", o.label.environment, "what was measured in: temperatures, medium");
 }
 
 //! What would fail at the end, after all the work.

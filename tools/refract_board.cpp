@@ -30,13 +30,13 @@ struct Options
     std::string paper, unit = "mm", out;
 };
 
-void addOptions(CLI::App& app, Options& options)
+void addOptions(OptionParser& parser, Options& options)
 {
-    options.target.addTo(app, true);
-    app.add_option("--unit", options.unit, "unit of --square and --marker")->check(CLI::IsMember(unitNames()))
-        ->capture_default_str();
-    app.add_option("--paper", options.paper, "A0 ... A5 (either way round) or WxH in mm; default: the smallest from A4 that fits");
-    app.add_option("--out", options.out, "file to write (.pdf, .svg)")->required();
+    options.target.addTo(parser, true);
+    parser.add("--unit", options.unit, "unit of --square and --marker").check(isMember(unitNames()))
+        .captureDefault();
+    parser.add("--paper", options.paper, "A0 ... A5 (either way round) or WxH in mm; default: the smallest from A4 that fits");
+    parser.add("--out", options.out, "file to write (.pdf, .svg)").required();
 }
 
 void requireExtension(const std::string& path)

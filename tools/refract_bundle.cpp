@@ -53,24 +53,24 @@ struct Options
     bool robust = true;
 };
 
-void addOptions(CLI::App& app, Options& o)
+void addOptions(OptionParser& parser, Options& o)
 {
-    app.add_option("start.yml", o.start, "the rig to start from")->required();
-    app.add_option("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...")->required();
-    app.add_option("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
-    app.add_option("--free", o.bundle.free, "what the matches alone must tell; none: nothing")->delimiter(',')
-        ->check(CLI::IsMember(freeNames()));
-    o.bundle.window.addTo(app, "needed where the medium on its other side is another");
-    o.bundle.std.addTo(app, false);
-    app.add_option("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)")->check(CLI::IsMember(unitNames()));
-    app.add_flag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
-    app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "every match is right; by default wrong ones are left out");
-    app.add_option("--pixel-sigma", o.pixelSigma, "noise of a pixel coordinate that the matches are known to have: far above it they "
-        "contradict the start (default: that of start.yml, or 2 px at most)")->check(moreThanZero());
-    app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
-    app.add_option("--points-out", o.pointsOut, "points.csv to write");
-    app.add_option("--summary", o.summary, "JSON file with all that is said, and more");
-    app.add_option("--max-rms", o.maxRms, "limit: RMS over all pixels, px")->check(moreThanZero());
+    parser.add("start.yml", o.start, "the rig to start from").required();
+    parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...").required();
+    parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
+    parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
+        .check(isMember(freeNames()));
+    o.bundle.window.addTo(parser, "needed where the medium on its other side is another");
+    o.bundle.std.addTo(parser, false);
+    parser.add("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)").check(isMember(unitNames()));
+    parser.addFlag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
+    parser.addNegation("--no-robust", o.robust, "every match is right; by default wrong ones are left out");
+    parser.add("--pixel-sigma", o.pixelSigma, "noise of a pixel coordinate that the matches are known to have: far above it they "
+        "contradict the start (default: that of start.yml, or 2 px at most)").check(moreThanZero());
+    parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
+    parser.add("--points-out", o.pointsOut, "points.csv to write");
+    parser.add("--summary", o.summary, "JSON file with all that is said, and more");
+    parser.add("--max-rms", o.maxRms, "limit: RMS over all pixels, px").check(moreThanZero());
 }
 
 Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings, const Calibration& start,

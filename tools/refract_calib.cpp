@@ -119,10 +119,10 @@ std::vector<std::string> lensNames()
 
 ErrorLimit parseErrorLimit(const std::string& text)
 {
-    const std::vector<std::string> parts = CLI::detail::split(text, ':');
+    const size_t colon = text.find(':');
     ErrorLimit limit;
-    if (parts.size() != 2 || !parseNumber(parts[0], limit.range) || !(limit.range > 0) ||
-        !parseNumber(parts[1], limit.error) || !(limit.error > 0))
+    if (colon == std::string::npos || !parseNumber(text.substr(0, colon), limit.range) || !(limit.range > 0) ||
+        !parseNumber(text.substr(colon + 1), limit.error) || !(limit.error > 0))
         throw Failure("--max-error-at=" + text + ": give RANGE:ERROR, two numbers more than 0, as in --max-error-at=600:0.05");
     return limit;
 }
@@ -131,60 +131,60 @@ Options parseOptions(Command& command)
 {
     Options o;
     std::vector<std::string> maxErrors, notes;
-    CLI::App& app = command.app;
-    o.target.addTo(app, false);
-    o.images.addTo(app, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
-    o.watch.addTo(app);
-    app.add_option("--watch-gain", o.watchGain, "end when the best next pair would take off less than so many percent of the calibration's "
-        "part of a point's error")->needs(app.get_option("--watch"))->check(moreThanZero());
-    CLI::Option* glass2 = app.get_option("--glass2");
+    OptionParser& parser = command.parser;
+    o.target.addTo(parser, false);
+    o.images.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
+    o.watch.addTo(parser);
+    parser.add("--watch-gain", o.watchGain, "end when the best next pair would take off less than so many percent of the calibration's "
+        "part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
+    Option glass2 = parser.get("--glass2");
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
-        CLI::Option* camera = app.add_option("--camera" + cameraSuffix(c), o.camera[c], c ? "lens of camera " + cameraSuffix(c)
+        Option camera = parser.add("--camera" + cameraSuffix(c), o.camera[c], c ? "lens of camera " + cameraSuffix(c)
             : "lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
         if (c)
-            camera->needs(app.get_option("--glass" + cameraSuffix(c)));
+            camera.needs(parser.get("--glass" + cameraSuffix(c)));
         if (c > 1)
-            camera->group("");              // told in the manual
+            camera.hide();              // told in the manual
     }
-    app.add_option("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
-                   "cv::fisheye's four, or auto: as many as held-out images support")->check(CLI::IsMember(lensNames()))
-        ->capture_default_str();
-    o.window.addTo(app, "where it is needed and not given, it is estimated");
-    o.std.addTo(app);
-    app.add_option("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
-        "valid (default: the brightness of all)")->check(CLI::IsMember({"red", "green", "blue"}));
-    app.add_option("--free", o.free, "what to estimate beside the normal, or the centre")->delimiter(',')
-        ->check(CLI::IsMember(namesOf(freeFlags())));
-    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
-    CLI::Option* unpaired = app.add_flag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
-    app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
+    parser.add("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
+               "cv::fisheye's four, or auto: as many as held-out images support").check(isMember(lensNames()))
+        .captureDefault();
+    o.window.addTo(parser, "where it is needed and not given, it is estimated");
+    o.std.addTo(parser);
+    parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
+        "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
+    parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
+        .check(isMember(namesOf(freeFlags())));
+    parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
+    Option unpaired = parser.addFlag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
+    parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
         "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
-        ->needs(unpaired)->excludes(glass2);
-    CLI::Option* shared = app.add_flag("--shared-window", o.sharedWindow, "all cameras look through the same pane")
-        ->needs(glass2);
-    app.add_option("--window-of-camera", o.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
-        "one pane (default: each has its own)")->needs(glass2)->excludes(shared);
-    app.add_option("--poses", o.poses, "known poses of the target in camera 1: poses.csv")->excludes(unpaired);
-    app.add_option("--out", o.out, "the calibration to write (.yml, .xml, .json)")->required();
-    app.add_option("--summary", o.summary, "JSON file with everything that the table and the report say");
-    app.add_option("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
-    app.add_option("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
+        .needs(unpaired).excludes(glass2);
+    Option shared = parser.addFlag("--shared-window", o.sharedWindow, "all cameras look through the same pane")
+        .needs(glass2);
+    parser.add("--window-of-camera", o.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
+        "one pane (default: each has its own)").needs(glass2).excludes(shared);
+    parser.add("--poses", o.poses, "known poses of the target in camera 1: poses.csv").excludes(unpaired);
+    parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
+    parser.add("--summary", o.summary, "JSON file with everything that the table and the report say");
+    parser.add("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
+    parser.add("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
         "the images through the window, to compare with (refract_measure --compare-with)");
-    app.add_option("--max-rms", o.limits.rms, "limit: RMS over all corners, px")->check(moreThanZero());
-    app.add_option("--max-normal-std", o.limits.normalStdDeg, "limit: uncertainty of the normal (larger principal one), "
-        "degrees")->check(moreThanZero());
-    app.add_option("--max-error-at", maxErrors, "limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
-        "3-D) of the worst point of the image at z = RANGE from camera 1")->allow_extra_args(false);
-    app.add_flag_callback("--no-cross-validation", [&o] { o.crossValidation = false; },
+    parser.add("--max-rms", o.limits.rms, "limit: RMS over all corners, px").check(moreThanZero());
+    parser.add("--max-normal-std", o.limits.normalStdDeg, "limit: uncertainty of the normal (larger principal one), "
+        "degrees").check(moreThanZero());
+    parser.add("--max-error-at", maxErrors, "limit, repeatable: RANGE:ERROR, the expected error (one standard deviation, "
+        "3-D) of the worst point of the image at z = RANGE from camera 1").oneAtATime();
+    parser.addNegation("--no-cross-validation", o.crossValidation,
         "do not calibrate again on parts of the views");
-    app.add_flag_callback("--no-robust", [&o] { o.robust = false; }, "use all points as they are; by default wrong points and "
+    parser.addNegation("--no-robust", o.robust, "use all points as they are; by default wrong points and "
         "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
-    app.add_option("--unit", o.unit, "unit of --square and all lengths")->check(CLI::IsMember(unitNames()))
-        ->capture_default_str();
-    app.add_option("--serial", o.label.serial, "serial number of the window, carried into all outputs");
-    app.add_option("--note", notes, "repeatable: KEY=TEXT, carried into all outputs")->allow_extra_args(false);
-    app.add_flag("--verbose", o.verbose, "print all tables, in place of ten lines")->excludes("--quiet");
+    parser.add("--unit", o.unit, "unit of --square and all lengths").check(isMember(unitNames()))
+        .captureDefault();
+    parser.add("--serial", o.label.serial, "serial number of the window, carried into all outputs");
+    parser.add("--note", notes, "repeatable: KEY=TEXT, carried into all outputs").oneAtATime();
+    parser.addFlag("--verbose", o.verbose, "print all tables, in place of ten lines").excludes(parser.get("--quiet"));
     command.parse();
     for (const std::string& text : maxErrors)
         o.limits.errors.push_back(parseErrorLimit(text));
@@ -197,7 +197,7 @@ Options parseOptions(Command& command)
         o.label.notes.push_back(note);
     }
     const auto isGiven = [](const std::string& file) { return !file.empty(); };
-    if (app.get_option("--lens")->count() > 0
+    if (parser.get("--lens").count() > 0
         && std::all_of(o.camera.begin(), o.camera.begin() + o.images.cameraCount(), isGiven))
         throw Failure("--lens=" + o.lens + " is for a lens that the images determine; these are those of --camera: leave one out");
     o.images.channel = channelOf(o.channel);

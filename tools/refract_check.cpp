@@ -80,38 +80,38 @@ struct Options
     }
 };
 
-void addOptions(CLI::App& app, Options& o)
+void addOptions(OptionParser& parser, Options& o)
 {
-    app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
-    o.target.addTo(app, true);
-    app.add_option("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")
-        ->check(CLI::IsMember(unitNames()));
-    o.images.addTo(app, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
-    app.add_option("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
-    app.add_option("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all "
-        "charts together)")->check(between(1e-9, 0.5));
-    app.add_option("--detect", o.detect, "tilt that must show, degrees")->check(moreThanZero())->capture_default_str();
-    app.add_option("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
-        "residuals)")->check(moreThanZero());
-    app.add_option("--placement-std", o.placement, "by how much all targets, or the camera's mount, moved between the direct and the glass "
-        "images, along each axis, one standard deviation: in air, that looks like a tilt")->check(notNegative())->capture_default_str();
-    CLI::Option* newPane = app.add_flag("--new-pane", o.newPane, "the panes are not those of the calibration, but others of their kind");
-    app.add_option("--wedge-std", o.wedgeMinutes, "with --new-pane: the angle between the faces of a pane, one standard deviation, arc "
-        "minutes")->check(notNegative())->capture_default_str()->needs(newPane);
-    app.add_option("--thickness-std", o.pane.thickness, "with --new-pane: how much panes differ in thickness, one standard deviation")
-        ->check(notNegative())->capture_default_str()->needs(newPane);
-    app.add_option("--index-std", o.pane.index, "the same of their index")->check(notNegative())->capture_default_str()->needs(newPane);
-    o.conditions.addTo(app);
-    app.add_option("--summary", o.summary, "JSON file with the result");
-    CLI::Option* history = app.add_option("--history", o.history, "JSON file that keeps all checks of this calibration; begun if it is not "
-        "there")->excludes(newPane);
-    app.add_option("--history-page", o.page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
-        ->needs(history);
-    app.add_option("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)")->needs(history);
-    app.add_option("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
-    app.add_option("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found, of a dome's "
+    parser.add("calib.yml", o.calibration, "what refract_calib wrote").required();
+    o.target.addTo(parser, true);
+    parser.add("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")
+        .check(isMember(unitNames()));
+    o.images.addTo(parser, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
+    parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
+    parser.add("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all "
+        "charts together)").check(between(1e-9, 0.5));
+    parser.add("--detect", o.detect, "tilt that must show, degrees").check(moreThanZero()).captureDefault();
+    parser.add("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
+        "residuals)").check(moreThanZero());
+    parser.add("--placement-std", o.placement, "by how much all targets, or the camera's mount, moved between the direct and the glass "
+        "images, along each axis, one standard deviation: in air, that looks like a tilt").check(notNegative()).captureDefault();
+    Option newPane = parser.addFlag("--new-pane", o.newPane, "the panes are not those of the calibration, but others of their kind");
+    parser.add("--wedge-std", o.wedgeMinutes, "with --new-pane: the angle between the faces of a pane, one standard deviation, arc "
+        "minutes").check(notNegative()).captureDefault().needs(newPane);
+    parser.add("--thickness-std", o.pane.thickness, "with --new-pane: how much panes differ in thickness, one standard deviation")
+        .check(notNegative()).captureDefault().needs(newPane);
+    parser.add("--index-std", o.pane.index, "the same of their index").check(notNegative()).captureDefault().needs(newPane);
+    o.conditions.addTo(parser);
+    parser.add("--summary", o.summary, "JSON file with the result");
+    Option history = parser.add("--history", o.history, "JSON file that keeps all checks of this calibration; begun if it is not "
+        "there").excludes(newPane);
+    parser.add("--history-page", o.page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
+        .needs(history);
+    parser.add("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)").needs(history);
+    parser.add("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
+    parser.add("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found, of a dome's "
         "centre as seen from a radius away")
-        ->check(moreThanZero())->capture_default_str()->needs(history);
+        .check(moreThanZero()).captureDefault().needs(history);
 }
 
 CheckInput inputOf(const Options& o, const Calibration& calibration)

@@ -156,17 +156,17 @@ cv::Mat draw(const cv::Mat& image1, const cv::Mat& image2, const std::vector<Poi
     return picture;
 }
 
-void addOptions(CLI::App& app, Options& options)
+void addOptions(OptionParser& parser, Options& options)
 {
-    app.add_option("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote")->required();
-    app.add_option("IMAGE1", options.image1, "of camera 1")->required();
-    app.add_option("IMAGE2", options.image2, "of camera 2, of the same moment")->required();
-    app.add_option("--points", options.points, "file with points of image 1");
-    options.target.addTo(app, false);
-    app.add_option("--depth", options.depth, "near,far: z of the scene in the frame of camera 1; far may be inf (default: "
-                   "around the target; with --points from the distance of the cameras to inf)");
-    app.add_option("--out", options.out, "picture to write")->required();
-    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+    parser.add("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote").required();
+    parser.add("IMAGE1", options.image1, "of camera 1").required();
+    parser.add("IMAGE2", options.image2, "of camera 2, of the same moment").required();
+    parser.add("--points", options.points, "file with points of image 1");
+    options.target.addTo(parser, false);
+    parser.add("--depth", options.depth, "near,far: z of the scene in the frame of camera 1; far may be inf (default: "
+               "around the target; with --points from the distance of the cameras to inf)");
+    parser.add("--out", options.out, "picture to write").required();
+    parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
 }
 
 } // namespace

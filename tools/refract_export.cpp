@@ -8,8 +8,10 @@
 #include "console/table.hpp"
 #include "export/export_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 static const char MANUAL[] = R"(Tells programs that know no windows of cameras behind them, as well as that can be done.
 
@@ -38,18 +40,18 @@ struct Options
     double maxError = 0;        // px; 0: none
 };
 
-void addOptions(CLI::App& app, Options& options)
+void addOptions(OptionParser& parser, Options& options)
 {
-    app.add_option("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras")->required();
-    app.add_option("--to", options.target, "whom to tell")->required()
-        ->check(CLI::IsMember({"opencv", "mrcal", "colmap", "ros"}));
-    app.add_option("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera")->required();
-    app.add_option("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
-    app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
-    app.add_option("--points", options.points, "points.csv of refract_measure (--to=colmap)");
-    app.add_option("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
-                   "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; a splined lens stays one with --to=mrcal)");
-    app.add_option("--max-error", options.maxError, "px: exit code 2 if a camera is further off")->check(moreThanZero());
+    parser.add("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras").required();
+    parser.add("--to", options.target, "whom to tell").required()
+        .check(isMember({"opencv", "mrcal", "colmap", "ros"}));
+    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera").required();
+    parser.add("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
+    parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
+    parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap)");
+    parser.add("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
+               "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; a splined lens stays one with --to=mrcal)");
+    parser.add("--max-error", options.maxError, "px: exit code 2 if a camera is further off").check(moreThanZero());
 }
 
 cv::Vec2d parseRange(const std::string& text)

@@ -48,6 +48,7 @@ met, or the boards contradict the sheet.)";
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <sstream>
 
 using namespace cv::refract;
@@ -71,27 +72,27 @@ struct Options
     bool calibrates() const { return !sheetOut.empty(); }
 };
 
-void addOptions(CLI::App& app, Options& o)
+void addOptions(OptionParser& parser, Options& o)
 {
-    app.add_option("calib.yml", o.calibration, "what refract_calib wrote")->required();
-    app.add_option("IMAGES", o.images, "images with the line: a quoted glob")->required();
-    o.target.addTo(app, false);
-    app.add_flag("--partial", o.target.partial, "a chessboard that may be partly out of view; --size counts all its corners");
-    app.add_option("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")->check(CLI::IsMember(unitNames()));
-    app.add_option("--laser", o.laser, "colour of the line; any: the brightest line")->check(CLI::IsMember(laserColourNames()))
-        ->capture_default_str();
-    app.add_option("--laser-off", o.off, "images of the same names without the laser: a quoted glob");
-    CLI::Option* sheetOut = app.add_option("--sheet-out", o.sheetOut, "calibrate the sheet, and write it (.yml, .xml, .json)");
-    app.add_option("--emitter", o.emitter, "of a laser behind its own window: what is known of it, a file")->needs(sheetOut);
-    CLI::Option* sheet = app.add_option("--sheet", o.sheet, "measure with this sheet")->excludes(sheetOut);
-    app.add_option("--max-rms", o.maxRms, "limit: RMS distance of held-out lines from the sheet")->check(moreThanZero())->needs(sheetOut);
-    app.add_option("--out", o.out, "points.csv to write")->needs(sheet);
-    app.add_option("--cloud", o.cloud, "PLY file to write: the points of all images, with colours and +-")->needs(sheet);
-    app.add_option("--profile", o.profile, "SVG file to write: x and z of the points (needs gnuplot)")->needs(sheet);
-    app.add_option("--depth", o.depth, "NEAR,FAR: z of the scene; other points are left out")->needs(sheet);
-    o.conditions.addTo(app);
-    app.add_flag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
-    app.add_option("--picture-dir", o.pictures, "folder for pictures of the lines that were found");
+    parser.add("calib.yml", o.calibration, "what refract_calib wrote").required();
+    parser.add("IMAGES", o.images, "images with the line: a quoted glob").required();
+    o.target.addTo(parser, false);
+    parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view; --size counts all its corners");
+    parser.add("--unit", o.unit, "unit of --square; what refract_calib had, or nothing").check(isMember(unitNames()));
+    parser.add("--laser", o.laser, "colour of the line; any: the brightest line").check(isMember(laserColourNames()))
+        .captureDefault();
+    parser.add("--laser-off", o.off, "images of the same names without the laser: a quoted glob");
+    Option sheetOut = parser.add("--sheet-out", o.sheetOut, "calibrate the sheet, and write it (.yml, .xml, .json)");
+    parser.add("--emitter", o.emitter, "of a laser behind its own window: what is known of it, a file").needs(sheetOut);
+    Option sheet = parser.add("--sheet", o.sheet, "measure with this sheet").excludes(sheetOut);
+    parser.add("--max-rms", o.maxRms, "limit: RMS distance of held-out lines from the sheet").check(moreThanZero()).needs(sheetOut);
+    parser.add("--out", o.out, "points.csv to write").needs(sheet);
+    parser.add("--cloud", o.cloud, "PLY file to write: the points of all images, with colours and +-").needs(sheet);
+    parser.add("--profile", o.profile, "SVG file to write: x and z of the points (needs gnuplot)").needs(sheet);
+    parser.add("--depth", o.depth, "NEAR,FAR: z of the scene; other points are left out").needs(sheet);
+    o.conditions.addTo(parser);
+    parser.addFlag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
+    parser.add("--picture-dir", o.pictures, "folder for pictures of the lines that were found");
 }
 
 //! An image, and what of it is the laser.

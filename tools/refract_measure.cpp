@@ -444,22 +444,22 @@ void printTable(const Options& options, const Calibration& calibration, const st
     table.print(std::cout);
 }
 
-void addOptions(CLI::App& app, Options& options)
+void addOptions(OptionParser& parser, Options& options)
 {
-    app.add_option("calib.yml", options.calibration, "what refract_calib wrote")->required();
-    app.add_option("IMAGE", options.images, "of camera 1, of camera 2, ...");
-    app.add_option("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
-    options.target.addTo(app, false);
-    app.add_option("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
-        ->check(CLI::IsMember(unitNames()));
-    options.conditions.addTo(app);
-    app.add_option("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
-    app.add_option("--out", options.out, "points.csv to write");
-    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
-    app.add_option("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: that "
-                   "of the calibration's residuals)")->check(moreThanZero());
-    app.add_flag("--compare", options.compare, "show also what comes out if the glass is ignored");
-    app.add_option("--compare-with", options.compareWith, "show also what another calibration gives");
+    parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
+    parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
+    parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
+    options.target.addTo(parser, false);
+    parser.add("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
+        .check(isMember(unitNames()));
+    options.conditions.addTo(parser);
+    parser.add("--plane", options.plane, "a,b,c,d: the target lies on a x + b y + c z = d in the camera's frame");
+    parser.add("--out", options.out, "points.csv to write");
+    parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+    parser.add("--pixel-sigma", options.pixelSigma, "standard deviation of a pixel coordinate (default: that "
+               "of the calibration's residuals)").check(moreThanZero());
+    parser.addFlag("--compare", options.compare, "show also what comes out if the glass is ignored");
+    parser.add("--compare-with", options.compareWith, "show also what another calibration gives");
 }
 
 void checkCombination(const Options& options, const Calibration& calibration)

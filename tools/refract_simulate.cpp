@@ -294,12 +294,12 @@ int main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         std::string rig, folder, extension = "png";
         int quality = 92;
-        command.app.add_option("RIG.yml", rig, "what to render")->required();
-        command.app.add_option("--out-dir", folder, "folder to write to, made if it is not there")->required();
-        command.app.add_option("--format", extension, "png, jpg or webp")
-            ->check(CLI::IsMember({"png", "jpg", "webp"}))->capture_default_str();
-        command.app.add_option("--quality", quality, "of jpg and webp, 1 ... 100")
-            ->check(CLI::Range(1, 100))->capture_default_str();
+        command.parser.add("RIG.yml", rig, "what to render").required();
+        command.parser.add("--out-dir", folder, "folder to write to, made if it is not there").required();
+        command.parser.add("--format", extension, "png, jpg or webp")
+            .check(isMember({"png", "jpg", "webp"})).captureDefault();
+        command.parser.add("--quality", quality, "of jpg and webp, 1 ... 100")
+            .check(isCountUpTo(100)).captureDefault();
         command.parse();
 
         const Scene scene = readScene(rig);

@@ -434,34 +434,34 @@ void warnUnpaired(const std::vector<std::string>& stems, int camera, const Comma
                      + listed(stems));
 }
 
-void addOptions(CLI::App& app, Options& options)
+void addOptions(OptionParser& parser, Options& options)
 {
-    app.add_option("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote")->required();
-    app.add_option("LEFT", options.left, "of camera 1: image, quoted glob, numbered images, video")->required();
-    app.add_option("RIGHT", options.right, "of camera 2, of the same moments")->required();
-    app.add_option("--depth", options.depth, "NEAR,FAR: range of z in the frame of camera 1; FAR may be inf (default: found in "
-                   "the images)");
-    app.add_option("--out", options.out, "cloud of points to write, .ply");
-    app.add_option("--depth-map", options.depthMap, "z of each raw pixel of camera 1 to write, .tiff (float32)");
-    app.add_option("--picture", options.picture, "the same in colours, with a scale");
-    app.add_option("--out-dir", options.folder, "folder for all three of each pair, made if it is not there");
-    app.add_option("--rectified-dir", options.rectifiedFolder, "folder for the rectified images (left.png, right.png, pair.png "
-                   "with lines drawn in) and disparity.tiff (float32, px)");
-    app.add_option("--truth", options.truth, "known depth of raw pixels of camera 1 to compare with (float32, as "
-                   "refract_simulate writes)");
-    app.add_option("--matcher", options.matcher, "cv::StereoSGBM along three paths (3way) or all eight (hh: slower)")
-        ->check(CLI::IsMember({"3way", "hh"}))->capture_default_str();
-    app.add_option("--block", options.matching.block, "side of the matched block, px, odd: larger for noise, smaller for detail")
-        ->check(CLI::Range(1, 21))->capture_default_str();
-    app.add_option("--passes", options.matching.passes, "1: rectified for a plane; 2: then for the depths found")
-        ->check(CLI::Range(1, 2))->capture_default_str();
-    app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel of colour images, nm, as 610,540,465; each "
-                   "is rectified by itself, as a window in front of water bends blue more than red");
-    options.conditions.addTo(app);
-    app.add_flag("--crop", options.crop, "a part of the scene outside --depth is left out on purpose: no warning of it");
-    app.add_option("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more")->check(moreThanZero());
-    app.add_flag("--ascii", options.ascii, "cloud as text, not binary");
-    app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+    parser.add("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote").required();
+    parser.add("LEFT", options.left, "of camera 1: image, quoted glob, numbered images, video").required();
+    parser.add("RIGHT", options.right, "of camera 2, of the same moments").required();
+    parser.add("--depth", options.depth, "NEAR,FAR: range of z in the frame of camera 1; FAR may be inf (default: found in "
+               "the images)");
+    parser.add("--out", options.out, "cloud of points to write, .ply");
+    parser.add("--depth-map", options.depthMap, "z of each raw pixel of camera 1 to write, .tiff (float32)");
+    parser.add("--picture", options.picture, "the same in colours, with a scale");
+    parser.add("--out-dir", options.folder, "folder for all three of each pair, made if it is not there");
+    parser.add("--rectified-dir", options.rectifiedFolder, "folder for the rectified images (left.png, right.png, pair.png "
+               "with lines drawn in) and disparity.tiff (float32, px)");
+    parser.add("--truth", options.truth, "known depth of raw pixels of camera 1 to compare with (float32, as "
+               "refract_simulate writes)");
+    parser.add("--matcher", options.matcher, "cv::StereoSGBM along three paths (3way) or all eight (hh: slower)")
+        .check(isMember({"3way", "hh"})).captureDefault();
+    parser.add("--block", options.matching.block, "side of the matched block, px, odd: larger for noise, smaller for detail")
+        .check(isCountUpTo(21)).captureDefault();
+    parser.add("--passes", options.matching.passes, "1: rectified for a plane; 2: then for the depths found")
+        .check(isCountUpTo(2)).captureDefault();
+    parser.add("--channels", options.channels, "R,G,B: wavelength of each channel of colour images, nm, as 610,540,465; each "
+               "is rectified by itself, as a window in front of water bends blue more than red");
+    options.conditions.addTo(parser);
+    parser.addFlag("--crop", options.crop, "a part of the scene outside --depth is left out on purpose: no warning of it");
+    parser.add("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more").check(moreThanZero());
+    parser.addFlag("--ascii", options.ascii, "cloud as text, not binary");
+    parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
 }
 
 } // namespace

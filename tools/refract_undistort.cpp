@@ -156,16 +156,16 @@ int main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options;
-        command.app.add_option("calib.yml", options.calibration, "what refract_calib wrote")->required();
-        command.app.add_option("IMAGE", options.sources, "images, quoted globs, numbered images or videos")->required();
-        command.app.add_option("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
-        command.app.add_option("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
-        command.app.add_option("--out-dir", options.folder, "folder to write to, made if it is not there")->required();
-        command.app.add_option("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
-                               "sensor; each is corrected by itself");
-        command.app.add_option("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
-            ->check(CLI::Range(1, 2))->capture_default_str();
-        command.app.add_flag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+        command.parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
+        command.parser.add("IMAGE", options.sources, "images, quoted globs, numbered images or videos").required();
+        command.parser.add("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
+        command.parser.add("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
+        command.parser.add("--out-dir", options.folder, "folder to write to, made if it is not there").required();
+        command.parser.add("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
+                           "sensor; each is corrected by itself");
+        command.parser.add("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
+            .check(isCountUpTo(2)).captureDefault();
+        command.parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
         command.parse();
 
         const std::vector<double> depth = depthOf(options);

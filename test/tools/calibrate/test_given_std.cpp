@@ -4,8 +4,8 @@
 // How well given values are known: said, or usual.
 #include "calibrate/given_std.hpp"
 #include "console/failure.hpp"
+#include "console/options.hpp"
 #include "scenes.hpp"
-#include <CLI/CLI.hpp>
 #include <opencv2/refract.hpp>
 
 using namespace tools;
@@ -14,10 +14,10 @@ namespace {
 
 GivenStd read(const std::vector<std::string>& options, const GivenValues& values)
 {
-    CLI::App app;
+    OptionParser parser;
     GivenStdOptions std;
-    std.addTo(app);
-    app.parse(std::vector<std::string>(options.rbegin(), options.rend()));
+    std.addTo(parser);
+    parser.parse(options);
     return std.of(values);
 }
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Numbers in options and point files mean the same where people write a decimal comma.
-#include "console/cli.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 #include "console/point_file.hpp"
 #include "german.hpp"
 #include "target/corners_vnl.hpp"
@@ -23,7 +24,11 @@ void checkAll()
         CHECK(!parseNumber(wrong, number));
     CHECK(parseNumbers("0.1,20.5, 3", "--x") == std::vector<double>{0.1, 20.5, 3});
     CHECK(parseSize("1280x1024", "--image-size") == cv::Size(1280, 1024));
-    CHECK(moreThanZero()("1.5").empty());
+    std::string option;
+    OptionParser parser;
+    parser.add("--x", option, "").check(moreThanZero());
+    parser.parse({"--x=1.5"});
+    CHECK(option == "1.5");
 
     const TemporaryFolder folder;
     std::ofstream(folder / "corners.vnl") << "# filename x y level\na.png 100.25 200.5 0\na.png 1.25 2.5 -\n";

@@ -4,8 +4,8 @@
 #include "calibrate/conditions.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/cli.hpp"
 #include "console/failure.hpp"
+#include "console/options.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -94,12 +94,12 @@ Calibration inMedium(const Calibration& calibration, const Medium& medium, const
     return result;
 }
 
-void ConditionsOptions::addTo(CLI::App& app)
+void ConditionsOptions::addTo(OptionParser& parser)
 {
-    CLI::Option* index = app.add_option("--outer-index", index_, "index of the scene's medium now, or its name, as seawater:T=8,S=35 "
-                                        "(default: that of the calibration)");
-    app.add_option("--outer-index-std", std_, "how well it is known, one standard deviation (default: 0.001; of a name, its tolerance and "
-                   "the light's band)")->check(notNegative())->needs(index);
+    Option index = parser.add("--outer-index", index_, "index of the scene's medium now, or its name, as seawater:T=8,S=35 "
+                              "(default: that of the calibration)");
+    parser.add("--outer-index-std", std_, "how well it is known, one standard deviation (default: 0.001; of a name, its tolerance and "
+               "the light's band)").check(notNegative()).needs(index);
 }
 
 Medium ConditionsOptions::of(const Calibration& calibration) const

@@ -7,11 +7,11 @@
 #include "calibrate/calib_file.hpp"
 #include "calibrate/given_std.hpp"
 
-namespace CLI { class App; }
-
 /* Conditions of the day: a calibration that was made in one medium is used in another. Window, lenses, R and T stay what they are, and so
 does their covariance, with what the index of that time contributed to it. */
 namespace tools {
+
+class OptionParser;
 
 //! The scene's medium.
 struct Medium
@@ -29,7 +29,7 @@ Calibration inMedium(const Calibration& calibration, const Medium& medium, const
 class ConditionsOptions
 {
 public:
-    void addTo(CLI::App& app);
+    void addTo(OptionParser& parser);
     bool isSaid() const { return !index_.empty(); }
     //! Throws Failure if they are no index. @param calibration says for which light
     Medium of(const Calibration& calibration) const;

@@ -3,8 +3,8 @@
 
 #include "calibrate/given_std.hpp"
 #include "calibrate/units.hpp"
-#include "console/cli.hpp"
 #include "console/failure.hpp"
+#include "console/options.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -50,11 +50,11 @@ bool GivenStd::ofWindow() const
     return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0. || radius > 0. || center > 0. || curvature > 0.;
 }
 
-void GivenStdOptions::addTo(CLI::App& app, bool target)
+void GivenStdOptions::addTo(OptionParser& parser, bool target)
 {
     std::fill(said_, said_ + COUNT, std::numeric_limits<double>::quiet_NaN());
     const auto add = [&](const char* name, int which, const std::string& about) {
-        app.add_option(name, said_[which], about)->check(notNegative());
+        parser.add(name, said_[which], about).check(notNegative());
     };
     add("--thickness-std", THICKNESS, "how well the thickness of each layer is known, one standard deviation; it is estimated within it, "
         "and is in every +-; 0: exact (default: 0.1 mm)");
@@ -73,7 +73,7 @@ void GivenStdOptions::addTo(CLI::App& app, bool target)
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");
     }
-    app.add_flag("--exact", exact_, "what is given is exact, where none of these options says another thing (simulated images)");
+    parser.addFlag("--exact", exact_, "what is given is exact, where none of these options says another thing (simulated images)");
 }
 
 bool GivenStdOptions::isSaid() const

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-namespace CLI { class App; }
-
 /* How well given values are known: as the user says, or as is usual for values of their kind. */
 namespace tools {
+
+class OptionParser;
 
 //! A standard deviation; 0: exact.
 struct Std
@@ -66,7 +66,7 @@ class GivenStdOptions
 {
 public:
     //! @param target also what is known of a board and its placement
-    void addTo(CLI::App& app, bool target = true);
+    void addTo(OptionParser& parser, bool target = true);
     bool isSaid() const;                //!< any of them
     //! What was said; of all else what is usual. Throws Failure where a deviation is said of what there is not.
     GivenStd of(const GivenValues& values) const;

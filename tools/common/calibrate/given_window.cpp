@@ -3,8 +3,9 @@
 
 #include "calibrate/given_window.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/cli.hpp"
 #include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 #include <algorithm>
 
 using namespace cv::refract;
@@ -56,36 +57,36 @@ bool GivenWindow::hasMaterials() const
     return named(inner) || named(outer) || std::any_of(layers.begin(), layers.end(), named);
 }
 
-void GivenWindowOptions::addTo(CLI::App& app, const std::string& distance)
+void GivenWindowOptions::addTo(OptionParser& parser, const std::string& distance)
 {
-    app_ = &app;
+    parser_ = &parser;
     std::vector<std::string> shapes;
     for (const auto& entry : SHAPES)
         shapes.push_back(entry.first);
-    app.add_option("--window", shape_, "shape of the windows: flat, bent (flat with --bow-std), dome or tube")
-        ->check(CLI::IsMember(shapes))->capture_default_str();
-    app.add_option("--radius", radius_, "of a dome's or tube's inner face")->check(moreThanZero());
-    app.add_option("--center", center_, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame "
+    parser.add("--window", shape_, "shape of the windows: flat, bent (flat with --bow-std), dome or tube")
+        .check(isMember(shapes)).captureDefault();
+    parser.add("--radius", radius_, "of a dome's or tube's inner face").check(moreThanZero());
+    parser.add("--center", center_, "of a dome, or a point of a tube's axis, from which to start: X,Y,Z in the camera's frame "
         "(default: 0,0,0, the camera itself)");
-    app.add_option("--axis", axis_, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 if upright");
-    app.add_option("--thickness", thickness_, "thickness of each layer, from the camera outwards: T[,T...]");
-    app.add_option("--index", index_, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
+    parser.add("--axis", axis_, "of a tube, its direction, from which to start: X,Y,Z in the camera's frame, 0,1,0 if upright");
+    parser.add("--thickness", thickness_, "thickness of each layer, from the camera outwards: T[,T...]");
+    parser.add("--index", index_, "index of refraction of each layer, or its material: N[,N...], as 1.52 "
         "or N-BK7,PMMA,N-BK7");
-    app.add_option("--inner-index", innerIndex_, "index of the medium round the camera, or its name")
-        ->capture_default_str();
-    app.add_option("--outer-index", outerIndex_, "index of the scene's medium, or its name: 1.333, water, "
-        "seawater:T=12,S=35")->capture_default_str();
-    app.add_option("--wavelength", wavelength_, "of the light, nm, for materials that are named (default: 550; of red images "
-        "610, green 540, blue 465)")->check(moreThanZero());
-    app.add_option("--distance", distance_, "from the camera's centre of projection to a flat window; " + distance);
+    parser.add("--inner-index", innerIndex_, "index of the medium round the camera, or its name")
+        .captureDefault();
+    parser.add("--outer-index", outerIndex_, "index of the scene's medium, or its name: 1.333, water, "
+        "seawater:T=12,S=35").captureDefault();
+    parser.add("--wavelength", wavelength_, "of the light, nm, for materials that are named (default: 550; of red images "
+        "610, green 540, blue 465)").check(moreThanZero());
+    parser.add("--distance", distance_, "from the camera's centre of projection to a flat window; " + distance);
 }
 
 bool GivenWindowOptions::isSaid() const
 {
-    return std::any_of(std::begin(OPTIONS), std::end(OPTIONS), [this](const char* name) { return app_->get_option(name)->count() > 0; });
+    return std::any_of(std::begin(OPTIONS), std::end(OPTIONS), [this](const char* name) { return parser_->get(name).count() > 0; });
 }
 
-bool GivenWindowOptions::isDistanceSaid() const { return app_->get_option("--distance")->count() > 0; }
+bool GivenWindowOptions::isDistanceSaid() const { return parser_->get("--distance").count() > 0; }
 
 //! Options of what windows of this shape do not have.
 void GivenWindowOptions::requireOptionsOfShape() const

@@ -8,10 +8,10 @@
 #include "calibrate/parameter_columns.hpp"
 #include <map>
 
-namespace CLI { class App; }
-
 /* What a command line says of windows: their shape, their values, and what of them is free. */
 namespace tools {
+
+class OptionParser;
 
 //! A window, and where its indices come from.
 struct GivenWindow
@@ -28,7 +28,7 @@ class GivenWindowOptions
 {
 public:
     //! @param distance what is said of --distance where it is needed and not given
-    void addTo(CLI::App& app, const std::string& distance);
+    void addTo(OptionParser& parser, const std::string& distance);
     bool isSaid() const;                //!< any of them
     bool isDistanceSaid() const;
     const std::string& shape() const { return shape_; }     //!< as --window says it
@@ -48,7 +48,7 @@ private:
     void requireMaterials(const cv::refract::GlassWindow& window) const;
     void takePlace(cv::refract::GlassWindow& window) const;
 
-    const CLI::App* app_ = nullptr;
+    const OptionParser* parser_ = nullptr;
     std::string shape_ = "flat", center_, axis_, thickness_, index_, innerIndex_ = "1", outerIndex_ = "1";
     double radius_ = 0., wavelength_ = 0., distance_ = 0.;
 };

@@ -3,7 +3,9 @@
 
 #include "calibrate/live_rig.hpp"
 #include "calibrate/live_pairs.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 #include "target/board_quality.hpp"
 #include "target/new_files.hpp"
 #include "target/next_view.hpp"
@@ -309,21 +311,20 @@ private:
 
 } // namespace
 
-void WatchOptions::addTo(CLI::App& app)
+void WatchOptions::addTo(OptionParser& parser)
 {
-    CLI::Option* watch = app.add_option_function<std::vector<std::string>>("--watch", [this](const std::vector<std::string>& values) {
+    Option watch = parser.addCallback("--watch", [this](const std::vector<std::string>& values) {
         given = true;
         for (const std::string& value : values)
             if (!value.empty() && value != "true")          // --watch alone, and in a settings file
                 folders.push_back(value);
     }, "wait while cameras fill the folders of --direct, --glass, --direct2, ..., or only this one (repeatable); say of each image whether "
-       "the board was found, how sharp it is and what the next should show, then calibrate")->expected(0, 1)->type_name("[FOLDER]")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--watch-count", count, "end with so many images that show the board")->needs(watch)->check(CLI::PositiveNumber);
-    app.add_option("--watch-pairs", pairs, "end with so many names of which all images have come and show the board")->needs(watch)
-        ->check(CLI::PositiveNumber);
-    app.add_option("--watch-quiet", quietSeconds, "end when no image has come for so many seconds")->needs(watch)
-        ->check(moreThanZero())->capture_default_str();
+       "the board was found, how sharp it is and what the next should show, then calibrate").mayBeAlone().typeName("[FOLDER]");
+    parser.add("--watch-count", count, "end with so many images that show the board").needs(watch).check(isCount());
+    parser.add("--watch-pairs", pairs, "end with so many names of which all images have come and show the board").needs(watch)
+        .check(isCount());
+    parser.add("--watch-quiet", quietSeconds, "end when no image has come for so many seconds").needs(watch)
+        .check(moreThanZero()).captureDefault();
 }
 
 RigImages watchRig(const WatchOptions& options, const WatchedRig& rig, RigSources& sources, std::ostream& out)

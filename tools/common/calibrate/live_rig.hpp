@@ -18,7 +18,7 @@ struct WatchOptions
     int count = 0, pairs = 0;           //!< images with the target, complete pairs, to wait for; 0: until it is quiet
     double quietSeconds = 30.;
 
-    void addTo(CLI::App& app);
+    void addTo(OptionParser& parser);
 };
 
 //! What the images that came so far are worth.

@@ -3,8 +3,8 @@
 
 #include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
+#include "console/options.hpp"
 #include "console/table.hpp"
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -14,20 +14,20 @@ using namespace cv;
 
 namespace tools {
 
-void RigSources::addTo(CLI::App& app, const std::string& aboutGlass, const std::string& aboutDirect)
+void RigSources::addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect)
 {
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
         const std::string suffix = cameraSuffix(c), same = "the same of camera " + suffix;
-        CLI::Option* ofDirect = app.add_option("--direct" + suffix, direct[c], c ? same : aboutDirect);
-        CLI::Option* ofGlass = app.add_option("--glass" + suffix, glass[c], c ? same : aboutGlass);
+        Option ofDirect = parser.add("--direct" + suffix, direct[c], c ? same : aboutDirect);
+        Option ofGlass = parser.add("--glass" + suffix, glass[c], c ? same : aboutGlass);
         if (c)
-            ofDirect->needs(ofGlass);
+            ofDirect.needs(ofGlass);
         else
-            ofGlass->required();
-        for (CLI::Option* option : {ofDirect, ofGlass})
+            ofGlass.required();
+        for (Option option : {ofDirect, ofGlass})
             if (c > 1)
-                option->group("");          // told in the manual: help of one screen
+                option.hide();          // told in the manual: help of one screen
     }
 }
 

@@ -8,10 +8,10 @@
 #include <array>
 #include <optional>
 
-namespace CLI { class App; }
-
 /* Which images belong together: the observations of a target at each of its poses by all cameras. */
 namespace tools {
+
+class OptionParser;
 
 /** Pairs that a calibration needs: of the bundled rig, four state the normal within 13 % and the worst point within 5 % of what five do,
 and leave two for each half of the range, which tests the other. README.md, --help and doc/ ask for as many (a test reads them). */
@@ -33,7 +33,7 @@ struct RigSources
     Channel channel = BRIGHTNESS;               //!< of colour images, in which the target is looked for
 
     //! --direct, --glass, --direct2, --glass2, ... --glass16; the first is required.
-    void addTo(CLI::App& app, const std::string& aboutGlass, const std::string& aboutDirect);
+    void addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect);
     std::vector<std::string> all() const;       //!< that are given
     int cameraCount() const;                    //!< the last that has any
     bool anyDirect() const;

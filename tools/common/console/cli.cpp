@@ -4,7 +4,6 @@
 #include "console/cli.hpp"
 #include "console/exif.hpp"
 #include "console/leftovers.hpp"
-#include "console/settings_file.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
@@ -41,31 +40,16 @@ std::string oneLine(const std::string& text)
     return result;
 }
 
-//! Of what is left over after parsing; empty if there is none.
-std::string unknownOption(const CLI::App& app)
-{
-    for (const std::string& left : app.remaining())
-        if (left.size() > 1 && left[0] == '-')
-            return "there is no option " + left;
-    return "";
-}
-
 } // namespace
 
 Command::Command(int argc, char** argv, const std::string& manual)
-    : app(manual, argc > 0 ? stripFolder(argv[0]) : "")
+    : parser(manual, argc > 0 ? stripFolder(argv[0]) : ""), arguments_(argv + std::min(argc, 1), argv + argc), line_(quoted(parser.name()))
 {
-    for (int i = 0; i < argc; i++)
-        line_ += (i ? " " : "") + quoted(i ? argv[i] : app.get_name());
-    for (int i = argc - 1; i > 0; i--)      // CLI11 takes them in reverse
-        arguments_.push_back(argv[i]);
-    app.set_version_flag("--version", app.get_name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
-    app.add_flag("--quiet", quiet_, "no progress, no table: errors and warnings only");
-    settingsFile_ = std::make_shared<SettingsFile>(app);
-    app.config_formatter(settingsFile_);
-    app.set_config("--config", "", "settings file (TOML): options without dashes, as size = \"6x5\", one a line; the command line goes "
-                   "first")->type_name("FILE");
-    app.get_formatter()->column_width(34);
+    for (const std::string& argument : arguments_)
+        line_ += " " + quoted(argument);
+    parser.addVersion(parser.name() + " " REFRACT_VERSION " (OpenCV " CV_VERSION ")");
+    parser.addFlag("--quiet", quiet_, "no progress, no table: errors and warnings only");
+    parser.addSettingsFile("settings file (TOML): options without dashes, as size = \"6x5\", one a line; the command line goes first");
 }
 
 std::string Command::stripFolder(const std::string& path)
@@ -75,22 +59,15 @@ std::string Command::stripFolder(const std::string& path)
 
 void Command::parse()
 {
-    try
-    {
-        app.parse(arguments_);
-    }
-    catch (const CLI::FileError&)
-    {
-        throw Failure("--config: there is no such file, or it cannot be read: check folder and name");
-    }
-    settings_ = app.get_config_ptr()->count() ? app.get_config_ptr()->as<std::string>() : "";
-    for (const std::string& argument : settingsFile_->arguments())
+    parser.parse(arguments_);
+    settings_ = parser.settings();
+    for (const std::string& argument : parser.settingsArguments())
         line_ += " " + quoted(argument);
 }
 
 void Command::warn(const std::string& text) const
 {
-    std::cerr << app.get_name() << ": warning: " << text << std::endl;
+    std::cerr << parser.name() << ": warning: " << text << std::endl;
 }
 
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body)
@@ -113,16 +90,10 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
         sayRotated();
         return code;
     }
-    catch (const CLI::Success& e)       // --help, --version
+    catch (const OptionParser::Answer& answer)
     {
-        return command.app.exit(e);
-    }
-    catch (const CLI::ParseError& e)
-    {
-        error = unknownOption(command.app);     // which may be why something else is missing
-        if (error.empty())
-            error = oneLine(e.what());
-        error += " (see " + command.app.get_name() + " --help)";
+        std::cout << answer.text << std::flush;
+        return DONE;
     }
     catch (const cv::Exception& e)
     {
@@ -136,7 +107,7 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
     {
         error = oneLine(e.what());
     }
-    std::cerr << command.app.get_name() << ": " << error << std::endl;
+    std::cerr << command.parser.name() << ": " << error << std::endl;
     sayRotated();           // it may be why
     return CANNOT;
 }

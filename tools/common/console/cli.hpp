@@ -6,9 +6,8 @@
 
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include <CLI/CLI.hpp>
+#include "console/options.hpp"
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,7 @@
     {
         return tools::runTool(argc, argv, MANUAL, [](tools::Command& command) {
             std::string out;
-            command.app.add_option("--out", out, "the file to write")->required();
+            command.parser.add("--out", out, "the file to write").required();
             command.parse();
             ...
             return tools::DONE;
@@ -28,14 +27,12 @@
     } */
 namespace tools {
 
-class SettingsFile;
-
 class Command
 {
 public:
     Command(int argc, char** argv, const std::string& manual);
 
-    CLI::App app;       //!< add options here, before parse()
+    OptionParser parser;    //!< add options here, before parse()
     void parse();       //!< to be called by the body once, after the options are added
 
     bool quiet() const { return quiet_; }                   //!< after parse()
@@ -50,47 +47,21 @@ private:
 
     std::vector<std::string> arguments_;
     std::string line_, settings_;
-    std::shared_ptr<SettingsFile> settingsFile_;
     bool quiet_ = false;
 };
 
 //! The options of a command line; add() declares them.
 template<typename Options>
-Options parsed(Command& command, void (*add)(CLI::App& app, Options& options))
+Options parsed(Command& command, void (*add)(OptionParser& parser, Options& options))
 {
     Options options;
-    add(command.app, options);
+    add(command.parser, options);
     command.parse();
     return options;
 }
 
 //! Runs the body; turns every exception into exit code 1 and one sentence on stderr.
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body);
-
-//! Check of an option's number; CLI11's own names the largest double in its error, and lets nan through.
-inline CLI::Validator numberThat(const std::function<bool(double)>& isGood, const std::string& words, const std::string& range)
-{
-    return CLI::Validator([=](std::string& text) {
-        double number;
-        return parseNumber(text, number) && isGood(number) ? std::string() : "give a number " + words + ", not " + text;
-    }, range);
-}
-
-inline CLI::Validator moreThanZero()
-{
-    return numberThat([](double number) { return number > 0 && std::isfinite(number); }, "more than 0", "> 0");
-}
-
-inline CLI::Validator notNegative()
-{
-    return numberThat([](double number) { return number >= 0 && std::isfinite(number); }, "from 0 on", ">= 0");
-}
-
-inline CLI::Validator between(double least, double most)
-{
-    const std::string range = cv::format("%g to %g", least, most);
-    return numberThat([=](double number) { return number >= least && number <= most; }, "from " + range, range);
-}
 
 } // namespace tools
 

@@ -6,7 +6,9 @@
 #include "target/chessboard.hpp"
 #include "target/circle_grid.hpp"
 #include "target/partial_chessboard.hpp"
-#include "console/cli.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,17 +41,17 @@ double signedArea(const std::vector<Point2d>& points, Size size)
 
 } // namespace
 
-void TargetOptions::addTo(CLI::App& app, bool required)
+void TargetOptions::addTo(OptionParser& parser, bool required)
 {
-    app.add_option("--pattern", pattern, "chessboard, circles, acircles or charuco")
-        ->check(CLI::IsMember({"chessboard", "circles", "acircles", "charuco"}))->capture_default_str();
-    app.add_option("--size", size, "COLSxROWS: inner corners (chessboard, charuco) or dots")->required(required);
-    app.add_option("--square", square, "side of a square; distance between dots; acircles: half the distance "
-                   "between the dots of a row")->required(required)->check(moreThanZero());
-    app.add_option("--marker", marker, "charuco: side of a marker (default: 3/4 of a square)")
-        ->check(moreThanZero());
-    app.add_option("--dictionary", dictionary, "charuco: OpenCV's name of the marker dictionary")
-        ->capture_default_str();
+    parser.add("--pattern", pattern, "chessboard, circles, acircles or charuco")
+        .check(isMember({"chessboard", "circles", "acircles", "charuco"})).captureDefault();
+    parser.add("--size", size, "COLSxROWS: inner corners (chessboard, charuco) or dots").required(required);
+    parser.add("--square", square, "side of a square; distance between dots; acircles: half the distance "
+               "between the dots of a row").required(required).check(moreThanZero());
+    parser.add("--marker", marker, "charuco: side of a marker (default: 3/4 of a square)")
+        .check(moreThanZero());
+    parser.add("--dictionary", dictionary, "charuco: OpenCV's name of the marker dictionary")
+        .captureDefault();
 }
 
 Target::Target(const TargetOptions& options)

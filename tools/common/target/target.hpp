@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace CLI { class App; }
-
 namespace tools {
+
+class OptionParser;
 
 //! --pattern, --size, --square (and --marker, --dictionary for ChArUco) as given on the command line.
 struct TargetOptions
@@ -24,7 +24,7 @@ struct TargetOptions
     bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
 
     bool given() const { return !size.empty(); }
-    void addTo(CLI::App& app, bool required);
+    void addTo(OptionParser& parser, bool required);
 };
 
 /* A flat calibration target: its points, row by row, in the plane z = 0, and how to find them in an image.
