@@ -38,12 +38,12 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 #include "console/cli.hpp"
 #include "console/colour.hpp"
 #include "console/file_output.hpp"
+#include "console/json.hpp"
 #include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "history/history_page.hpp"
 #include "report/plot.hpp"
-#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -254,46 +254,47 @@ std::string verdictOf(const CheckResult& result, const std::string& why)
     return !why.empty() ? "cannot tell" : !result.changed ? "unchanged" : windows ? "moved" : "changed";
 }
 
-nlohmann::ordered_json numberOrNull(double value)
+Json jsonOf(const NamedChange& change)
 {
-    return value == value ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+    Json value = Json::array(), std = Json::array(), unit = Json::array();
+    for (const ChangedValue& changed : change.values)
+    {
+        value.append(changed.value);
+        std.append(changed.std);
+        unit.append(changed.unit);
+    }
+    return {{"name", change.name}, {"camera", change.camera >= 0 ? Json(change.camera + 1) : Json()}, {"value", value}, {"std", std},
+            {"unit", unit}, {"p", change.probability}, {"text", change.sentence}};
 }
 
-nlohmann::ordered_json jsonOf(const NamedChange& change)
+//! What is not to be told is nan, which is null in the file.
+Json jsonOf(const WindowCheck& w, double power)
 {
-    nlohmann::ordered_json json = {{"name", change.name}, {"camera", nullptr}, {"value", nlohmann::ordered_json::array()},
-        {"std", nlohmann::ordered_json::array()}, {"unit", nlohmann::ordered_json::array()}, {"p", change.probability},
-        {"text", change.sentence}};
-    if (change.camera >= 0)
-        json["camera"] = change.camera + 1;
-    for (const ChangedValue& value : change.values)
+    Json json = {{"camera", w.camera + 1}, {"moved", w.moved}};
+    if (w.lengthPerDegree > 0.)
     {
-        json["value"].push_back(value.value);
-        json["std"].push_back(value.std);
-        json["unit"].push_back(value.unit);
+        json.set("center_moved_by", w.lengthPerDegree*w.tiltDeg);
+        json.set("center_std", Json::array({w.lengthPerDegree*w.stdDeg[0], w.lengthPerDegree*w.stdDeg[1]}));
+        json.set("center", Json::array({w.center[0], w.center[1], w.center[2]}));
     }
+    else
+    {
+        json.set("tilt_deg", w.tiltDeg);
+        json.set("tilt_std_deg", Json::array({w.stdDeg[0], w.stdDeg[1]}));
+        json.set("normal", Json::array({w.normal[0], w.normal[1], w.normal[2]}));
+    }
+    json.set("probability_if_unchanged", w.probability);
+    json.set("detection_probability", power);
     return json;
 }
 
-nlohmann::ordered_json jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict,
-                              const std::string& why)
+Json jsonOf(const CheckResult& result, const Options& o, const CheckInput& input, const std::string& verdict, const std::string& why)
 {
-    nlohmann::ordered_json windows = nlohmann::ordered_json::array(), changes = nlohmann::ordered_json::array();
+    Json windows = Json::array(), changes = Json::array();
     for (const WindowCheck& w : result.windows)
-    {
-        nlohmann::ordered_json json = {{"camera", w.camera + 1}, {"moved", w.moved}};
-        if (w.lengthPerDegree > 0.)
-            json.update({{"center_moved_by", numberOrNull(w.lengthPerDegree*w.tiltDeg)},
-                         {"center_std", {w.lengthPerDegree*w.stdDeg[0], w.lengthPerDegree*w.stdDeg[1]}},
-                         {"center", {w.center[0], w.center[1], w.center[2]}}});
-        else
-            json.update({{"tilt_deg", numberOrNull(w.tiltDeg)}, {"tilt_std_deg", {w.stdDeg[0], w.stdDeg[1]}},
-                         {"normal", {w.normal[0], w.normal[1], w.normal[2]}}});
-        json.update({{"probability_if_unchanged", w.probability}, {"detection_probability", powerOf(w, result, o.detect)}});
-        windows.push_back(json);
-    }
+        windows.append(jsonOf(w, powerOf(w, result, o.detect)));
     for (const NamedChange& change : result.changes)
-        changes.push_back(jsonOf(change));
+        changes.append(jsonOf(change));
     return {
         {"verdict", verdict}, {"why", why}, {"windows", windows}, {"changes", changes}, {"explained", result.explained},
         {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
@@ -402,12 +403,12 @@ public:
         std::cout << "Charts: " << o_.pageFile() << '\n';
     }
 
-    nlohmann::ordered_json json() const
+    Json json() const
     {
-        nlohmann::ordered_json found = nlohmann::ordered_json::array();
+        Json found = Json::array();
         for (const FoundDrift& f : result_.found)
-            found.push_back({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"drift_per_month", f.perMonth},
-                             {"checks", f.checks}});
+            found.append({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"drift_per_month", f.perMonth},
+                          {"checks", f.checks}});
         return {{"checks", history_.checks.size()}, {"alarm", isAlarm()}, {"beyond", result_.chartsBeyond(history_)},
                 {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
                 {"ewma_limit", result_.points.back().limit}, {"found", found}};
@@ -478,10 +479,10 @@ int main(int argc, char** argv)
         }
         if (!options.summary.empty())
         {
-            nlohmann::ordered_json json = jsonOf(result, options, input, verdict, why);
+            Json json = jsonOf(result, options, input, verdict, why);
             if (kept)
-                json["history"] = kept->json();
-            writeText(options.summary, json.dump(1) + '\n');
+                json.set("history", kept->json());
+            writeText(options.summary, json.text(1) + '\n');
         }
         if (!command.quiet())
         {

@@ -3,15 +3,13 @@
 
 #include "accept/acceptance_output.hpp"
 #include "console/colour.hpp"
+#include "console/json.hpp"
 #include "console/lines.hpp"
 #include "console/table.hpp"
 #include "report/digest.hpp"
-#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-
-using Json = nlohmann::ordered_json;
 
 namespace tools {
 
@@ -108,33 +106,31 @@ void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTa
     }
 }
 
-static Json numberOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(); }
-
 std::string certificateJson(const Certificate& c)
 {
     const Acceptance& a = *c.acceptance;
     Json lengths = Json::array(), budgets = Json::array(), inputs = Json::array();
     for (const LengthResult& r : a.lengths)
-        lengths.push_back({{"name", r.length.name}, {"length", r.length.length}, {"length_U", r.length.U}, {"measured", r.measured},
-                           {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", numberOrNull(r.budget.dof)}, {"limit", r.limit},
-                           {"decision", textOf(r.decision)}, {"outside_volume", r.outside}});
+        lengths.append({{"name", r.length.name}, {"length", r.length.length}, {"length_U", r.length.U}, {"measured", r.measured},
+                        {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", r.budget.dof}, {"limit", r.limit},
+                        {"decision", textOf(r.decision)}, {"outside_volume", r.outside}});
     for (const GumTable& budget : c.budgets)
     {
         Json rows = Json::array();
         for (const GumRow& row : budget.rows)
-            rows.push_back({{"source", row.source}, {"given", row.given}, {"std", numberOrNull(row.std)},
-                            {"sensitivity", numberOrNull(row.sensitivity)}, {"contribution", row.contribution}, {"share", row.share},
-                            {"dof", numberOrNull(row.dof)}});
-        budgets.push_back({{"quantity", budget.quantity}, {"value", budget.value}, {"rows", rows}, {"u", budget.u},
-                           {"dof", numberOrNull(budget.dof)}, {"k", budget.k}, {"U", budget.U}});
+            rows.append({{"source", row.source}, {"given", row.given}, {"std", row.std},
+                         {"sensitivity", row.sensitivity}, {"contribution", row.contribution}, {"share", row.share},
+                         {"dof", row.dof}});
+        budgets.append({{"quantity", budget.quantity}, {"value", budget.value}, {"rows", rows}, {"u", budget.u},
+                        {"dof", budget.dof}, {"k", budget.k}, {"U", budget.U}});
     }
     for (const CertificateInput& input : c.inputs)
-        inputs.push_back({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
+        inputs.append({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
     const Json json = {{"decision", textOf(a.decision())}, {"number", c.number()}, {"date", c.label.date}, {"unit", a.unit},
                        {"max_error", a.limit.text()}, {"images_checked", a.imagesChecked}, {"lengths", lengths}, {"budgets", budgets},
                        {"missing", a.missing}, {"notices", a.notices}, {"inputs", inputs}, {"command", c.command},
                        {"version", REFRACT_VERSION}};
-    return json.dump(2) + '\n';
+    return json.text(2) + '\n';
 }
 
 } // namespace tools

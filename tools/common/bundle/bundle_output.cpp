@@ -4,16 +4,15 @@
 #include "bundle/bundle_output.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "console/csv.hpp"
+#include "console/json.hpp"
 #include "console/table.hpp"
 
-#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <sstream>
 
 using namespace cv;
-using Json = nlohmann::ordered_json;
 
 namespace tools {
 
@@ -116,11 +115,11 @@ Json jsonOf(const Change& change)
 Json jsonOf(const CameraChange& change, double rms)
 {
     Json json = {{"rms", rms}};
-    json[change.name == "centre" ? "center_from_start" : "normal_from_start_deg"] = jsonOf(change.place);
+    json.set(change.name == "centre" ? "center_from_start" : "normal_from_start_deg", jsonOf(change.place));
     if (change.axis.estimated)
-        json["axis_from_start_deg"] = jsonOf(change.axis);
-    json["R_from_start_deg"] = jsonOf(change.R);
-    json["T_from_start"] = jsonOf(change.T);
+        json.set("axis_from_start_deg", jsonOf(change.axis));
+    json.set("R_from_start_deg", jsonOf(change.R));
+    json.set("T_from_start", jsonOf(change.T));
     return json;
 }
 
@@ -128,7 +127,7 @@ Json parametersOf(const std::vector<EstimatedParameter>& list)
 {
     Json result = Json::object();
     for (const EstimatedParameter& p : list)
-        result[p.name] = {{"value", p.value}, {"std", p.std}};
+        result.set(p.name, {{"value", p.value}, {"std", p.std}});
     return result;
 }
 
@@ -164,7 +163,7 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
 {
     Json cameras = Json::array();
     for (size_t c = 0; c < findings.changes.size(); c++)
-        cameras.push_back(jsonOf(findings.changes[c], adjustment.rmsOfCamera[c]));
+        cameras.append(jsonOf(findings.changes[c], adjustment.rmsOfCamera[c]));
     const Json json = {
         {"verdict", findings.verdict()}, {"pass", findings.pass()}, {"rms", adjustment.fit.rms}, {"residual_sigma", adjustment.fit.sigma},
         {"degrees_of_freedom", adjustment.fit.dof}, {"unit", unit}, {"scale", findings.scale},
@@ -174,7 +173,7 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
         {"contradictions", findings.contradictions}, {"cameras", cameras},
         {"windows", parametersOf(estimatedWindowParameters(adjustment.fit))},
         {"lenses_and_places", parametersOf(estimatedRigParameters(adjustment.fit))}, {"command", command}};
-    return json.dump(2) + "\n";
+    return json.text(2) + "\n";
 }
 
 void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,

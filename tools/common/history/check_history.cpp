@@ -4,8 +4,8 @@
 #include "history/check_history.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
+#include "console/json.hpp"
 #include "console/sha256.hpp"
-#include <nlohmann/json.hpp>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -14,7 +14,6 @@
 #include <sstream>
 
 using cv::format;
-using Json = nlohmann::ordered_json;
 
 namespace tools {
 
@@ -26,25 +25,25 @@ Json jsonOf(const MatrixXd& matrix)
 {
     Json rows = Json::array();
     for (const auto& row : matrix.rowwise())
-        rows.push_back(std::vector<double>(row.begin(), row.end()));
+        rows.append(std::vector<double>(row.begin(), row.end()));
     return rows;
 }
 
 VectorXd vectorOf(const Json& json)
 {
-    const std::vector<double> values = json.get<std::vector<double>>();
+    const std::vector<double> values = json.asNumbers();
     return Eigen::Map<const VectorXd>(values.data(), (Eigen::Index)values.size());
 }
 
 //! @param columns of each row
 MatrixXd matrixOf(const Json& json, Eigen::Index rows, Eigen::Index columns)
 {
-    if ((Eigen::Index)json.size() != rows)
+    if ((Eigen::Index)json.items().size() != rows)
         throw Failure("rows are missing");
     MatrixXd matrix(rows, columns);
     for (Eigen::Index i = 0; i < rows; i++)
     {
-        const VectorXd row = vectorOf(json.at(i));
+        const VectorXd row = vectorOf(json.at((size_t)i));
         if (row.size() != columns)
             throw Failure("numbers are missing");
         matrix.row(i) = row;
@@ -64,8 +63,8 @@ Json valuesOf(const CheckHistory& history, const CheckRecord& check)
         const MatrixXd C = check.information.block(first, first, size, size).inverse();
         const VectorXd value = change.factor*C*check.score.segment(first, size);
         const VectorXd std = std::abs(change.factor)*C.diagonal().cwiseSqrt();
-        values.push_back({{"name", change.name}, {"value", std::vector<double>(value.begin(), value.end())},
-                          {"std", std::vector<double>(std.begin(), std.end())}, {"unit", change.unit}});
+        values.append({{"name", change.name}, {"value", std::vector<double>(value.begin(), value.end())},
+                       {"std", std::vector<double>(std.begin(), std.end())}, {"unit", change.unit}});
         first += size;
     }
     return values;
@@ -75,7 +74,7 @@ Json jsonOf(const CheckHistory& history, const CheckRecord& check)
 {
     Json images = Json::array();
     for (const CheckedImage& image : check.images)
-        images.push_back({{"name", image.name}, {"sha256", image.sha256}});
+        images.append({{"name", image.name}, {"sha256", image.sha256}});
     return {{"time", check.time}, {"verdict", check.verdict}, {"images", images}, {"sigma_px", check.sigma}, {"dof", check.dof},
             {"values", valuesOf(history, check)}, {"changes", check.changes},
             {"score", std::vector<double>(check.score.begin(), check.score.end())}, {"information", jsonOf(check.information)},
@@ -85,13 +84,13 @@ Json jsonOf(const CheckHistory& history, const CheckRecord& check)
 CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
 {
     CheckRecord check;
-    check.time = parseTime(json.at("time").get<std::string>(), "time");
-    check.verdict = json.at("verdict").get<std::string>();
-    for (const Json& image : json.at("images"))
-        check.images.push_back({image.at("name").get<std::string>(), image.at("sha256").get<std::string>()});
-    check.sigma = json.at("sigma_px").get<double>();
-    check.dof = json.at("dof").get<double>();
-    check.changes = json.at("changes").get<std::vector<int>>();
+    check.time = parseTime(json.at("time").asText(), "time");
+    check.verdict = json.at("verdict").asText();
+    for (const Json& image : json.at("images").items())
+        check.images.push_back({image.at("name").asText(), image.at("sha256").asText()});
+    check.sigma = json.at("sigma_px").asNumber();
+    check.dof = json.at("dof").asNumber();
+    check.changes = json.at("changes").asWholes();
     Eigen::Index count = 0;
     for (int c : check.changes)
         count += changes.at(c).size();
@@ -100,21 +99,21 @@ CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
         throw Failure("numbers are missing");
     check.information = matrixOf(json.at("information"), count, count);
     const Json& byParameters = json.at("by_parameters");
-    check.byParameters = matrixOf(byParameters, count, count ? (Eigen::Index)byParameters.at(0).size() : 0);
+    check.byParameters = matrixOf(byParameters, count, count ? (Eigen::Index)byParameters.at(0).items().size() : 0);
     return check;
 }
 
 CheckHistory historyOf(const Json& json)
 {
-    if (json.at("file").get<std::string>() != KIND)
+    if (json.at("file").asText() != KIND)
         throw Failure("it is another file");
     CheckHistory history;
-    history.calibration = json.at("calibration_sha256").get<std::string>();
-    history.serial = json.at("window_serial").get<std::string>();
-    for (const Json& change : json.at("charts"))
-        history.changes.push_back({change.at("name").get<std::string>(), change.at("unit").get<std::string>(),
-                                   change.at("axes").get<std::vector<std::string>>(), change.at("factor").get<double>()});
-    for (const Json& check : json.at("checks"))
+    history.calibration = json.at("calibration_sha256").asText();
+    history.serial = json.at("window_serial").asText();
+    for (const Json& change : json.at("charts").items())
+        history.changes.push_back({change.at("name").asText(), change.at("unit").asText(),
+                                   change.at("axes").asTexts(), change.at("factor").asNumber()});
+    for (const Json& check : json.at("checks").items())
     {
         history.checks.push_back(checkOf(check, history.changes));
         const size_t n = history.checks.size();
@@ -194,9 +193,9 @@ CheckHistory readHistory(const std::string& filename)
     try
     {
         std::ifstream in(filename, std::ios::binary);
-        return historyOf(Json::parse(in));
+        return historyOf(Json::read(in));
     }
-    catch (const nlohmann::json::exception&)
+    catch (const Json::Error&)
     {
         why = "it is cut short or another file";
     }
@@ -216,12 +215,12 @@ void writeHistory(const std::string& filename, const CheckHistory& history)
 {
     Json charts = Json::array(), checks = Json::array();
     for (const ChartedChange& change : history.changes)
-        charts.push_back({{"name", change.name}, {"unit", change.unit}, {"axes", change.axes}, {"factor", change.factor}});
+        charts.append({{"name", change.name}, {"unit", change.unit}, {"axes", change.axes}, {"factor", change.factor}});
     for (const CheckRecord& check : history.checks)
-        checks.push_back(jsonOf(history, check));
+        checks.append(jsonOf(history, check));
     const Json json = {{"file", KIND}, {"calibration_sha256", history.calibration}, {"window_serial", history.serial}, {"charts", charts},
                        {"checks", checks}};
-    writeText(filename, json.dump(1) + '\n');
+    writeText(filename, json.text(1) + '\n');
 }
 
 CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history)

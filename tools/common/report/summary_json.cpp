@@ -7,38 +7,29 @@
 #include "assess/round_window.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
+#include "console/json.hpp"
 #include "console/table.hpp"
 #include "report/given_values.hpp"
-#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
 
 using namespace cv;
 using namespace cv::refract;
-using Json = nlohmann::ordered_json;
 
 namespace tools {
 
 namespace {
 
-//! Six digits: more are rounding errors, which need not be the same every time.
-void roundNumbers(Json& json)
-{
-    if (json.is_number_float() && std::isfinite(json.get<double>()))
-        json = std::stod(format("%.6g", json.get<double>()));
-    else if (json.is_structured())
-        for (Json& item : json)
-            roundNumbers(item);
-}
+const int DIGITS = 6;       // more are rounding errors, which need not be the same every time
 
-Json listOf(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+Json listOf(const Vec3d& v) { return Json::array({v[0], v[1], v[2]}); }
 
 //! What was estimated has a standard deviation, what was given none.
 Json estimate(double value, double std)
 {
     Json result = {{"value", value}};
     if (std > 0)
-        result["std"] = std;
+        result.set("std", std);
     return result;
 }
 
@@ -46,7 +37,7 @@ Json estimates(const std::vector<double>& values, const std::vector<double>& std
 {
     Json list = Json::array();
     for (size_t i = 0; i < values.size(); i++)
-        list.push_back(estimate(values[i], std[i]));
+        list.append(estimate(values[i], std[i]));
     return list;
 }
 
@@ -54,7 +45,7 @@ Json parameters(const std::vector<EstimatedParameter>& list)
 {
     Json result = Json::object();
     for (const EstimatedParameter& p : list)
-        result[p.name] = estimate(p.value, p.std);
+        result.set(p.name, estimate(p.value, p.std));
     return result;
 }
 
@@ -75,26 +66,26 @@ void addPlace(const RigCalibration& c, int camera, Json& json)
     const WindowStd std = windowStd(c.fit, camera);
     if (const std::optional<RoundWindow> round = roundWindowOf(c, camera))
     {
-        json["center"] = listOf(window.center);
-        json["center_std"] = std.center;
-        json["radius"] = estimate(window.radius, std.radius);
-        json["offset"] = estimate(round->offset, round->offsetStd);
-        json["moves_points"] = {{"px", round->px}, {"length", round->length}, {"z", round->depth}, {"needless", round->isNeedless()}};
+        json.set("center", listOf(window.center));
+        json.set("center_std", std.center);
+        json.set("radius", estimate(window.radius, std.radius));
+        json.set("offset", estimate(round->offset, round->offsetStd));
+        json.set("moves_points", {{"px", round->px}, {"length", round->length}, {"z", round->depth}, {"needless", round->isNeedless()}});
         if (window.shape == WINDOW_TUBE)
         {
-            json["axis"] = listOf(window.axis);
-            json["axis_std_deg"] = std.axisDeg;
+            json.set("axis", listOf(window.axis));
+            json.set("axis_std_deg", std.axisDeg);
         }
         return;
     }
-    json["normal"] = listOf(window.normal);
-    json["normal_std_deg"] = std.normalDeg;
-    json["tilt_deg"] = std::acos(std::min(1., window.normal[2]))*180./CV_PI;
-    json["distance"] = window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance);
+    json.set("normal", listOf(window.normal));
+    json.set("normal_std_deg", std.normalDeg);
+    json.set("tilt_deg", std::acos(std::min(1., window.normal[2]))*180./CV_PI);
+    json.set("distance", window.innerIndex == window.outerIndex ? Json() : estimate(window.distance, std.distance));
     if (window.shape == WINDOW_BENT)
     {
-        json["curvature"] = estimate(window.curvature, std.curvature);
-        json["bow_mm_per_m"] = estimate(bowOf(window.curvature, c.unit), bowOf(std.curvature, c.unit));
+        json.set("curvature", estimate(window.curvature, std.curvature));
+        json.set("bow_mm_per_m", estimate(bowOf(window.curvature, c.unit), bowOf(std.curvature, c.unit)));
     }
 }
 
@@ -104,14 +95,16 @@ Json cameraJson(const RigCalibration& c, int camera)
     const WindowStd std = windowStd(c.fit, camera);
     const LensSource& lens = c.lensSources[camera];
     const Rms glass = rmsOf(c, camera, true), direct = rmsOf(c, camera, false);
-    Json result = {
-        {"window", {
-            {"shape", nameOfShape(window)},
-            {"thickness", estimates(window.thickness, std.thickness)},
-            {"index", estimates(window.index, std.index)},
-            {"inner_index", window.innerIndex},
-            {"outer_index", estimate(window.outerIndex, std.outerIndex)},
-            {"second_solution", otherMinimumJson(c, camera)}}},
+    Json windowJson = {
+        {"shape", nameOfShape(window)},
+        {"thickness", estimates(window.thickness, std.thickness)},
+        {"index", estimates(window.index, std.index)},
+        {"inner_index", window.innerIndex},
+        {"outer_index", estimate(window.outerIndex, std.outerIndex)},
+        {"second_solution", otherMinimumJson(c, camera)}};
+    addPlace(c, camera, windowJson);
+    return {
+        {"window", windowJson},
         {"lens", {
             {"model", c.fit.rig.cameras[camera]->lensModel()},
             {"parameters", std::vector<double>(c.fit.rig.cameras[camera]->lensParameters())},
@@ -125,8 +118,6 @@ Json cameraJson(const RigCalibration& c, int camera)
         {"baselines_px", {{"glass_ignored", c.baselines.glassIgnored[camera]},
                           {"glass_ignored_board_fixed", c.baselines.shift[camera]},
                           {"pinhole_through_glass", c.baselines.throughGlass[camera]}}}};
-    addPlace(c, camera, result["window"]);
-    return result;
 }
 
 Json viewsJson(const RigCalibration& c)
@@ -140,9 +131,9 @@ Json viewsJson(const RigCalibration& c)
             {
                 const Rms image = rmsOf(c, camera, glass, i);
                 if (image.points)
-                    rms[(glass ? "glass" : "direct") + std::to_string(camera + 1)] = image.px;
+                    rms.set((glass ? "glass" : "direct") + std::to_string(camera + 1), image.px);
             }
-        views.push_back({{"name", c.data.views[i].stem}, {"rms_px", rms}});
+        views.append({{"name", c.data.views[i].stem}, {"rms_px", rms}});
     }
     return views;
 }
@@ -151,8 +142,8 @@ Json droppedJson(const RigCalibration& c)
 {
     Json list = Json::array();
     for (const Rejected& d : rejectedOf(c))
-        list.push_back({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
-                        {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
+        list.append({{"view", d.view}, {"image", (d.glass ? "glass" : "direct") + std::to_string(d.camera + 1)},
+                     {"points", d.points}, {"whole_image", d.image}, {"why", d.why}});
     return list;
 }
 
@@ -163,7 +154,7 @@ Json lensChoiceJson(const LensChoice& choice)
         return nullptr;
     Json candidates = Json::array();
     for (const LensScore& score : choice.scores)
-        candidates.push_back({{"model", score.model}, {"coefficients", score.coefficients}, {"rms_px", score.px}});
+        candidates.append({{"model", score.model}, {"coefficients", score.coefficients}, {"rms_px", score.px}});
     return {{"model", choice.lens().model}, {"coefficients", choice.lens().coefficients}, {"rms_px", choice.lens().px},
             {"held_out", choice.byImages ? "images" : "parts of the target"},
             {"images", choice.direct ? "direct images" : "glass images"}, {"candidates", candidates},
@@ -184,7 +175,7 @@ Json nearFarJson(const NearFar& n)
 {
     if (!n.done)
         return nullptr;
-    return {{"near_range", n.nearRange}, {"far_range", n.farRange},
+    return {{"near_range", Json::array({n.nearRange[0], n.nearRange[1]})}, {"far_range", Json::array({n.farRange[0], n.farRange[1]})},
             {"window_rms_px", {{"near_to_far", n.windowNearToFar}, {"far_to_near", n.windowFarToNear}}},
             {"pinhole_rms_px", {{"near_to_far", n.pinholeNearToFar}, {"far_to_near", n.pinholeFarToNear}}}};
 }
@@ -193,8 +184,8 @@ Json limitsJson(const Findings& findings)
 {
     Json list = Json::array();
     for (const LimitCheck& limit : findings.limits)
-        list.push_back({{"option", limit.option}, {"what", limit.what}, {"limit", limit.limit}, {"value", limit.value},
-                        {"unit", limit.unit}, {"met", limit.met()}, {"not_judged", limit.notJudged}});
+        list.append({{"option", limit.option}, {"what", limit.what}, {"limit", limit.limit}, {"value", limit.value},
+                     {"unit", limit.unit}, {"met", limit.met()}, {"not_judged", limit.notJudged}});
     return list;
 }
 
@@ -208,7 +199,7 @@ Json shotsJson(const std::vector<PlannedImage>& shots, const std::string& placeK
 {
     Json list = Json::array();
     for (const PlannedImage& image : shots)
-        list.push_back({{"image", image.placement}, {"predicted", qualityJson(image.quality, placeKey)}});
+        list.append({{"image", image.placement}, {"predicted", qualityJson(image.quality, placeKey)}});
     return list;
 }
 
@@ -216,7 +207,7 @@ Json givenJson(const RigCalibration& c)
 {
     Json list = Json::array();
     for (const SummaryRow& row : givenRows(c))
-        list.push_back({{"what", row.name}, {"value", row.cells[0]}, {"known_to", row.cells[1]}, {"source", row.cells[2]}});
+        list.append({{"what", row.name}, {"value", row.cells[0]}, {"known_to", row.cells[1]}, {"source", row.cells[2]}});
     return list;
 }
 
@@ -225,19 +216,19 @@ void addAssessment(Json& json, const RigCalibration& c, const Assessment& a)
     const std::string placeKey = isRound(c.fit.rig.cameras[0]->window()) ? "center_std" : "normal_std_deg";
     Json errors = Json::array(), tolerances = Json::array(), budget = Json::array();
     for (const ErrorMap& map : a.errors)
-        errors.push_back({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
-                          {"share_seen", map.seenShare()},
-                          {"worst_of_pixel_noise", map.worstPixelNoise()}});
+        errors.append({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
+                       {"share_seen", map.seenShare()},
+                       {"worst_of_pixel_noise", map.worstPixelNoise()}});
     for (const BudgetRow& row : a.budget)
-        budget.push_back({{"source", row.source}, {"known_to", row.given}, {"effect", row.effect}, {"share", row.share}});
+        budget.append({{"source", row.source}, {"known_to", row.given}, {"effect", row.effect}, {"share", row.share}});
     for (const Tolerance& t : a.tolerances)
-        tolerances.push_back({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
-    json["point_error"] = errors;
-    json["budget"] = budget;
-    json["tolerances"] = tolerances;
-    json["next_images"] = {{"now", qualityJson(a.advice.now, placeKey)},
-                           {"pairs", shotsJson(a.advice.pairs, placeKey)},
-                           {"instead_of_the_first", shotsJson(a.advice.instead, placeKey)}};
+        tolerances.append({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
+    json.set("point_error", errors);
+    json.set("budget", budget);
+    json.set("tolerances", tolerances);
+    json.set("next_images", {{"now", qualityJson(a.advice.now, placeKey)},
+                             {"pairs", shotsJson(a.advice.pairs, placeKey)},
+                             {"instead_of_the_first", shotsJson(a.advice.instead, placeKey)}});
 }
 
 } // namespace
@@ -247,7 +238,7 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
 {
     Json notes = Json::object();
     for (const auto& note : c.label.notes)
-        notes[note.first] = note.second;
+        notes.set(note.first, note.second);
     Json json = {
         {"verdict", findings.verdict()},
         {"next_step", nextStep(c, assessment, findings)},
@@ -263,20 +254,20 @@ std::string summaryJson(const RigCalibration& c, const Assessment& assessment, c
         {"fit", {{"rms_px", c.fit.rms}, {"sigma_px", c.fit.sigma}, {"degrees_of_freedom", c.fit.dof}}}};
     Json cameras = Json::array();
     for (int k = 0; k < c.data.cameraCount; k++)
-        cameras.push_back(cameraJson(c, k));
-    json["cameras"] = cameras;
-    json["rig"] = parameters(estimatedRigParameters(c.fit));
-    json["given"] = givenJson(c);
+        cameras.append(cameraJson(c, k));
+    json.set("cameras", cameras);
+    json.set("rig", parameters(estimatedRigParameters(c.fit)));
+    json.set("given", givenJson(c));
     addAssessment(json, c, assessment);
-    json["views"] = viewsJson(c);
-    json["images_without_target"] = c.withoutTarget;
-    json["left_out"] = droppedJson(c);
-    json["findings"] = {{"contradictions", findings.contradictions}, {"weak", findings.weak},
-                        {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}};
-    json["made_by"] = {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
-                       {"time", timeOfFiles(c.inputs)}};
-    roundNumbers(json);
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+    json.set("views", viewsJson(c));
+    json.set("images_without_target", c.withoutTarget);
+    json.set("left_out", droppedJson(c));
+    json.set("findings", {{"contradictions", findings.contradictions}, {"weak", findings.weak},
+                          {"cannot_tell", findings.cannotTell}, {"assumed", findings.assumed}});
+    json.set("made_by", {{"command", command}, {"refract_version", REFRACT_VERSION}, {"opencv_version", CV_VERSION},
+                         {"time", timeOfFiles(c.inputs)}});
+    json.roundTo(DIGITS);
+    return json.text(1) + '\n';
 }
 
 } // namespace tools
