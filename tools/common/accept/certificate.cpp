@@ -14,8 +14,6 @@
 #include <limits>
 #include <numeric>
 
-using namespace kainjow::mustache;
-
 namespace tools {
 
 namespace {
@@ -48,13 +46,13 @@ std::vector<size_t> lengthsOnPage(const Acceptance& a)
     return order;
 }
 
-data lengthsOf(const Acceptance& a)
+PageList lengthsOf(const Acceptance& a)
 {
-    data list{data::type::list};
+    PageList list;
     for (size_t i : lengthsOnPage(a))
     {
         const LengthResult& r = a.lengths[i];
-        data row;
+        PageValues row;
         row.set("name", shortened(r.length.name, LONG_NAME));
         row.set("nominal", format("%.4f", r.length.length));
         row.set("measured", format("%.4f", r.measured));
@@ -64,7 +62,7 @@ data lengthsOf(const Acceptance& a)
         row.set("limit", format("%.4f", r.limit));
         row.set("decision", textOf(r.decision) + (r.outside ? " *" : ""));
         row.set("class", textOf(r.decision));
-        list << row;
+        list.push_back(row);
     }
     return list;
 }
@@ -87,32 +85,24 @@ std::vector<GumRow> rowsOnPage(const GumTable& table)
     return rows;
 }
 
-data budgetOf(const GumTable& table)
+PageList budgetOf(const GumTable& table)
 {
-    data rows{data::type::list};
+    PageList rows;
     for (const GumRow& row : rowsOnPage(table))
     {
-        data entry;
+        PageValues entry;
         entry.set("source", row.source);
         entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given);
         entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
         entry.set("contribution", format("%.5f", row.contribution));
         entry.set("share", format("%.1f", 100.*row.share));
         entry.set("dof", std::isnan(row.dof) ? "" : dofText(row.dof));
-        rows << entry;
+        rows.push_back(entry);
     }
     return rows;
 }
 
-data sentences(const std::vector<std::string>& all)
-{
-    data list{data::type::list};
-    for (const std::string& sentence : all)
-        list << data{"text", sentence};
-    return list;
-}
-
-void setLabel(data& page, const CertificateLabel& label)
+void setLabel(PageValues& page, const CertificateLabel& label)
 {
     page.set("date", label.date);
     for (const auto& entry : {std::make_pair("serial", label.serial), {"customer", label.customer}, {"laboratory", label.laboratory},
@@ -133,16 +123,16 @@ std::string verdictOf(const Acceptance& a)
     }
 }
 
-data inputsOf(const Certificate& c)
+PageList inputsOf(const Certificate& c)
 {
-    data list{data::type::list};
+    PageList list;
     for (const CertificateInput& input : c.inputs)
     {
-        data entry;
+        PageValues entry;
         entry.set("what", input.what);
         entry.set("name", input.name);
         entry.set("sha256", input.sha256);
-        list << entry;
+        list.push_back(entry);
     }
     return list;
 }
@@ -171,7 +161,7 @@ std::string Certificate::number() const
 std::string certificateHtml(const Certificate& c)
 {
     const Acceptance& a = *c.acceptance;
-    data page;
+    PageValues page;
     setLabel(page, c.label);
     page.set("number", c.number());
     page.set("verdict", verdictOf(a));
@@ -198,7 +188,7 @@ std::string certificateHtml(const Certificate& c)
             text += (i ? "; " : "") + a.missing[i];
         remarks.push_back(text);
     }
-    page.set("remarks", sentences(remarks));
+    page.set("remarks", pageList(remarks));
     page.set("has_remarks", !remarks.empty());
     page.set("inputs", inputsOf(c));
     page.set("calibration_time", orNotStated(c.calibrationTime));

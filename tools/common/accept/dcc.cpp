@@ -10,8 +10,6 @@
 #include <cmath>
 #include <functional>
 
-using namespace kainjow::mustache;
-
 namespace tools {
 
 namespace {
@@ -61,7 +59,7 @@ std::string listOf(const Acceptance& a, const std::function<std::string(const Le
     return list;
 }
 
-void setLengths(data& page, const Acceptance& a)
+void setLengths(PageValues& page, const Acceptance& a)
 {
     const double millimetres = millimetresIn(a.unit);
     const auto set = [&](const std::string& name, const std::function<double(const LengthResult&)>& number) {
@@ -82,7 +80,7 @@ void setLengths(data& page, const Acceptance& a)
 std::string certificateDcc(const Certificate& c)
 {
     const Acceptance& a = *c.acceptance;
-    data page;
+    PageValues page;
     for (const auto& entry : {std::make_pair("number", c.number()), {"date", c.label.date}, {"serial", c.label.serial},
                               {"customer", c.label.customer}, {"laboratory", c.label.laboratory}, {"person", c.label.person},
                               {"standard", c.label.standard}, {"environment", c.label.environment}, {"command", c.command},
@@ -93,18 +91,18 @@ std::string certificateDcc(const Certificate& c)
     page.set("opencv_version", CV_VERSION);
     page.set("conformity", conformityOf(a));
     setLengths(page, a);
-    data inputs{data::type::list}, remarks{data::type::list};
+    PageList inputs, remarks;
     for (const CertificateInput& input : c.inputs)
     {
-        data entry;
+        PageValues entry;
         entry.set("what", input.what);
         entry.set("name", textOf(input.name));
         entry.set("sha256", input.sha256);
-        inputs << entry;
+        inputs.push_back(entry);
     }
     for (const std::vector<std::string>* const sentences : {&a.notices, &a.missing})
         for (const std::string& sentence : *sentences)
-            remarks << data{"text", (sentences == &a.missing ? "Against VDI/VDE 2634 part 1: " : "") + textOf(sentence)};
+            remarks.emplace_back("text", (sentences == &a.missing ? "Against VDI/VDE 2634 part 1: " : "") + textOf(sentence));
     page.set("inputs", inputs);
     page.set("remarks", remarks);
     return renderPage("the DCC", DCC_TEMPLATE, page);

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <regex>
 
 namespace tools {
 
@@ -19,17 +18,38 @@ namespace fs = std::filesystem;
 
 namespace {
 
+//! A name with a number in it: %d, %4d or %04d; the last of several.
+struct NumberedName
+{
+    std::string before, after;
+    size_t digits;                      //!< at least
+};
+
+bool readNumberedName(const std::string& pattern, NumberedName& name)
+{
+    for (size_t at = pattern.rfind('%'); at != std::string::npos; at = at ? pattern.rfind('%', at - 1) : std::string::npos)
+    {
+        const size_t end = pattern.find_first_not_of("0123456789", at + 1), most = 2;
+        if (end == std::string::npos || pattern[end] != 'd')
+            continue;
+        const size_t first = at + 1 + (pattern[at + 1] == '0');
+        if (end - first > most)
+            continue;
+        name = {pattern.substr(0, at), pattern.substr(end + 1), end > first ? (size_t)std::stoi(pattern.substr(first, end - first)) : 1};
+        return true;
+    }
+    return false;
+}
+
 //! left%04d.png is every file left NUMBER .png whose number has four digits or more; in the order of numbers.
 bool findNumbered(const std::string& source, std::vector<std::string>& files, std::vector<long>& numbers)
 {
-    static const std::regex FORMAT(R"((.*)%(0?)(\d{0,2})d(.*))");
-    const std::string pattern = fs::path(source).filename().string();
-    std::smatch parts;
-    if (fs::exists(source) || !std::regex_match(pattern, parts, FORMAT))
+    NumberedName named;
+    if (fs::exists(source) || !readNumberedName(fs::path(source).filename().string(), named))
         return false;
     const fs::path folder = fs::path(source).has_parent_path() ? fs::path(source).parent_path() : fs::path(".");
-    const std::string before = parts[1], after = parts[4];
-    const size_t digits = parts[3].length() ? (size_t)std::stoi(parts[3]) : 1, most = 9;
+    const std::string &before = named.before, &after = named.after;
+    const size_t digits = named.digits, most = 9;
     std::map<long, std::string> found;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))

@@ -8,8 +8,6 @@
 #include "report/plot.hpp"
 #include <cmath>
 
-using namespace kainjow::mustache;
-
 namespace tools {
 
 namespace {
@@ -94,32 +92,32 @@ std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
     return plot.svg();
 }
 
-data trendRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+PageList trendRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
 {
     const std::vector<int> first = firstParameters(history.changes);
     const Estimates last = estimatesOf(history, history.checks.back(), covariance);
-    data list{data::type::list};
+    PageList list;
     for (size_t c = 0; c < history.changes.size(); c++)
         for (int i = first[c]; i < first[c + 1]; i++)
         {
             const ChartedChange& change = history.changes[c];
             const ChartPoint& point = result.points.back();
             const std::string axis = change.axes[i - first[c]];
-            data row;
+            PageValues row;
             row.set("name", change.name + (axis.empty() ? "" : ", " + axis));
             row.set("ewma", std::isnan(point.ewma[i]) ? "-" : cv::format("%+.2f", point.ewma[i]));
             row.set("class", point.isBeyond(i) ? "missed" : "");
             row.set("value", std::isnan(last.value[i]) ? "-" : plusMinus(last.value[i], last.std[i])
                     + (change.unit.empty() ? "" : " " + change.unit));
             row.set("trend", trendText(result.trends[i], history, change.unit));
-            list << row;
+            list.push_back(row);
         }
     return list;
 }
 
-data checkRows(const CheckHistory& history, const HistoryResult& result)
+PageList checkRows(const CheckHistory& history, const HistoryResult& result)
 {
-    data list{data::type::list};
+    PageList list;
     for (size_t t = 0; t < history.checks.size(); t++)
     {
         const CheckRecord& check = history.checks[t];
@@ -127,7 +125,7 @@ data checkRows(const CheckHistory& history, const HistoryResult& result)
         std::string images;
         for (const CheckedImage& image : check.images)
             images += (images.empty() ? "" : ", ") + image.name;
-        data row;
+        PageValues row;
         row.set("time", check.time);
         row.set("verdict", check.verdict);
         row.set("images", images);
@@ -135,20 +133,20 @@ data checkRows(const CheckHistory& history, const HistoryResult& result)
         row.set("t2", cv::format("%.1f of %.1f (%d)", p.t2, p.limitT2, p.dof));
         row.set("limit", cv::format("%.2f", p.limit));
         row.set("alarm", p.isAlarm() ? "beyond a limit" : "");
-        list << row;
+        list.push_back(row);
     }
     return list;
 }
 
-data figures(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+PageList figures(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
 {
-    data list{data::type::list};
+    PageList list;
     for (int c = 0; c < (int)history.changes.size(); c++)
     {
-        data figure;
+        PageValues figure;
         figure.set("title", history.changes[c].name);
         figure.set("svg", changeFigure(history, result, covariance, c));
-        list << figure;
+        list.push_back(figure);
     }
     return list;
 }
@@ -157,7 +155,7 @@ data figures(const CheckHistory& history, const HistoryResult& result, const Mat
 
 std::string historyPage(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance, const HistoryFacts& facts)
 {
-    data page;
+    PageValues page;
     page.set("verdict", facts.verdict);
     page.set("verdict_class", facts.isGood ? "good" : "bad");
     page.set("has_serial", !history.serial.empty());
@@ -171,9 +169,9 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("weight", cv::format("%g", EWMA_WEIGHT));
     page.set("has_causes", !result.causes.empty());
     page.set("causes", causesIn(result, history));
-    data found{data::type::list};
+    PageList found;
     for (const FoundDrift& f : result.found)
-        found << data{"text", foundText(f, history, result.interval)};
+        found.emplace_back("text", foundText(f, history, result.interval));
     page.set("found", found);
     page.set("t2", t2Figure(history, result));
     page.set("figures", figures(history, result, covariance));

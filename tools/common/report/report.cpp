@@ -20,29 +20,20 @@
 
 using namespace cv;
 using namespace cv::refract;
-using namespace kainjow::mustache;
 
 namespace tools {
 
 namespace {
 
-data listOf(const std::vector<std::string>& sentences)
+PageList rowsOf(const std::vector<SummaryRow>& rows)
 {
-    data list{data::type::list};
-    for (const std::string& sentence : sentences)
-        list << data{"text", sentence};
-    return list;
-}
-
-data rowsOf(const std::vector<SummaryRow>& rows)
-{
-    data list{data::type::list};
+    PageList list;
     for (const SummaryRow& row : rows)
     {
-        data entry;
+        PageValues entry;
         entry.set("name", row.name);
-        entry.set("cells", listOf(row.cells));
-        list << entry;
+        entry.set("cells", pageList(row.cells));
+        list.push_back(entry);
     }
     return list;
 }
@@ -78,10 +69,10 @@ std::string timeText(const RigCalibration& c)
 
 /** The first sheet of paper has room for so many sentences and rows; the pages after it have all.
 @param name of the list in the template; it also gets has_NAME and more_NAME */
-void setOnSheet(data& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
+void setOnSheet(PageValues& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
 {
     const size_t shown = std::min(room, sentences.size());
-    page.set(name, listOf({sentences.begin(), sentences.begin() + shown}));
+    page.set(name, pageList({sentences.begin(), sentences.begin() + shown}));
     page.set("has_" + name, shown > 0);
     page.set("has_more_" + name, sentences.size() > shown);
     page.set("more_" + name, std::to_string(sentences.size() - shown));
@@ -94,7 +85,7 @@ bool hasRoom(const Findings& f)
     return f.contradictions.size() + f.weak.size() + f.limits.size() <= FEW;
 }
 
-void setSheet(data& page, const RigCalibration& c, const Assessment& a, const Findings& f)
+void setSheet(PageValues& page, const RigCalibration& c, const Assessment& a, const Findings& f)
 {
     const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14, CANNOT_TELL = 4;
     setOnSheet(page, "sheet_contradictions", f.contradictions, CONTRADICTIONS);
@@ -121,7 +112,7 @@ std::string windowSentence(const RigCalibration& c, int k)
 }
 
 //! Verdict in plain words: the class colours the card.
-void setVerdict(data& page, const RigCalibration& c, const Findings& f)
+void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
 {
     page.set("verdict", f.verdict());
     page.set("verdict_class", f.tone() == Tone::BAD ? "bad" : f.tone() == Tone::GOOD ? "good" : "weak");
@@ -140,44 +131,44 @@ void setVerdict(data& page, const RigCalibration& c, const Findings& f)
     page.set("place_note", isRound(window) ? "The centre is seen from the camera" : "The normal points from the camera to the scene");
     page.set("headline", headline(c));
     page.set("windows", windows);
-    data limits{data::type::list};
+    PageList limits;
     for (const LimitCheck& limit : f.limits)
     {
-        data entry;
+        PageValues entry;
         entry.set("mark", limit.met() ? "✓" : "✗");
         entry.set("class", limit.met() ? "met" : "missed");
         entry.set("text", limit.sentence());
-        limits << entry;
+        limits.push_back(entry);
     }
     page.set("limits", limits);
     page.set("time", timeText(c));
     page.set("serial", c.label.serial);
     page.set("has_serial", !c.label.serial.empty());
-    data notes{data::type::list};
+    PageList notes;
     for (const auto& note : c.label.notes)
     {
-        data entry;
+        PageValues entry;
         entry.set("key", note.first);
         entry.set("text", note.second);
-        notes << entry;
+        notes.push_back(entry);
     }
     page.set("notes", notes);
 }
 
-data figure(const Figure& picture, const std::string& title, const std::string& reading)
+PageValues figure(const Figure& picture, const std::string& title, const std::string& reading)
 {
-    data entry;
+    PageValues entry;
     entry.set("title", title);
     entry.set("svg", picture.svg);
     entry.set("reading", reading + (picture.note.empty() ? "" : " (" + picture.note + ")") + ".");
     return entry;
 }
 
-data figuresOf(const RigCalibration& c, int camera, Progress& progress)
+PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
 {
-    data list{data::type::list};
+    PageList list;
     auto add = [&](const Figure& picture, const char* title, const char* reading) {
-        list << figure(picture, title, reading);
+        list.push_back(figure(picture, title, reading));
         progress.step();
     };
     add(drawSideView(c, camera, 0), "Seen from above",
@@ -208,49 +199,50 @@ data figuresOf(const RigCalibration& c, int camera, Progress& progress)
 }
 
 //! Parameters with their standard deviations, and their correlations as coloured cells.
-void setParameters(data& page, const Fit& fit)
+void setParameters(PageValues& page, const Fit& fit)
 {
     const std::vector<EstimatedParameter> window = estimatedWindowParameters(fit);
     std::vector<EstimatedParameter> all = window;
     const std::vector<EstimatedParameter> rig = estimatedRigParameters(fit);
     all.insert(all.end(), rig.begin(), rig.end());
-    data parameters{data::type::list}, correlations{data::type::list}, heads{data::type::list};
+    PageList parameters, correlations, heads;
     for (const EstimatedParameter& p : all)
     {
-        data entry;
+        PageValues entry;
         entry.set("name", p.name);
         entry.set("value", format("%.7g", p.value));
         entry.set("std", format("%.2g", p.std));
-        parameters << entry;
+        parameters.push_back(entry);
     }
     for (const EstimatedParameter& p : window)
     {
-        data entry, cells{data::type::list};
+        PageValues entry;
+        PageList cells;
         entry.set("name", p.name);
         for (const EstimatedParameter& q : window)
         {
             const double r = fit.covariance.at<double>(p.column, q.column)/(p.std*q.std);
-            data cell;
+            PageValues cell;
             cell.set("value", format("%.2f", std::round(100.*r)/100. + 0.));    // no minus before 0.00
             cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6*std::abs(r)));
-            cells << cell;
+            cells.push_back(cell);
         }
         entry.set("cells", cells);
-        correlations << entry;
-        heads << data{"name", p.name};
+        correlations.push_back(entry);
+        heads.emplace_back("name", p.name);
     }
     page.set("parameters", parameters);
     page.set("correlations", correlations);
     page.set("correlation_heads", heads);
 }
 
-void setTable(data& page, const std::string& name, const std::vector<SummaryRow>& rows)
+void setTable(PageValues& page, const std::string& name, const std::vector<SummaryRow>& rows)
 {
     page.set(name, rowsOf(rows));
     page.set("has_" + name, !rows.empty());
 }
 
-data errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
+PageValues errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
 {
     progress.step();
     return figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
@@ -259,46 +251,46 @@ data errorOverRange(const RigCalibration& c, const Assessment& a, Progress& prog
 }
 
 //! Over the image, at each range.
-void addErrorMaps(data& list, const RigCalibration& c, const Assessment& a, Progress& progress)
+void addErrorMaps(PageList& list, const RigCalibration& c, const Assessment& a, Progress& progress)
 {
     const Vec2d scale = commonScale(a.errors);
     for (const ErrorMap& map : a.errors)
     {
         if (map.seen())
-            list << figure(drawErrorMap(c, map, scale), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
-                           c.data.cameraCount > 1 ? std::string("Over the image of camera 1; white parts are not seen by ")
-                                                    + (c.data.cameraCount == 2 ? "both cameras" : "any other camera")
-                                                    + ". The colours of all ranges are those of one scale"
-                                                  : "Over the image, for points on a plane square to the camera. The colours of "
-                                                    "all ranges are those of one scale");
+            list.push_back(figure(drawErrorMap(c, map, scale), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
+                                  c.data.cameraCount > 1 ? std::string("Over the image of camera 1; white parts are not seen by ")
+                                                           + (c.data.cameraCount == 2 ? "both cameras" : "any other camera")
+                                                           + ". The colours of all ranges are those of one scale"
+                                                         : "Over the image, for points on a plane square to the camera. The colours of "
+                                                           "all ranges are those of one scale"));
         progress.step();
     }
 }
 
 //! The rig from two sides.
-data rigFigures(const RigCalibration& c, Progress& progress)
+PageList rigFigures(const RigCalibration& c, Progress& progress)
 {
     const char* reading = "To scale, obliquely from above: the cameras with their numbers, the part of each window that they look "
                           "through, their middle rays bending at it, and the points that were seen; a camera that is not where you "
                           "mounted it shows here";
-    data list{data::type::list};
-    list << figure(drawRig(c, 35.), "The rig from behind", reading);
+    PageList list;
+    list.push_back(figure(drawRig(c, 35.), "The rig from behind", reading));
     progress.step();
-    list << figure(drawRig(c, -60.), "The rig from the other side", reading);
+    list.push_back(figure(drawRig(c, -60.), "The rig from the other side", reading));
     progress.step();
     return list;
 }
 
 //! Views by cameras: how many points each saw through its window, coloured by their share.
-void setSightings(data& page, const RigCalibration& c)
+void setSightings(PageValues& page, const RigCalibration& c)
 {
-    data rows{data::type::list};
+    PageList rows;
     std::vector<int> pointsSeenBy(c.data.cameraCount + 1);
     for (int i : c.fit.views)
     {
         const View& view = c.data.views[i];
         std::vector<int> seenBy(view.objectPoints.size());
-        data cells{data::type::list};
+        PageList cells;
         for (int k = 0; k < c.data.cameraCount; k++)
         {
             int count = 0;
@@ -309,18 +301,18 @@ void setSightings(data& page, const RigCalibration& c)
                     seenBy[p]++;
                 }
             const int direct = (int)std::count_if(view.direct[k].begin(), view.direct[k].end(), seen);
-            data cell;
+            PageValues cell;
             cell.set("value", (count ? std::to_string(count) : std::string(direct ? "" : "-"))
                               + (direct ? format("%s%d direct", count ? " + " : "", direct) : ""));
             cell.set("colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)view.objectPoints.size()));
-            cells << cell;
+            cells.push_back(cell);
         }
         for (int count : seenBy)
             pointsSeenBy[count]++;
-        data row;
+        PageValues row;
         row.set("name", view.stem);
         row.set("cells", cells);
-        rows << row;
+        rows.push_back(row);
     }
     std::string note;
     for (int count = 1; count <= c.data.cameraCount; count++)
@@ -331,25 +323,25 @@ void setSightings(data& page, const RigCalibration& c)
     page.set("sightings_note", note + ".");
 }
 
-void setPhotos(data& page, const RigCalibration& c, const std::vector<Photo>& photos, Progress& progress)
+void setPhotos(PageValues& page, const RigCalibration& c, const std::vector<Photo>& photos, Progress& progress)
 {
-    data list{data::type::list}, scale{data::type::list};
+    PageList list, scale;
     for (const Photo& photo : photos)
     {
         const Thumbnail thumbnail = makeThumbnail(c, photo);
-        data entry;
+        PageValues entry;
         entry.set("uri", thumbnail.uri);
         entry.set("caption", thumbnail.caption);
         entry.set("class", thumbnail.suspect ? "suspect" : "");
-        list << entry;
+        list.push_back(entry);
         progress.step();
     }
     for (const PhotoScale& step : photoScale(c))
     {
-        data entry;
+        PageValues entry;
         entry.set("colour", step.colour);
         entry.set("name", step.name);
-        scale << entry;
+        scale.push_back(entry);
     }
     page.set("photos", list);
     page.set("photo_scale", scale);
@@ -365,21 +357,21 @@ void setPhotos(data& page, const RigCalibration& c, const std::vector<Photo>& ph
 std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings,
                        const std::string& commandLine, bool quiet)
 {
-    data page;
+    PageValues page;
     setVerdict(page, c, findings);
     setSheet(page, c, assessment, findings);
     page.set("given", rowsOf(givenRows(c)));
-    page.set("contradictions", listOf(findings.contradictions));
-    page.set("weak", listOf(findings.weak));
-    page.set("cannot_tell", listOf(findings.cannotTell));
-    page.set("assumed", listOf(findings.assumed));
-    page.set("without_target", listOf(c.withoutTarget));
+    page.set("contradictions", pageList(findings.contradictions));
+    page.set("weak", pageList(findings.weak));
+    page.set("cannot_tell", pageList(findings.cannotTell));
+    page.set("assumed", pageList(findings.assumed));
+    page.set("without_target", pageList(c.withoutTarget));
     page.set("has_without_target", !c.withoutTarget.empty());
 
     std::vector<std::string> rejected;
     for (const Rejected& d : rejectedOf(c))
         rejected.push_back(d.sentence());
-    page.set("dropped", listOf(rejected));
+    page.set("dropped", pageList(rejected));
     page.set("has_dropped", !rejected.empty());
     page.set("stereo", c.data.cameraCount > 1);
     page.set("fold_cameras", c.data.cameraCount > 2);
@@ -404,8 +396,8 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         return isRound(camera->window()); });
     Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + domes + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
-    data onSheet{data::type::list}, after{data::type::list};
-    (hasRoom(findings) ? onSheet : after) << errorOverRange(c, assessment, progress);
+    PageList onSheet, after;
+    (hasRoom(findings) ? onSheet : after).push_back(errorOverRange(c, assessment, progress));
     addErrorMaps(after, c, assessment, progress);
     page.set("sheet_figures", onSheet);
     page.set("error_figures", after);
@@ -414,15 +406,15 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         page.set("rig_figures", rigFigures(c, progress));
         setSightings(page, c);
     }
-    data cameras{data::type::list}, heads{data::type::list};
+    PageList cameras, heads;
     for (int k = 0; k < c.data.cameraCount; k++)
     {
         const std::string name = c.data.cameraCount == 1 ? "Camera" : format("Camera %d", k + 1);
-        data camera;
+        PageValues camera;
         camera.set("name", name);
         camera.set("figures", figuresOf(c, k, progress));
-        cameras << camera;
-        heads << data{"name", name};
+        cameras.push_back(camera);
+        heads.emplace_back("name", name);
     }
     page.set("cameras", cameras);
     setPhotos(page, c, photos, progress);

@@ -1,0 +1,59 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "report/page_template.hpp"
+#include "console/failure.hpp"
+
+#include <kainjow/mustache.hpp>
+
+using kainjow::mustache::data;
+
+namespace tools {
+
+//! To what the library takes.
+class PageConverter
+{
+public:
+    static data dataOf(const PageValues& page)
+    {
+        data object;
+        for (const auto& [name, value] : page.values_)
+            object.set(name, value.kind == PageValues::Value::TEXT ? data(value.text)
+                       : value.kind == PageValues::Value::FLAG ? data(value.flag) : listOf(value.list));
+        return object;
+    }
+
+private:
+    static data listOf(const PageList& entries)
+    {
+        data list{data::type::list};
+        for (const PageValues& entry : entries)
+            list << dataOf(entry);
+        return list;
+    }
+};
+
+void PageValues::set(const std::string& name, const std::string& text) { values_.push_back({name, {Value::TEXT, text, false, {}}}); }
+
+void PageValues::set(const std::string& name, bool flag) { values_.push_back({name, {Value::FLAG, "", flag, {}}}); }
+
+void PageValues::set(const std::string& name, const PageList& list) { values_.push_back({name, {Value::LIST, "", false, list}}); }
+
+PageList pageList(const std::vector<std::string>& texts)
+{
+    PageList list;
+    for (const std::string& text : texts)
+        list.emplace_back("text", text);
+    return list;
+}
+
+std::string renderPage(const std::string& name, const char* pageTemplate, const PageValues& page)
+{
+    kainjow::mustache::mustache mustache(pageTemplate);
+    const std::string text = mustache.render(PageConverter::dataOf(page));
+    if (!mustache.is_valid())
+        throw Failure(name + "'s template is broken: " + mustache.error_message());
+    return text;
+}
+
+} // namespace tools
