@@ -29,28 +29,28 @@ double worstStd(const Mat& covariance, int at)
     return std::sqrt(std::max(0., values.at<double>(0)));
 }
 
-CameraChange changeOf(const BundleStart& start, const Fit& fit, int c)
+CameraCorrection correctionOf(const BundleStart& start, const Fit& fit, int c)
 {
-    CameraChange change;
+    CameraCorrection correction;
     const GlassWindow before = start.rig.cameras[c]->window(), now = fit.rig.cameras[c]->window();
     const double std = placeStd(fit.covariance, fit.rig, c);
-    change.name = placeName(now);
-    change.place = {std > 0., placeChange(before, now), std};
-    change.worstDeg = isRound(now) ? std/now.radius*DEGREES : std;
+    correction.name = placeName(now);
+    correction.place = {std > 0., placeChange(before, now), std};
+    correction.worstDeg = isRound(now) ? std/now.radius*DEGREES : std;
     if (now.shape == WINDOW_TUBE)
     {
         const double axisStd = worstStd(fit.covariance, columnsOf(fit.rig, c).axis);
-        change.axis = {axisStd > 0., std::asin(std::min(1., norm(before.axis.cross(now.axis))))*DEGREES, axisStd*DEGREES};
+        correction.axis = {axisStd > 0., std::asin(std::min(1., norm(before.axis.cross(now.axis))))*DEGREES, axisStd*DEGREES};
     }
     if (c == 0)
-        return change;
+        return correction;
     const RigidTransform& was = start.rig.extrinsics[c];
     const RigidTransform& is = fit.rig.extrinsics[c];
     const int at = extrinsicsColumn(fit.rig, c);
     const double rStd = worstStd(fit.covariance, at), tStd = worstStd(fit.covariance, at + 3);
-    change.R = {rStd > 0., norm(rotationVector(is.R*was.R.t()))*DEGREES, rStd*DEGREES};
-    change.T = {tStd > 0., norm(is.T - was.T), tStd};
-    return change;
+    correction.R = {rStd > 0., norm(rotationVector(is.R*was.R.t()))*DEGREES, rStd*DEGREES};
+    correction.T = {tStd > 0., norm(is.T - was.T), tStd};
+    return correction;
 }
 
 std::string scaleOf(const BundleStart& start, const GivenLengths& lengths, const Fit& fit)
@@ -158,7 +158,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     const Fit& fit = adjustment.fit;
     BundleFindings findings;
     for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
-        findings.changes.push_back(changeOf(start, fit, c));
+        findings.corrections.push_back(correctionOf(start, fit, c));
     findings.scale = scaleOf(start, lengths, fit);
     for (const EstimatedParameter& p : estimatedWindowParameters(fit))
         if (isWeak(p, fit.rig))

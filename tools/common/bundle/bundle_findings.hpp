@@ -10,24 +10,24 @@
 namespace tools {
 
 //! How far a camera's window or place is from the start, and how well it is known.
-struct Change
+struct Correction
 {
     bool estimated = false;
     double by = 0., std = 0.;           //!< of a direction or R degrees, of a centre or T lengths; std along the worst direction
 };
 
-struct CameraChange
+struct CameraCorrection
 {
     std::string name;                   //!< of its window's place: "normal" or "centre"
-    Change place, R, T;                 //!< R and T of the first camera: nothing
-    Change axis;                        //!< a tube's
+    Correction place, R, T;             //!< R and T of the first camera: nothing
+    Correction axis;                    //!< a tube's
     double worstDeg = 0.;               //!< the place's std; of a centre, as seen from a radius away
 };
 
 //! What is to be thought of an adjustment.
 struct BundleFindings
 {
-    std::vector<CameraChange> changes;  //!< per camera
+    std::vector<CameraCorrection> corrections;  //!< per camera
     std::string scale;                  //!< what tells it
     std::vector<std::string> weak;      //!< estimated, but hardly determined: name = value +- std
     std::vector<std::string> contradictions;    //!< what was known of the start, and is so no longer; a sentence each

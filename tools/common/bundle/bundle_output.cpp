@@ -35,17 +35,17 @@ std::string fitted(const std::string& head, const std::vector<std::string>& word
     return line;
 }
 
-std::string changeText(const char* name, const Change& change)
+std::string correctionText(const char* name, const Correction& correction)
 {
-    return std::string(name) + (change.estimated ? format(" %.3g +- %.2g", change.by, change.std) : " as given");
+    return std::string(name) + (correction.estimated ? format(" %.3g +- %.2g", correction.by, correction.std) : " as given");
 }
 
 //! The camera that is known worst, for rigs too large to show all.
 int worstCamera(const BundleFindings& findings)
 {
     int worst = 0;
-    for (int c = 1; c < (int)findings.changes.size(); c++)
-        if (findings.changes[c].worstDeg > findings.changes[worst].worstDeg)
+    for (int c = 1; c < (int)findings.corrections.size(); c++)
+        if (findings.corrections[c].worstDeg > findings.corrections[worst].worstDeg)
             worst = c;
     return worst;
 }
@@ -53,22 +53,22 @@ int worstCamera(const BundleFindings& findings)
 //! Of a camera in a tube two lines: it has an axis, too.
 std::string cameraLines(const BundleFindings& findings, int c)
 {
-    const CameraChange& change = findings.changes[c];
+    const CameraCorrection& correction = findings.corrections[c];
     const std::string head = format("  camera %d: ", c + 1);
-    std::string text = head + changeText(change.name.c_str(), change.place);
-    if (change.axis.estimated)
-        text += ", " + changeText("axis", change.axis);
+    std::string text = head + correctionText(correction.name.c_str(), correction.place);
+    if (correction.axis.estimated)
+        text += ", " + correctionText("axis", correction.axis);
     if (c > 0)
-        text += (change.axis.estimated ? ",\n" + std::string(head.size(), ' ') : ", ") + changeText("R", change.R) + ", "
-            + changeText("T", change.T);
+        text += (correction.axis.estimated ? ",\n" + std::string(head.size(), ' ') : ", ") + correctionText("R", correction.R) + ", "
+            + correctionText("T", correction.T);
     return text + "\n";
 }
 
 //! A line a camera, while there is room in the ten.
 int shownCameras(const BundleFindings& findings)
 {
-    const auto hasAxis = [](const CameraChange& c) { return c.axis.estimated; };
-    return std::any_of(findings.changes.begin(), findings.changes.end(), hasAxis) ? 2 : 3;
+    const auto hasAxis = [](const CameraCorrection& c) { return c.axis.estimated; };
+    return std::any_of(findings.corrections.begin(), findings.corrections.end(), hasAxis) ? 2 : 3;
 }
 
 double median(std::vector<double> values)
@@ -104,22 +104,22 @@ std::vector<std::string> namesOf(const Matches& matches, const std::vector<int>&
     return names;
 }
 
-Json jsonOf(const Change& change)
+Json jsonOf(const Correction& correction)
 {
-    if (!change.estimated)
+    if (!correction.estimated)
         return nullptr;
-    return {{"by", change.by}, {"std", change.std}};
+    return {{"by", correction.by}, {"std", correction.std}};
 }
 
 //! As calib.yml names it: of a dome or tube a center, of a tube an axis.
-Json jsonOf(const CameraChange& change, double rms)
+Json jsonOf(const CameraCorrection& correction, double rms)
 {
     Json json = {{"rms", rms}};
-    json.set(change.name == "centre" ? "center_from_start" : "normal_from_start_deg", jsonOf(change.place));
-    if (change.axis.estimated)
-        json.set("axis_from_start_deg", jsonOf(change.axis));
-    json.set("R_from_start_deg", jsonOf(change.R));
-    json.set("T_from_start", jsonOf(change.T));
+    json.set(correction.name == "centre" ? "center_from_start" : "normal_from_start_deg", jsonOf(correction.place));
+    if (correction.axis.estimated)
+        json.set("axis_from_start_deg", jsonOf(correction.axis));
+    json.set("R_from_start_deg", jsonOf(correction.R));
+    json.set("T_from_start", jsonOf(correction.T));
     return json;
 }
 
@@ -162,8 +162,8 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
                        const std::string& command, const std::string& unit)
 {
     Json cameras = Json::array();
-    for (size_t c = 0; c < findings.changes.size(); c++)
-        cameras.append(jsonOf(findings.changes[c], adjustment.rmsOfCamera[c]));
+    for (size_t c = 0; c < findings.corrections.size(); c++)
+        cameras.append(jsonOf(findings.corrections[c], adjustment.rmsOfCamera[c]));
     const Json json = {
         {"verdict", findings.verdict()}, {"pass", findings.pass()}, {"rms", adjustment.fit.rms}, {"residual_sigma", adjustment.fit.sigma},
         {"degrees_of_freedom", adjustment.fit.dof}, {"unit", unit}, {"scale", findings.scale},
@@ -179,7 +179,7 @@ std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustmen
 void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
                  const std::string& unit)
 {
-    const int shown = shownCameras(findings), cameras = (int)findings.changes.size();
+    const int shown = shownCameras(findings), cameras = (int)findings.corrections.size();
     const Fit& fit = adjustment.fit;
     out << findings.verdict()
         << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
