@@ -6,7 +6,9 @@ if(NOT CPACK_PACKAGE_FILES)
   # No path to libraries in programs, as they are where every program finds them; changelogs and manual pages compressed.
   file(GLOB programs LIST_DIRECTORIES FALSE ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*/usr/bin/*)
   foreach(program ${programs})
-    file(RPATH_REMOVE FILE ${program})
+    if(NOT IS_SYMLINK ${program})
+      file(RPATH_REMOVE FILE ${program})
+    endif()
   endforeach()
   file(GLOB_RECURSE texts ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*/usr/share/doc/*/changelog*
        ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*/usr/share/man/*)

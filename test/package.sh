@@ -52,7 +52,13 @@ if [ $bare = no ]; then
   pkg-config --print-errors --modversion opencv_refract
   for tool in usr/bin/refract_*; do
     page=usr/share/man/man1/${tool##*/}.1.gz
-    gzip -dc "$page" | grep -q '^\.SH OPTIONS' || { echo "$page is not the man page of $tool" >&2; exit 1; }
+    heading=OPTIONS
+    if [ "$tool" = usr/bin/refract_tools ]; then
+      heading="SEE ALSO"        # the others, which are links to it
+    elif [ "$(readlink "$tool")" != refract_tools ]; then
+      echo "$tool is not a link to refract_tools" >&2; exit 1
+    fi
+    gzip -dc "$page" | grep -q "^\.SH $heading" || { echo "$page is not the man page of $tool" >&2; exit 1; }
   done
   "$completion" usr/bin usr/share/bash-completion/completions/refract_calib
 else

@@ -220,3 +220,26 @@ TEST_CASE("Ceres and Eigen stay where calibrations are", "[architecture]")
             CHECK((isCalibrator(component) || contentsOf(ROOT + "/" + TREES[0] + "/" + file).find(library) == std::string::npos));
     }
 }
+
+TEST_CASE("Other libraries of the tools are included where the page says, and nowhere else", "[architecture]")
+{
+    const std::string text = page();
+    const size_t begin = text.find("## Other libraries in the tools\n");
+    REQUIRE(begin != std::string::npos);
+    int count = 0;
+    for (const std::string& row : rowsOf(text.substr(begin, text.find("\n## ", begin) - begin)))
+        for (const std::string& header : matches(row, R"(^\| `(<[\w/]+>?)` \|)"))
+        {
+            std::vector<std::string> included;
+            for (const std::string& file : below(ROOT + "/tools", false))
+                if (contentsOf(ROOT + "/tools/" + file).find("#include " + header) != std::string::npos)
+                    included.push_back(file);
+            std::vector<std::string> named;
+            for (const std::string& file : matches(row, R"(`([\w/]+\.cpp)`)"))
+                named.push_back("common/" + file);
+            CAPTURE(header);
+            CHECK(included == named);
+            count++;
+        }
+    CHECK(count == 7);
+}

@@ -280,7 +280,7 @@ void writeOutputs(const Options& o, const Certificate& certificate)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_accept_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options o = parsed(command, addOptions);

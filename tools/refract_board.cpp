@@ -59,7 +59,7 @@ std::string asOptions(const Options& o)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_board_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

@@ -103,7 +103,7 @@ void explain(const Options& o, const Calibration& file, const Matches& matches, 
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_bundle_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

@@ -464,7 +464,7 @@ void printErrors(const Findings& findings)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_calib_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parseOptions(command);

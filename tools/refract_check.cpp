@@ -434,7 +434,7 @@ void requireSerial(const Options& o, const Calibration& calibration)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_check_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options = parsed(command, addOptions);

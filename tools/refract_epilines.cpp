@@ -171,7 +171,7 @@ void addOptions(OptionParser& parser, Options& options)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_epilines_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

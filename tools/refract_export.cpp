@@ -151,7 +151,7 @@ void printTable(const CentralRig& rig)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_export_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

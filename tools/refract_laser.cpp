@@ -431,7 +431,7 @@ void checkOptions(const Options& o, const std::string& settings)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_laser_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

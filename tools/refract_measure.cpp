@@ -491,7 +491,7 @@ void checkCombination(const Options& options, const Calibration& calibration)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_measure_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);

@@ -289,7 +289,7 @@ void refuseOverwriting(const std::vector<std::string>& files, const Scene& scene
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_simulate_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         std::string rig, folder, extension = "png";

@@ -466,7 +466,7 @@ void addOptions(OptionParser& parser, Options& options)
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_stereo_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options = parsed(command, addOptions);

@@ -152,7 +152,7 @@ private:
 
 } // namespace
 
-int main(int argc, char** argv)
+int refract_undistort_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options;

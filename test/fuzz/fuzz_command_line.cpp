@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "harness.hpp"
+#include "one_program.hpp"
 #include "scratch.hpp"
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>
@@ -11,31 +12,10 @@
 /* The tools as they are started: the input is a command line, one argument a line, the tool's name first. They run in a folder
 of their own, with a small file of each kind; arguments that could lead out of it are not tried. */
 
-int refract_accept_main(int argc, char** argv);
-int refract_board_main(int argc, char** argv);
-int refract_bundle_main(int argc, char** argv);
-int refract_calib_main(int argc, char** argv);
-int refract_check_main(int argc, char** argv);
-int refract_epilines_main(int argc, char** argv);
-int refract_export_main(int argc, char** argv);
-int refract_laser_main(int argc, char** argv);
-int refract_measure_main(int argc, char** argv);
-int refract_simulate_main(int argc, char** argv);
-int refract_stereo_main(int argc, char** argv);
-int refract_undistort_main(int argc, char** argv);
-
 using namespace fuzz;
 namespace fs = std::filesystem;
 
 namespace {
-
-const std::map<std::string, int (*)(int, char**)> TOOLS = {
-    {"refract_accept", refract_accept_main},
-    {"refract_board", refract_board_main}, {"refract_bundle", refract_bundle_main}, {"refract_calib", refract_calib_main},
-    {"refract_check", refract_check_main}, {"refract_epilines", refract_epilines_main}, {"refract_export", refract_export_main},
-    {"refract_laser", refract_laser_main},
-    {"refract_measure", refract_measure_main}, {"refract_simulate", refract_simulate_main}, {"refract_stereo", refract_stereo_main},
-    {"refract_undistort", refract_undistort_main}};
 
 const char CAMERA[] = R"(
   image_width: 32
@@ -145,8 +125,10 @@ void fuzz::tryInput(Bytes& bytes)
     if (!words.back().empty() || words.size() == 1)
         words.emplace_back();
     words.pop_back();
-    const auto tool = TOOLS.find(words[0]);
-    if (tool == TOOLS.end())
+    const tools::NamedTool* tool = tools::ALL_TOOLS;
+    while (tool->name && tool->name != words[0])
+        tool++;
+    if (!tool->name)
         return;
     std::vector<char*> arguments;
     for (std::string& word : words)
@@ -157,6 +139,6 @@ void fuzz::tryInput(Bytes& bytes)
     }
     arguments.push_back(nullptr);
     folder.restore();
-    const int code = tool->second((int)words.size(), arguments.data());
+    const int code = tool->main((int)words.size(), arguments.data());
     promise(code >= 0 && code <= 2, "the exit code is 0, 1 or 2");
 }

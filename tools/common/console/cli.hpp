@@ -15,7 +15,7 @@
 
     static const char MANUAL[] = R"(What the tool does. ...)";
 
-    int main(int argc, char** argv)
+    int refract_NAME_main(int argc, char** argv)         // in refract_NAME.cpp
     {
         return tools::runTool(argc, argv, MANUAL, [](tools::Command& command) {
             std::string out;

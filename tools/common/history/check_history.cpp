@@ -6,6 +6,7 @@
 #include "console/file_output.hpp"
 #include "console/json.hpp"
 #include "console/sha256.hpp"
+#include <Eigen/LU>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
