@@ -103,8 +103,9 @@ std::vector<std::string> knownPaths()
 }
 
 //! Where Ceres and Eigen may be.
-bool isCalibrator(const std::string& component)
+bool isCalibrator(const std::string& file)
 {
+    const std::string component = file.substr(0, file.find('/'));
     return component == "adjust" || component == "start" || component == "calibrate";
 }
 
@@ -214,10 +215,35 @@ TEST_CASE("Ceres and Eigen stay where calibrations are", "[architecture]")
 {
     for (const std::string& file : below(ROOT + "/" + TREES[0], false))
     {
-        const std::string component = file.substr(0, file.find('/'));
+        const std::string text = contentsOf(ROOT + "/" + TREES[0] + "/" + file);
         CAPTURE(file);
-        for (const char* library : { "#include <ceres", "#include <Eigen" })
-            CHECK((isCalibrator(component) || contentsOf(ROOT + "/" + TREES[0] + "/" + file).find(library) == std::string::npos));
+        CHECK((isCalibrator(file) || text.find("#include <ceres") == std::string::npos));
+        CHECK((isCalibrator(file) || file.find("math/dense") == 0 || text.find("#include <Eigen") == std::string::npos));
+    }
+}
+
+TEST_CASE("Of Eigen all sources but those that the page lists include no more than its core", "[architecture]")
+{
+    const std::string text = page();
+    const size_t begin = text.find("## Eigen\n");
+    REQUIRE(begin != std::string::npos);
+    const std::vector<std::string> listed = matches(text.substr(begin, text.find("\n## ", begin) - begin), R"(\n\| `([\w/.*]+)`)");
+    std::vector<std::string> found;
+    for (const std::string& tree : TREES)
+        for (const std::string& file : below(ROOT + "/" + tree, false))
+        {
+            std::vector<std::string> headers = matches(contentsOf(ROOT + "/" + tree + "/" + file), "#include <((?:unsupported/)?Eigen/\\w+)>");
+            headers.erase(std::remove(headers.begin(), headers.end(), "Eigen/Core"), headers.end());
+            if (headers.empty())
+                continue;
+            CAPTURE(file);
+            CHECK(std::any_of(listed.begin(), listed.end(), [&](const std::string& l) { return isAnyOf({ file }, l); }));
+            found.push_back(file);
+        }
+    for (const std::string& wildcard : listed)
+    {
+        CAPTURE(wildcard);
+        CHECK(isAnyOf(found, wildcard));
     }
 }
 

@@ -3,8 +3,8 @@
 # of this distribution and at http://opencv.org/license.html.
 
 # Which sources are compiled, for every build that compiles the module's: all of them with Ceres (2.1 is the first with manifolds)
-# and the Eigen that it brings; without it all but the calibrators, in whose place src/calibrate/without_ceres.cpp says what is
-# missing.
+# and the Eigen that it brings; without it all but the calibrators and the matrices in src/math/dense.hpp. In their place
+# src/calibrate/without_ceres.cpp says what is missing.
 set(REFRACT_WITH_CERES AUTO CACHE STRING "Calibrate, with Ceres: ON, OFF, or AUTO, where it is found")
 set_property(CACHE REFRACT_WITH_CERES PROPERTY STRINGS AUTO ON OFF)
 
@@ -32,8 +32,8 @@ function(refract_choose_sources module_dir)
   if(REFRACT_HAS_CERES)
     return()
   endif()
-  file(GLOB calibrators CONFIGURE_DEPENDS ${module_dir}/src/adjust/*.cpp ${module_dir}/src/start/*.cpp
-       ${module_dir}/src/calibrate/*.cpp)
+  file(GLOB calibrators CONFIGURE_DEPENDS ${module_dir}/src/math/dense*.cpp ${module_dir}/src/adjust/*.cpp
+       ${module_dir}/src/start/*.cpp ${module_dir}/src/calibrate/*.cpp)
   set(without ${module_dir}/src/calibrate/without_ceres.cpp ${module_dir}/test/test_without_ceres.cpp)
   list(REMOVE_ITEM calibrators ${without} ${module_dir}/src/calibrate/calibrate_normal.cpp
        ${module_dir}/src/calibrate/calibration_error.cpp ${module_dir}/src/start/normal_from_pairs.cpp)

@@ -8,7 +8,7 @@ Refused, by name: what R, with each parameter scaled to its own effect, maps to 
 required and whose standard deviation is so large that the value is no answer. */
 
 #include "adjust/covariance.hpp"
-#include <Eigen/SVD>
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -142,14 +142,14 @@ FitOutcome setHalf(const std::vector<FreeParameter>& parameters, const Informati
         return FitOutcome();
     // What has no effect at all is lost as well.
     const VectorXd scale = (information.effect.head(count).array() > 0).select(information.effect.head(count).cwiseInverse(), 0.);
-    const Eigen::JacobiSVD<MatrixXd> svd(information.root*scale.asDiagonal(), Eigen::ComputeFullV);
+    const SingularValues svd(information.root*scale.asDiagonal());
     // The rows may be fewer than the parameters.
     VectorXd values = VectorXd::Zero(count);
-    values.head(svd.singularValues().size()) = svd.singularValues();
+    values.head(svd.values.size()) = svd.values;
     const int lost = (int)(values.array() < information.rounding).count();
     if (lost > 0)
-        return undetermined(parameters, svd.matrixV().rightCols(lost).rowwise().norm(), lost, VectorXd());
-    half = scale.asDiagonal()*svd.matrixV()*values.cwiseInverse().asDiagonal();
+        return undetermined(parameters, svd.V.rightCols(lost).rowwise().norm(), lost, VectorXd());
+    half = scale.asDiagonal()*svd.V*values.cwiseInverse().asDiagonal();
     return FitOutcome();
 }
 
@@ -196,8 +196,8 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
     ofParameters = MatrixXd::Zero(problem.publicCount(), problem.publicCount());
     if (half.size() > 0)            // else only poses or points are free; Eigen has no products of nothing
     {
-        const MatrixXd all = problem.publicBasis()*half;
-        ofParameters = variance*all*all.transpose();
+        const MatrixXd all = product(problem.publicBasis(), half);
+        ofParameters = variance*timesTranspose(all, all);
     }
 
     // What the cameras' covariance says of a weak direction so holds for poses and points.
@@ -206,7 +206,7 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
     half_.topLeftCorner(count, half.cols()) = half;
     if (others > 0)
     {
-        half_.bottomLeftCorner(others, half.cols()) = poses.byOuter*half;
+        half_.bottomLeftCorner(others, half.cols()) = product(poses.byOuter, half);
         half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
     }
     return outcome;
@@ -230,7 +230,7 @@ Mat Covariance::ofPoints() const
             VectorXd variances = scale*scale*block.half.rowwise().squaredNorm();
             MatrixXd byOuter = MatrixXd::Zero(clusters[i].size(), half_.cols());
             if (outer.size() > 0)
-                byOuter = scale*block.byOuter*outer;
+                byOuter = scale*product(block.byOuter, outer);
             if (error >= 0)
                 byOuter += clusters[i].values*half_.row(error);
             variances += byOuter.rowwise().squaredNorm();

@@ -38,8 +38,8 @@ class InnerPrediction
 public:
     InnerPrediction(const InnerBlock& block, const MatrixXd& S) : S_(S)
     {
-        cross_ = block.byOuter*rowsOf(S, block.columns);
-        ofInner_ = block.half*block.half.transpose() + columnsOf(cross_, block.columns)*block.byOuter.transpose();
+        cross_ = product(block.byOuter, rowsOf(S, block.columns));
+        ofInner_ = timesTranspose(block.half, block.half) + timesTranspose(columnsOf(cross_, block.columns), block.byOuter);
     }
 
     //! @param at the first of the block's values that image.inner has the derivatives by
@@ -47,12 +47,13 @@ public:
     {
         const int size = (int)image.inner.cols(), count = (int)image.columns.size();
         const MatrixXd E = image.inner.middleRows(2*row, 2);
-        Eigen::Matrix2d H = E*ofInner_.block(at, at, size, size)*E.transpose();
+        Eigen::Matrix2d H = timesTranspose(product(E, ofInner_.block(at, at, size, size)), E);
         if (count > 0)
         {
             const MatrixXd F = image.outer.middleRows(2*row, 2);
-            const Eigen::Matrix2d both = E*columnsOf(cross_.middleRows(at, size), image.columns)*F.transpose();
-            H += both + both.transpose() + F*columnsOf(rowsOf(S_, image.columns), image.columns)*F.transpose();
+            const Eigen::Matrix2d both = timesTranspose(product(E, columnsOf(cross_.middleRows(at, size), image.columns)), F);
+            H += both + both.transpose() +
+                 timesTranspose(product(F, columnsOf(rowsOf(S_, image.columns), image.columns)), F);
         }
         return Matx22d(H(0, 0), H(0, 1), H(1, 0), H(1, 1));
     }

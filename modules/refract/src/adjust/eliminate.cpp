@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/eliminate.hpp"
-#include <Eigen/QR>
 
 namespace cv { namespace refract {
 
@@ -23,18 +22,14 @@ static VectorXd scaleOf(const Information& information)
     return (information.effect.array() > 0).select(information.effect.cwiseInverse(), 0.);
 }
 
-void setInner(const Eigen::ColPivHouseholderQR<MatrixXd>& qr, const VectorXd& scale, const MatrixXd& rotated, InnerBlock& block)
+void setInner(const PivotedQR& qr, const VectorXd& scale, const MatrixXd& rotated, InnerBlock& block)
 {
-    const int size = (int)scale.size(), rank = (int)qr.rank(), count = (int)rotated.cols() - 1;
-    const auto triangle = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
-    MatrixXd best = MatrixXd::Zero(size, count + 1), half = MatrixXd::Zero(size, rank);
-    best.topRows(rank) = -triangle.solve(rotated.topRows(rank));
-    half.topRows(rank) = triangle.solve(MatrixXd::Identity(rank, rank));
-    best = scale.asDiagonal()*(qr.colsPermutation()*best);
-    block.half = scale.asDiagonal()*(qr.colsPermutation()*half);
+    const int rank = qr.rank(), count = (int)rotated.cols() - 1;
+    const MatrixXd best = -(scale.asDiagonal()*qr.solveR(rotated));
+    block.half = scale.asDiagonal()*qr.solveR(MatrixXd::Identity(rank, rank));
     block.byOuter = best.leftCols(count);
     block.step = best.col(count);
-    block.isDetermined = rank == size;
+    block.isDetermined = rank == scale.size();
 }
 
 Information eliminateLast(const Information& information, int first, InnerBlock& last, int& lost)
@@ -45,18 +40,16 @@ Information eliminateLast(const Information& information, int first, InnerBlock&
     left.rounding = information.rounding;
     MatrixXd rotated(rows, first + 1);
     rotated << information.root.leftCols(first), information.residual;
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(rows, others);
     int rank = 0;
     lost = -1;
     if (others > 0)
     {
         const VectorXd scale = scaleOf(information).tail(others);
-        qr.setThreshold(information.rounding);
-        qr.compute(information.root.rightCols(others)*scale.asDiagonal());
-        rank = (int)qr.rank();
+        const PivotedQR qr(information.root.rightCols(others)*scale.asDiagonal(), information.rounding);
+        rank = qr.rank();
         if (rank < others)
-            lost = first + (int)qr.colsPermutation().indices()[rank];
-        rotated = MatrixXd(qr.householderQ().adjoint()*rotated);
+            lost = first + qr.column(rank);
+        rotated = qr.rotate(rotated);
         setInner(qr, scale, rotated, last);
     }
     for (int i = 0; i < first; i++)
@@ -71,10 +64,9 @@ double newtonDecrement(const Information& information)
 {
     if (information.root.cols() == 0)
         return std::sqrt(information.ofInner);
-    Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    qr.setThreshold(information.rounding);      // what no data determine has no least squares
-    qr.compute(information.root*scaleOf(information).asDiagonal());
-    const VectorXd rotated = qr.householderQ().adjoint()*information.residual;
+    // What no data determine has no least squares.
+    const PivotedQR qr(information.root*scaleOf(information).asDiagonal(), information.rounding);
+    const VectorXd rotated = qr.rotate(information.residual);
     return std::sqrt(rotated.head(qr.rank()).squaredNorm() + information.ofInner);
 }
 
@@ -83,16 +75,13 @@ MatrixXd pseudoInverseRoot(const Information& information)
     if (information.root.cols() == 0)
         return MatrixXd(0, information.root.rows());
     const VectorXd scale = scaleOf(information);
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
-    cod.setThreshold(information.rounding);
-    cod.compute(information.root*scale.asDiagonal());
-    return scale.asDiagonal()*cod.pseudoInverse();
+    return scale.asDiagonal()*pseudoInverse(information.root*scale.asDiagonal(), information.rounding);
 }
 
 MatrixXd pseudoCovariance(const Information& information)
 {
     const MatrixXd half = pseudoInverseRoot(information);
-    return half*half.transpose();
+    return timesTranspose(half, half);
 }
 
 }} // namespace

@@ -6,7 +6,7 @@
 #define OPENCV_REFRACT_ELIMINATE_HPP
 
 #include "adjust/linearize.hpp"
-#include <Eigen/QR>
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -46,8 +46,7 @@ std::vector<EliminatedView> eliminateEachPose(const Problem& problem, const std:
 /** Sets a block from rows [K | J, r], rotated so that K is triangular.
 @param qr of K with its columns scaled
 @param rotated Q^T [J, r] */
-void setInner(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::VectorXd& scale, const Eigen::MatrixXd& rotated,
-              InnerBlock& block);
+void setInner(const PivotedQR& qr, const Eigen::VectorXd& scale, const Eigen::MatrixXd& rotated, InnerBlock& block);
 
 //! By orthogonal transformations of each view's rows.
 Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);

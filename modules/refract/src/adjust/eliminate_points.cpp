@@ -11,8 +11,7 @@ the points are unknown is
 effect before anything is inverted. Sums are in one order, whatever the number of threads. */
 
 #include "adjust/eliminate.hpp"
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -53,8 +52,8 @@ void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
             products[i] = MatrixXd::Zero(count, count);
             if (count == 0)         // Eigen has no products of nothing
                 continue;
-            products[i].selfadjointView<Eigen::Lower>().rankUpdate(images[i].outer.transpose());
-            gradients[i] = images[i].outer.transpose()*images[i].residuals;
+            addGram(images[i].outer, 1, products[i]);
+            gradients[i] = transposeTimesVector(images[i].outer, images[i].residuals);
         }
     });
     for (size_t i = 0; i < images.size(); i++)
@@ -66,14 +65,14 @@ void addPrior(const MatrixXd& rows, const VectorXd& residual, int first, NormalE
     std::vector<int> columns;
     for (int j = 0; j < rows.cols(); j++)
         columns.push_back(first + j);
-    equations.add(rows.transpose()*rows, rows.transpose()*residual, columns);
+    equations.add(transposeTimes(rows, rows), transposeTimesVector(rows, residual), columns);
 }
 
 void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& equations)
 {
     for (int block = 0; block < problem.outerCount(); block++)
     {
-        const MatrixXd rows = problem.priorRows(block)*space.bases[block];
+        const MatrixXd rows = product(problem.priorRows(block), space.bases[block]);
         if (rows.rows() > 0)
             addPrior(rows, problem.priorResidual(block), space.first[block], equations);
     }
@@ -87,7 +86,7 @@ void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& 
         const MatrixXd& basis = space.bases[block];
         rows.conservativeResize(Eigen::NoChange, rows.cols() + basis.cols());
         if (basis.cols() > 0)       // Eigen has no products of nothing
-            rows.rightCols(basis.cols()) = byValues.middleCols(first, basis.rows())*basis;
+            rows.rightCols(basis.cols()) = product(byValues.middleCols(first, basis.rows()), basis);
         first += (int)basis.rows();
     }
     addPrior(rows, problem.rigPriorResidual(), 0, equations);
@@ -105,11 +104,11 @@ struct EliminatedCluster
 MatrixXd inverseRoot(const MatrixXd& A, bool& isRegular)
 {
     const VectorXd scale = A.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal()*A*scale.asDiagonal());
-    const VectorXd& values = eigen.eigenvalues();
+    const SymmetricEigen eigen(scale.asDiagonal()*A*scale.asDiagonal());
+    const VectorXd& values = eigen.values;
     const VectorXd roots = (values.array() > ROUNDING*values.maxCoeff()).select(values.cwiseSqrt().cwiseInverse(), 0.);
     isRegular = values[0] > ROUNDING*values.maxCoeff();
-    return roots.asDiagonal()*eigen.eigenvectors().transpose()*scale.asDiagonal();
+    return roots.asDiagonal()*eigen.vectors.transpose()*scale.asDiagonal();
 }
 
 std::vector<int> columnsOf(const Problem& problem, int cluster, const std::vector<ImageRows>& images)
@@ -154,11 +153,11 @@ EliminatedCluster eliminate(const Problem& problem, int index, const FreeSpace& 
     }
     cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
-    result.W = Y*EF;
-    result.residual = Y*Er;
+    result.W = product(Y, EF);
+    result.residual = timesVector(Y, Er);
     result.points.half = Y.transpose();
-    result.points.byOuter = -(Y.transpose()*result.W);
-    result.points.step = -(Y.transpose()*result.residual);
+    result.points.byOuter = -transposeTimes(Y, result.W);
+    result.points.step = -transposeTimesVector(Y, result.residual);
     return result;
 }
 
@@ -192,8 +191,8 @@ public:
             for (int panel = range.start; panel < range.end; panel++)
             {
                 const int begin = panel*PANEL, width = std::min(PANEL, count - begin);
-                equations_.matrix.block(begin, begin, count - begin, width).noalias() -=
-                    rows_.topRows(used_).rightCols(count - begin).transpose()*rows_.topRows(used_).middleCols(begin, width);
+                subtractTransposeTimes(rows_.topRows(used_).rightCols(count - begin), rows_.topRows(used_).middleCols(begin, width),
+                                       equations_.matrix.block(begin, begin, count - begin, width));
             }
         });
         rows_.setZero();
@@ -213,15 +212,11 @@ void setRoot(const NormalEquations& equations, Information& information)
 {
     const VectorXd& effect = information.effect;
     const VectorXd scale = (effect.array() > 0).select(effect.cwiseInverse(), 0.);
-    MatrixXd S = equations.matrix.selfadjointView<Eigen::Lower>();
-    S = scale.asDiagonal()*S*scale.asDiagonal();
-    const Eigen::LDLT<MatrixXd> ldlt(S);
-    const VectorXd D = ldlt.vectorD();
+    const LDLT ldlt(scale.asDiagonal()*equations.matrix*scale.asDiagonal());
+    const VectorXd D = ldlt.D();
     const VectorXd roots = (D.array() > ROUNDING).select(D.cwiseMax(0).cwiseSqrt(), 0.);
-    const MatrixXd L = ldlt.matrixL(), rootTransposed = ldlt.transpositionsP().transpose()*MatrixXd(L*roots.asDiagonal());
-    information.root = rootTransposed.transpose()*effect.asDiagonal();
-    VectorXd z = ldlt.transpositionsP()*VectorXd(scale.cwiseProduct(equations.gradient));
-    ldlt.matrixL().solveInPlace(z);
+    information.root = roots.asDiagonal()*ldlt.L().transpose()*effect.asDiagonal();
+    const VectorXd z = ldlt.solveL(scale.cwiseProduct(equations.gradient));
     information.residual = (roots.array() > 0).select(z.cwiseQuotient(roots), 0.);
 }
 

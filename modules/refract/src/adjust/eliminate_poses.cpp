@@ -12,7 +12,6 @@ squared; views whose points do not fix a pose need no special case. An image dep
 reduced first, on their own columns. */
 
 #include "adjust/eliminate.hpp"
-#include <Eigen/QR>
 
 namespace cv { namespace refract {
 
@@ -25,12 +24,7 @@ using Eigen::VectorXd;
 const double ROUNDING = 1e-12;
 
 //! As few rows with the same products.
-MatrixXd reduced(const MatrixXd& rows)
-{
-    const int least = (int)std::min(rows.rows(), rows.cols());
-    const Eigen::HouseholderQR<MatrixXd> qr(rows);
-    return qr.matrixQR().topRows(least).triangularView<Eigen::Upper>();
-}
+MatrixXd reduced(const MatrixXd& rows) { return QR(rows).R(); }
 
 //! Appends rows, and replaces all by the triangle with the same products when they are many.
 class SquareRoot
@@ -65,8 +59,7 @@ private:
         const int count = (int)rows_.cols();
         if (used_ <= count)
             return;
-        const Eigen::HouseholderQR<MatrixXd> qr(rows_.topRows(used_));
-        rows_.topRows(count) = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+        rows_.topRows(count) = reduced(rows_.topRows(used_));
         used_ = count;
     }
     MatrixXd rows_;
@@ -138,11 +131,9 @@ EliminatedView eliminate(const ViewRows& view)
         result.squares = VectorXd::Zero(count);
         return result;
     }
-    Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    qr.setThreshold(ROUNDING);
-    qr.compute(K.array().rowwise()/scale.array());
-    const int rank = (int)qr.rank();
-    const MatrixXd rotated = qr.householderQ().adjoint()*J;
+    const PivotedQR qr(K.array().rowwise()/scale.array(), ROUNDING);
+    const int rank = qr.rank();
+    const MatrixXd rotated = qr.rotate(J);
     const MatrixXd rest = rotated.bottomRows(J.rows() - rank);
     result.rows = rest.rows() > count + 1 ? reduced(rest) : rest;
     result.squares = J.leftCols(count).colwise().squaredNorm().transpose();
@@ -190,7 +181,7 @@ Information eliminatePoses(const Problem& problem, const FreeSpace& space, const
     for (int block = 0; block < problem.outerCount(); block++)
     {
         const int own = space.columnsOf(block);
-        const MatrixXd rows = problem.priorRows(block)*space.bases[block];
+        const MatrixXd rows = product(problem.priorRows(block), space.bases[block]);
         if (rows.rows() == 0)
             continue;
         MatrixXd both(rows.rows(), own + 1);

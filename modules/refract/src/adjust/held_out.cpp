@@ -12,8 +12,6 @@ space of its derivatives: the pose is fitted to what is held out. */
 
 #include "adjust/held_out.hpp"
 #include "adjust/eliminate.hpp"
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 namespace cv { namespace refract {
 
@@ -40,8 +38,7 @@ struct PartRows
     {
         if (rows.rows() <= rows.cols())
             return;
-        const Eigen::HouseholderQR<MatrixXd> qr(rows);
-        rows = MatrixXd(qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>());
+        rows = QR(rows).R();
     }
 
     MatrixXd rows;
@@ -183,7 +180,7 @@ MatrixXd priorsOf(const Problem& problem, const FreeSpace& space, bool withPoses
         if (isPose)
             rows.middleCols(space.count + 6*(block - problem.outerCount()), 6) = byBlock;
         else
-            rows.middleCols(space.first[block], space.columnsOf(block)) = byBlock*space.bases[block];
+            rows.middleCols(space.first[block], space.columnsOf(block)) = product(byBlock, space.bases[block]);
         rows.rightCols<1>() = problem.priorResidual(block);
         priors.add(rows);
     }
@@ -193,11 +190,11 @@ MatrixXd priorsOf(const Problem& problem, const FreeSpace& space, bool withPoses
 //! Squares of (I - X X^T)^-1 z.
 double squaresOfHeldOut(const MatrixXd& X, const VectorXd& z)
 {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> leverage(X*X.transpose());
-    const VectorXd left = 1. - leverage.eigenvalues().array();
+    const SymmetricEigen leverage(timesTranspose(X, X));
+    const VectorXd left = 1. - leverage.values.array();
     if (left.minCoeff() < ROUNDING)
         return std::numeric_limits<double>::infinity();
-    return (leverage.eigenvectors().transpose()*z).cwiseQuotient(left).squaredNorm();
+    return transposeTimesVector(leverage.vectors, z).cwiseQuotient(left).squaredNorm();
 }
 
 } // namespace
@@ -230,7 +227,7 @@ std::vector<HeldOutPart> heldOutErrors(const Problem& problem)
     {
         HeldOutPart error;
         error.points = part.points;
-        error.squares = squaresOfHeldOut(part.rows.leftCols(count)*inverse, part.rows.rightCols<1>());
+        error.squares = squaresOfHeldOut(product(part.rows.leftCols(count), inverse), part.rows.rightCols<1>());
         errors.push_back(error);
     }
     return errors;

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/inner.hpp"
-#include <Eigen/Cholesky>
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -83,7 +83,7 @@ VectorXd stepOf(const ClusterSquares& sum, double damping, double& gain)
     const VectorXd scale = sum.matrix.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
     MatrixXd A = scale.asDiagonal()*sum.matrix*scale.asDiagonal();
     A.diagonal().array() += damping + LEAST;
-    const VectorXd gradient = scale.cwiseProduct(sum.gradient), step = -Eigen::LDLT<MatrixXd>(A).solve(gradient);
+    const VectorXd gradient = scale.cwiseProduct(sum.gradient), step = -LDLT(A).solve(gradient);
     gain = -gradient.dot(step);
     return scale.cwiseProduct(step);
 }

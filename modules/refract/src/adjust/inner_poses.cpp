@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/inner.hpp"
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <atomic>
 
 namespace cv { namespace refract {
@@ -51,12 +51,8 @@ struct PoseRows
         MatrixXd rows(count + 6, 7);
         rows.topRows(count) << byPose*scale.asDiagonal(), -residuals;
         rows.bottomRows<6>() << std::sqrt(damping)*Matrix6::Identity(), Vector6::Zero();
-        const Eigen::HouseholderQR<MatrixXd> triangle(rows);
-        const MatrixXd R = triangle.matrixQR().topRows<7>().triangularView<Eigen::Upper>();
-        Eigen::ColPivHouseholderQR<MatrixXd> qr;
-        qr.setThreshold(1e-12);
-        qr.compute(R.leftCols<6>());
-        const Vector6 scaled = qr.solve(R.col(6));
+        const MatrixXd R = QR(rows).R();
+        const Vector6 scaled = PivotedQR(R.leftCols<6>(), 1e-12).solve(VectorXd(R.col(6)));
         gain = R.col(6).squaredNorm() - (R.col(6) - R.leftCols<6>()*scaled).squaredNorm();
         return scale.cwiseProduct(scaled);
     }

@@ -14,10 +14,10 @@ below what the noise does. */
 #include "adjust/minimize.hpp"
 #include "adjust/inner.hpp"
 #include "adjust/reduced_cost.hpp"
+#include "math/dense.hpp"
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
-#include <ceres/sphere_manifold.h>
 
 namespace cv { namespace refract {
 
@@ -152,12 +152,12 @@ bool Minimization::holdAtBounds()
 {
     const FreeSpace space(problem_);
     const Information information = informationOf(problem_);
-    const Eigen::VectorXd gradient = information.root.transpose()*information.residual;
+    const Eigen::VectorXd gradient = transposeTimesVector(information.root, information.residual);
     bool changed = false;
     for (int b = 0; b < problem_.outerCount(); b++)
     {
         ParameterBlock& block = problem_.blocks()[b];
-        const Eigen::VectorXd ofBlock = space.bases[b]*gradient.segment(space.first[b], space.columnsOf(b));
+        const Eigen::VectorXd ofBlock = timesVector(space.bases[b], gradient.segment(space.first[b], space.columnsOf(b)));
         for (int i = 0; i < (int)block.values.size(); i++)
         {
             const bool hold = block.isFree[i] && block.values[i] <= block.lower[i] && ofBlock[i] >= 0;

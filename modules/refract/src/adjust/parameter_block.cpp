@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/parameter_block.hpp"
+#include "math/dense.hpp"
 #include "window/place.hpp"
-#include <Eigen/Cholesky>
 #include <ceres/line_manifold.h>
 #include <ceres/sphere_manifold.h>
 #include <map>
@@ -60,16 +60,16 @@ bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
     if (isOnManifold())
         isFree.assign(size, true);
     const Eigen::MatrixXd tangents = tangentBasis(true);
-    const Eigen::VectorXd variances = (tangents.transpose()*known*tangents).diagonal();
+    const Eigen::VectorXd variances = diagonalOfProduct(transposeTimes(tangents, known), tangents);
     const int count = (int)(variances.array() > 0).count();
     Eigen::MatrixXd directions(size, count);    // each divided by its deviation
     for (int i = 0, k = 0; i < variances.size(); i++)
         if (variances[i] > 0)
             directions.col(k++) = tangents.col(i)/std::sqrt(variances[i]);
-    const Eigen::LLT<Eigen::MatrixXd> root(directions.transpose()*known*directions);
-    if (root.info() != Eigen::Success)
+    const LLT root(product(transposeTimes(directions, known), directions));
+    if (!root.isPositiveDefinite())
         return false;
-    sqrtInformation = root.matrixL().solve(directions.transpose());
+    sqrtInformation = root.solveL(directions.transpose());
     return true;
 }
 

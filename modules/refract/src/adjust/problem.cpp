@@ -3,243 +3,18 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/problem.hpp"
+#include "math/dense.hpp"
 #include "window/place.hpp"
 
 namespace cv { namespace refract {
 
-namespace {
-
-std::vector<double> sixOf(const Pose& pose)
-{
-    std::vector<double> six(pose.rvec.val, pose.rvec.val + 3);
-    six.insert(six.end(), pose.tvec.val, pose.tvec.val + 3);
-    return six;
-}
-
-Pose poseOf(const double* six)
+static Pose poseOf(const double* six)
 {
     Pose pose;
     pose.rvec = Vec3d(six);
     pose.tvec = Vec3d(six + 3);
     pose.found = true;
     return pose;
-}
-
-RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount, const std::vector<CovarianceViews>& covariances,
-                      double variance)
-{
-    RigViews views;
-    const int count = (int)pixels[0].size();
-    views.object.assign(count, std::vector<Point3d>(pointCount));
-    views.variance = variance;
-    for (size_t c = 0; c < pixels.size(); c++)
-        views.cameras.push_back({ PixelViews(count), pixels[c], {}, covariances.empty() ? CovarianceViews() : covariances[c] });
-    return views;
-}
-
-void setCameraPrior(ParameterBlock& block, int c, const Eigen::MatrixXd& covariance)
-{
-    if (!block.setPrior(covariance))
-        CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", c));
-}
-
-} // namespace
-
-Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-                 const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance)
-    : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), pixelSigma_(1)
-{
-    addBlocks(poses, posePriors, cameraPriors, flags, targetCovariance);
-    addImages(views);
-    updateCameras();
-}
-
-Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
-                 const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
-                 const std::vector<CameraPrior>& cameraPriors, const std::vector<CovarianceViews>& covariances, double variance,
-                 const Eigen::MatrixXd& rigCovariance, double lengthScaleSigma)
-    : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
-{
-    Eigen::MatrixXd sharedErrors;           // lengths that are too small by a part are points that are too near by it
-    if (lengthScaleSigma > 0)
-    {
-        sharedErrors = Eigen::MatrixXd::Zero(SharedTargetErrors::COUNT, SharedTargetErrors::COUNT);
-        sharedErrors(0, 0) = lengthScaleSigma*lengthScaleSigma;
-    }
-    addBlocks(poses, posePriors, cameraPriors, flags, sharedErrors);
-    if (rigCovariance.size() > 0)
-        setRigPrior(rigCovariance);
-    addImages(viewsOfScene(pixels, pointCount, covariances, variance));
-    updateCameras();
-}
-
-void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
-                        const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance)
-{
-    size_t most = 6*(rig_.cameras.size() + poses.size()) + SharedTargetErrors::COUNT;
-    for (const Camera& camera : rig_.cameras)
-        most += camera.parameterCount();
-    values_.reserve(most);              // blocks point into it
-    for (int c = 0; c < rig_.count(); c++)
-        addCameraBlocks(c, cameraPriors.empty() ? CameraPrior() : cameraPriors[c], flags);
-    const std::vector<String> names = { "R", "R", "R", "T", "T", "T" };
-    for (int c = 1; c < rig_.count(); c++)
-    {
-        ParameterBlock& block = addBlock(ParameterBlock::EXTRINSICS, c, sixOf(rig_.extrinsics[c]), names,
-                                         std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
-        const int first = rig_.cameras[c].parameterCount();
-        if (!cameraPriors.empty() && cameraPriors[c].covariance.cols() == first + 6)
-            setCameraPrior(block, c, cameraPriors[c].covariance.block(first, first, 6, 6));
-    }
-    targetBlock_ = -1;
-    if (targetCovariance.size() > 0)
-        addTargetBlock(targetCovariance);
-    cameraBlocks_ = (int)blocks_.size();
-    for (int view = 0; view < (int)poses.size(); view++)
-    {
-        const PosePrior prior = posePriors.empty() ? PosePrior() : posePriors[view];
-        ParameterBlock& block = addBlock(ParameterBlock::POSE, view, sixOf(poses[view]), names,
-                                         std::vector<bool>(6, prior.kind != PosePrior::EXACT));
-        if (prior.kind == PosePrior::UNCERTAIN)
-            block.sqrtInformation = prior.sqrtInformation;
-    }
-    for (const Camera& camera : rig_.cameras)
-        cameras_.push_back(RigCamera(camera));
-}
-
-void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
-{
-    const int count = SharedTargetErrors::COUNT;
-    const String scale = "scale of the targets", motion = "motion of the targets";
-    targetBlock_ = (int)blocks_.size();
-    ParameterBlock& block = addBlock(ParameterBlock::TARGETS, 0, std::vector<double>(count, 0.),
-                                     { scale, motion, motion, motion, motion, motion, motion }, std::vector<bool>(count, false));
-    if (!block.setPrior(covariance))
-        CV_Error(Error::StsBadArg, "targetCovariance is not positive definite where it is not 0");
-}
-
-//! Of a window the rows of its owner count; the others follow from them.
-void Problem::setRigPrior(const Eigen::MatrixXd& covariance)
-{
-    std::vector<int> rows;                  // of the covariance, per value
-    std::vector<Eigen::VectorXd> directions;
-    int count = 0;
-    for (int i = 0; i < cameraBlocks_; i++)
-        count += (int)blocks_[i].values.size();
-    Eigen::VectorXd mean(count);
-    for (int i = 0; i < cameraBlocks_; i++)
-    {
-        ParameterBlock& block = blocks_[i];
-        const int first = (int)rows.size(), size = (int)block.values.size(), row = publicRow(block.kind, block.index);
-        mean.segment(first, size) = block.values;
-        for (int k = 0; k < size; k++)
-            rows.push_back(block.kind == ParameterBlock::TARGETS ? -1 : row + k);
-        if (block.kind == ParameterBlock::TARGETS)
-            continue;
-        const bool isWhole = block.isOnManifold();
-        const double ofBlock = isWhole ? covariance.diagonal().segment(row, size).sum() : 0;
-        for (int k = 0; k < size; k++)
-            if (isWhole ? ofBlock > 0 : covariance(row + k, row + k) > 0)
-                block.isFree[k] = true;
-        const Eigen::MatrixXd tangents = block.tangentBasis();
-        for (int k = 0; k < tangents.cols(); k++)
-        {
-            const double variance = tangents.col(k).dot(covariance.block(row, row, size, size)*tangents.col(k));
-            if (!(variance > 0))
-                continue;
-            directions.push_back(Eigen::VectorXd::Zero(count));
-            directions.back().segment(first, size) = tangents.col(k);
-        }
-    }
-    Eigen::MatrixXd known(count, directions.size()), ofValues = Eigen::MatrixXd::Zero(count, count);
-    for (size_t k = 0; k < directions.size(); k++)
-        known.col(k) = directions[k];
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < count; j++)
-            if (rows[i] >= 0 && rows[j] >= 0)
-                ofValues(i, j) = covariance(rows[i], rows[j]);
-    rigPrior_ = makeRigPrior(mean, known, known.transpose()*ofValues*known);
-}
-
-Eigen::VectorXd Problem::rigPriorResidual() const
-{
-    Eigen::VectorXd change(rigPrior_.mean.size());
-    int first = 0;
-    for (int i = 0; i < cameraBlocks_ && change.size() > 0; i++)
-    {
-        change.segment(first, blocks_[i].values.size()) = blocks_[i].values;
-        first += (int)blocks_[i].values.size();
-    }
-    return rigPriorRows()*(change - rigPrior_.mean);
-}
-
-void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
-{
-    const Camera& camera = rig_.cameras[c];
-    const WindowLayout& at = camera.layers().at();
-    const std::vector<double> all = camera.parameters();
-    const std::vector<String> names = camera.parameterNames();
-    // Of a camera without a window the flags of the others' windows mean nothing.
-    const std::vector<bool> isFree = camera.refracts() ? freeWindowParameters(at, flags) : std::vector<bool>(at.count, false);
-    const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free, bool mayHavePrior)
-    {
-        const int size = (int)free.size();
-        ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
-                                         std::vector<String>(names.begin() + first, names.begin() + first + size), free);
-        if (mayHavePrior && first + size <= prior.covariance.cols())
-            setCameraPrior(block, c, prior.covariance.block(first, first, size, size));
-    };
-    const int lens = camera.lensCount();
-    add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);
-    if (!rig_.owns(c))
-        return;
-    add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)),
-        hasCenter(at.shape));
-    add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
-}
-
-ParameterBlock& Problem::addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
-                                  const std::vector<String>& names, const std::vector<bool>& isFree)
-{
-    const int size = (int)values.size();
-    CV_Assert(values_.size() + size <= values_.capacity());
-    double* const kept = values_.data() + values_.size();
-    values_.insert(values_.end(), values.begin(), values.end());
-    const bool isPose = kind == ParameterBlock::POSE;
-    ParameterBlock block = { kind, index, isPose ? WindowLayout() : rig_.cameras[index].layers().at(),
-                             Eigen::Map<Eigen::VectorXd>(kept, size), isFree, names, std::vector<double>(),
-                             std::vector<bool>(size, false), Eigen::VectorXd(), Eigen::MatrixXd() };
-    for (int i = 0; i < size; i++)
-        block.lower.push_back(kind == ParameterBlock::MEDIA ? lowerBound(block.windowParameter(i), kept[i]) :
-                              kind == ParameterBlock::LENS ? lowerBoundOfLens(i, kept[i]) :
-                              -std::numeric_limits<double>::infinity());
-    block.priorMean = block.values;
-    block.sqrtInformation.resize(0, size);
-    blocks_.push_back(block);
-    return blocks_.back();
-}
-
-void Problem::addImages(const RigViews& views)
-{
-    for (int view = 0; view < views.count(); view++)
-        for (int c = 0; c < (int)views.cameras.size(); c++)
-            for (bool refracted : { false, true })
-            {
-                const CameraViews& seen = views.cameras[c];
-                Image image;
-                image.view = view;
-                image.camera = c;
-                image.refracted = refracted;
-                const CovarianceViews& covariances = refracted ? seen.refractedCovariances : seen.directCovariances;
-                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view],
-                                        covariances.empty() ? PixelCovariances() : covariances[view], views.variance);
-                if (image.points.pixel.empty())
-                    continue;
-                image.rootWeights.assign(image.points.pixel.size(), 1.);
-                imagesOfView_[view].push_back((int)images_.size());
-                images_.push_back(image);
-                isSeen_[view] = true;
-            }
 }
 
 void Problem::setRootWeights(int image, const std::vector<double>& rootWeights)
@@ -346,8 +121,10 @@ Pose Problem::pose(int view) const
 void Problem::setPose(int view, const Pose& pose)
 {
     ParameterBlock& block = blocks_[poseBlock(view)];
-    if (block.isFree[0])
-        block.values = Eigen::Map<const Eigen::VectorXd>(sixOf(pose).data(), 6);
+    if (!block.isFree[0])
+        return;
+    std::copy_n(pose.rvec.val, 3, block.values.data());
+    std::copy_n(pose.tvec.val, 3, block.values.data() + 3);
 }
 
 void Problem::placePoints(const std::vector<Point3d>& points)
@@ -536,7 +313,21 @@ Eigen::MatrixXd Problem::priorRows(int block) const
 
 Eigen::VectorXd Problem::priorResidual(int block) const
 {
-    return priorRows(block)*(blocks_[block].values - blocks_[block].priorMean);
+    return timesVector(priorRows(block), blocks_[block].values - blocks_[block].priorMean);
+}
+
+Eigen::MatrixXd Problem::rigPriorRows() const { return pixelSigma_*rigPrior_.sqrtInformation; }
+
+Eigen::VectorXd Problem::rigPriorResidual() const
+{
+    Eigen::VectorXd change(rigPrior_.mean.size());
+    int first = 0;
+    for (int i = 0; i < cameraBlocks_ && change.size() > 0; i++)
+    {
+        change.segment(first, blocks_[i].values.size()) = blocks_[i].values;
+        first += (int)blocks_[i].values.size();
+    }
+    return timesVector(rigPriorRows(), change - rigPrior_.mean);
 }
 
 int Problem::equationCount() const

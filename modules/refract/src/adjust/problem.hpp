@@ -170,7 +170,7 @@ public:
     Eigen::VectorXd priorResidual(int block) const;
     //! The same of what is known of all cameras together, by the values of the blocks before the poses, one after the other.
     const RigPrior& rigPrior() const { return rigPrior_; }
-    Eigen::MatrixXd rigPriorRows() const { return pixelSigma_*rigPrior_.sqrtInformation; }
+    Eigen::MatrixXd rigPriorRows() const;
     Eigen::VectorXd rigPriorResidual() const;
     int cameraBlockCount() const { return cameraBlocks_; }
 

@@ -7,8 +7,8 @@ with the sheet's normal m it is the plane: m_i m_i^T (X - o_i). */
 
 #include "adjust/ray_midpoints.hpp"
 #include "arrays/arrays.hpp"
+#include "math/dense.hpp"
 #include "points/sheet.hpp"
-#include <Eigen/Eigenvalues>
 
 namespace cv { namespace refract {
 
@@ -35,9 +35,8 @@ struct RaySum
     Vec3d point() const
     {
         const double PARALLEL = 1e-12;      // squared sine
-        typedef Eigen::Matrix<double, 3, 3, Eigen::RowMajor> Matrix3;
-        const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(Eigen::Map<const Matrix3>(across.val));
-        if (coordinates < 3 || !(eigen.eigenvalues()[0] > 0.5*PARALLEL*coordinates))
+        const SymmetricEigen3 eigen((Eigen::Map<const Eigen::Matrix3d>(across.val)));      // symmetric: by rows or columns
+        if (coordinates < 3 || !(eigen.values[0] > 0.5*PARALLEL*coordinates))
             return Vec3d::all(NaN);
         return across.inv(DECOMP_CHOLESKY)*offset;
     }

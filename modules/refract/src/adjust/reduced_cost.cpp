@@ -44,7 +44,7 @@ void ReducedCost::predictInner() const
     {
         const int block = variable_[i], own = anchor_->space.columnsOf(block);
         change.segment(anchor_->space.first[block], own) =
-            anchor_->space.bases[block].transpose()*(problem_.blocks()[block].values - anchor_->values[i]);
+            transposeTimesVector(anchor_->space.bases[block], problem_.blocks()[block].values - anchor_->values[i]);
     }
     VectorXd inner = anchor_->inner;
     int at = 0;
@@ -54,7 +54,7 @@ void ReducedCost::predictInner() const
         VectorXd own(block.columns.size());
         for (size_t k = 0; k < block.columns.size(); k++)
             own[k] = change[block.columns[k]];
-        inner.segment(at, size) += block.byOuter*own;
+        inner.segment(at, size) += timesVector(block.byOuter, own);
         at += size;
     }
     setInnerValues(problem_, inner);
@@ -112,7 +112,7 @@ bool ReducedCost::Evaluate(double const* const* parameters, double* residuals, d
         const int block = variable_[i];
         const Eigen::MatrixXd& basis = anchor_->space.bases[block];
         Eigen::Map<RowMajorMatrix> J(jacobians[i], count_ + 1, problem_.blocks()[block].values.size());
-        J.topRows(count_) = information.root.middleCols(anchor_->space.first[block], basis.cols())*basis.transpose();
+        J.topRows(count_) = timesTranspose(information.root.middleCols(anchor_->space.first[block], basis.cols()), basis);
         J.bottomRows<1>().setZero();
     }
     return true;

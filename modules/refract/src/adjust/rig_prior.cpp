@@ -6,8 +6,8 @@
 by orders, the correlations do not. */
 
 #include "adjust/rig_prior.hpp"
+#include "math/dense.hpp"
 #include <opencv2/core.hpp>
-#include <Eigen/Eigenvalues>
 
 namespace cv { namespace refract {
 
@@ -23,13 +23,13 @@ RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& direct
         return prior;
     const Eigen::VectorXd inverse = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd symmetric = 0.5*(covariance + covariance.transpose());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal()*symmetric*inverse.asDiagonal());
-    const double most = eigen.eigenvalues().maxCoeff();
-    if (!(eigen.eigenvalues()[0] > -std::sqrt(ROUNDING)*most))
+    const SymmetricEigen eigen(inverse.asDiagonal()*symmetric*inverse.asDiagonal());
+    const double most = eigen.values.maxCoeff();
+    if (!(eigen.values[0] > -std::sqrt(ROUNDING)*most))
         CV_Error_(Error::StsBadArg, ("rigCovariance is no covariance: a combination of its parameters has a variance below 0 (%g of "
-                                     "the largest)", eigen.eigenvalues()[0]/most));
-    const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(ROUNDING*most).cwiseSqrt().cwiseInverse();
-    prior.sqrtInformation = roots.asDiagonal()*eigen.eigenvectors().transpose()*inverse.asDiagonal()*directions.transpose();
+                                     "the largest)", eigen.values[0]/most));
+    const Eigen::VectorXd roots = eigen.values.cwiseMax(ROUNDING*most).cwiseSqrt().cwiseInverse();
+    prior.sqrtInformation = timesTranspose(roots.asDiagonal()*eigen.vectors.transpose()*inverse.asDiagonal(), directions);
     return prior;
 }
 
