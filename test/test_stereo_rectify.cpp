@@ -763,3 +763,78 @@ TEST_CASE("Lenses wider than a half-space are rectified, if all of the image is 
         CHECK_THAT(thrown([&] { rectify(rig, 0, Size(), 0); }), Contains("alpha is 0") && Contains("too wide"));
     }
 }
+
+TEST_CASE("Without windows: where calib3d's rectification is none, it is the module's own or refused", "[stereo_rectify]")
+{
+    // A lens of 124 degrees, turned by 30: a border of its image is behind the new camera.
+    const Matx33d K(340, 0, 640, 0, 340, 360, 0, 0, 1);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());
+    const Ptr<RefractiveCamera> behind = RefractiveCamera::create(K, noArray(), GlassWindow(Vec3d(0, 0, 1), 1e-9, 1.5, 0));
+    const StereoRig wide = { "wide, verged", camera, camera, turned(Vec3d(0, CV_PI/6, 0)), Vec3d(-0.2, 0, 0), Size(1280, 720),
+                             Vec2d(1, 10) };
+    StereoRig same = wide;
+    same.camera1 = same.camera2 = behind;
+    const Rectified ours = rectify(wide), expected = rectify(same);
+    CHECK(norm(ours.P1, expected.P1, NORM_INF) < 1e-4);
+    CHECK(ours.roi2 == expected.roi2);
+    CHECK(ours.rows[0] >= 0);
+    int seen[2] = { 0, 0 };
+    for (int c = 0; c < 2; c++)
+    {
+        Mat map, none;
+        initRefractiveStereoRectifyMap(camera, 2., c == 0 ? ours.R1 : ours.R2, c == 0 ? ours.P1 : ours.P2, c == 0 ? Vec3d() : wide.T,
+                                       wide.size, CV_32FC2, map, none);
+        for (const Vec2f& p : Mat_<Vec2f>(map))
+            seen[c] += p[0] >= 0 && p[1] >= 0 && p[0] <= wide.size.width - 1 && p[1] <= wide.size.height - 1;
+        CHECK(seen[c] > wide.size.area()/2);
+    }
+    Mat R1, R2, P1, P2, Q;
+    stereoRectify(K, noArray(), K, noArray(), wide.size, wide.R, wide.T, R1, R2, P1, P2, Q, RECTIFY_ZERO_DISPARITY, 1);
+    std::cout << "[numbers] a pair of 124 degrees, verged by 30, alpha 1: f of cv::stereoRectify " << P1.at<double>(0, 0)
+              << ", here refused; alpha -1: of " << wide.size.area() << " new pixels here " << seen[0] << " and " << seen[1]
+              << " are valid" << std::endl;
+    for (double alpha : { 0., 0.5, 1. })
+        CHECK_THAT(thrown([&] { rectify(wide, alpha); }), Contains("alpha is") && Contains("too wide"));
+
+    // A lens that folds within the image: what calib3d's alpha 0 shows is one spot.
+    const Ptr<RefractiveCamera> folds = RefractiveCamera::create(Matx33d(640, 0, 640, 0, 640, 480, 0, 0, 1),
+                                                                 std::vector<double>{ -0.4, 0.05, 0, 0 });
+    const StereoRig folded = { "folds", folds, folds, turned(Vec3d(0, 0.02, 0)), Vec3d(-100, 0, 0), Size(1280, 960), Vec2d(500, 2000) };
+    for (double alpha : { 0., 1. })
+    {
+        const Rectified r = rectify(folded, alpha, Size(), 0);
+        CHECK(r.P1.at<double>(0, 0) > 100);
+        CHECK(r.P1.at<double>(0, 0) < 2000);
+        CHECK(r.roi1.area() > 1000);
+    }
+}
+
+TEST_CASE("What alpha and validPixROI promise of rectified images holds where lenses fold", "[stereo_rectify]")
+{
+    const Matx33d K(640, 0, 640, 0, 641, 481, 0, 0, 1);
+    for (const GlassWindow& window : { GlassWindow(), GlassWindow(Vec3d(0.1, 0.1, 1), 15, 1.5, 20) })
+    {
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>{ -0.33, 0.12, 4e-4, -3e-4, -0.019 }, window);
+        const StereoRig rig = { "folds in the corners", camera, camera, turned(Vec3d(0, 0.02, 0)), Vec3d(-100, 0, 0), Size(1280, 960),
+                                Vec2d(500, 2000) };
+        for (double alpha : { -1., 0., 0.5, 1. })
+        {
+            const Rectified r = rectify(rig, alpha, Size(), 0);
+            CAPTURE(alpha, window.thickness);
+            for (int c = 0; c < 2; c++)
+            {
+                Mat map, none;
+                initRefractiveStereoRectifyMap(camera, middle(rig.range), c == 0 ? r.R1 : r.R2, c == 0 ? r.P1 : r.P2,
+                                               c == 0 ? Vec3d() : rig.T, rig.size, CV_32FC2, map, none);
+                const Rect roi = c == 0 ? r.roi1 : r.roi2;
+                int outside = 0;
+                for (const Vec2f& p : Mat_<Vec2f>(map(roi)))
+                    outside += !(p[0] > -1e-3 && p[1] > -1e-3 && p[0] < rig.size.width - 1 + 1e-3 && p[1] < rig.size.height - 1 + 1e-3);
+                CHECK(outside == 0);
+                CHECK(roi.area() > 10000);
+                if (alpha == 0)
+                    CHECK(roi == Rect(Point(), rig.size));
+            }
+        }
+    }
+}

@@ -3,9 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "stereo/virtual_centres.hpp"
-#include "points/map.hpp"
+#include "points/shown_region.hpp"
 
-/* As cv::stereoRectify, for pinholes at virtual centres. Two cameras without windows whose lens it knows are its own case. */
+/* As cv::stereoRectify, for pinholes at virtual centres. Two cameras without windows whose lens it knows are its own case, as far as
+its answer is one: it takes lenses beyond their fold, and points behind the new cameras as if they were in front. */
 
 namespace cv { namespace refract {
 
@@ -26,112 +27,41 @@ struct NewCameras
     Point2d principal[2];
 };
 
-//! The pixels of a raw image's border, COUNT a side.
-struct Border
+//! Where a pinhole shows what the middle of a raw image sees on the plane z = depth of the rectified frame, at focal length 1.
+Point2d middleOf(const Camera& camera, Size imageSize, const Matx33d& R, const Vec3d& T, const Vec3d& centre, double depth, int number)
 {
-    enum { COUNT = 9 };
-    explicit Border(Size size)
-    {
-        for (int k = 0; k < COUNT; k++)
-        {
-            const double x = (size.width - 1)*k/(COUNT - 1.), y = (size.height - 1)*k/(COUNT - 1.);
-            sides[0].push_back(Point2d(0, y));
-            sides[1].push_back(Point2d(size.width - 1, y));
-            sides[2].push_back(Point2d(x, 0));
-            sides[3].push_back(Point2d(x, size.height - 1));
-        }
-    }
-    std::vector<Point2d> sides[4];      //!< left, right, top, bottom
-};
-
-//! Where a pinhole shows what a camera's pixels see on the plane z = depth of the rectified frame, at focal length 1.
-std::vector<Point2d> normalized(const Camera& camera, const std::vector<Point2d>& pixels, const Matx33d& R, const Vec3d& T,
-                                const Vec3d& centre, double depth)
-{
-    std::vector<Point2d> result;
-    for (const Point2d& pixel : pixels)
-    {
-        Vec3d from, d;
-        const uchar status = camera.unproject(pixel, from, d);
-        const Vec3d origin = R*(from - T), direction = R*d;
-        const double s = (depth - origin[2])/direction[2];
-        if (status != REFRACT_OK || !(direction[2] > 0 && s > 0))
-            continue;
-        const Vec3d X = origin + s*direction - centre;
-        result.push_back(Point2d(X[0]/X[2], X[1]/X[2]));
-    }
-    return result;
+    Vec3d from, d;
+    const uchar status = camera.unproject(Point2d((imageSize.width - 1)/2., (imageSize.height - 1)/2.), from, d);
+    const Vec3d origin = R*(from - T), direction = R*d;
+    const double s = (depth - origin[2])/direction[2];
+    if (status != REFRACT_OK || !(direction[2] > 0 && s > 0))
+        CV_Error_(Error::StsBadArg, ("R, T: camera%d looks along the baseline, or away from the scene", number));
+    const Vec3d X = origin + s*direction - centre;
+    return Point2d(X[0]/X[2], X[1]/X[2]);
 }
 
-//! The borders and middles of both raw images in the new ones, at focal length 1.
-struct NewBorders
+//! What both raw images show in the new ones, at focal length 1.
+struct NewImages
 {
     Point2d middle[2];
+    ShownRegion regions[2];
 
-    NewBorders(const StereoPair& pair, const VirtualPair& v, Size imageSize, double depth)
-    {
-        const Border border(imageSize);
-        const std::vector<Point2d> centre = { Point2d((imageSize.width - 1)/2., (imageSize.height - 1)/2.) };
-        for (int c = 0; c < 2; c++)
-        {
-            const auto shown = [&](const std::vector<Point2d>& pixels)
-            { return c == 0 ? normalized(pair.camera1, pixels, v.R1, Vec3d(), v.centre1, depth)
-                            : normalized(pair.camera2, pixels, v.R2, pair.T, v.centre2, depth); };
-            const std::vector<Point2d> found = shown(centre);
-            if (found.empty())
-                CV_Error_(Error::StsBadArg, ("R, T: camera%d looks along the baseline, or away from the scene", c + 1));
-            middle[c] = found[0];
-            for (int i = 0; i < 4; i++)
-                sides[c][i] = shown(border.sides[i]);
-        }
-    }
-
-    //! False: no point on a side can be shown by a pinhole camera.
-    bool isComplete(int c) const
-    { return std::none_of(sides[c], sides[c] + 4, [](const std::vector<Point2d>& side) { return side.empty(); }); }
-
-    //! Inside of all sides.
-    Rect2d inner(int c) const
-    {
-        const Point2d tl(most(c, 0, true, 1), most(c, 2, false, 1)), br(most(c, 1, true, -1), most(c, 3, false, -1));
-        return Rect2d(tl.x, tl.y, br.x - tl.x, br.y - tl.y);
-    }
-
-    //! Round all sides.
-    Rect2d outer(int c) const
-    {
-        Point2d tl(DBL_MAX, DBL_MAX), br(-DBL_MAX, -DBL_MAX);
-        for (const std::vector<Point2d>& side : sides[c])
-            for (const Point2d& p : side)
-            {
-                tl = Point2d(std::min(tl.x, p.x), std::min(tl.y, p.y));
-                br = Point2d(std::max(br.x, p.x), std::max(br.y, p.y));
-            }
-        return Rect2d(tl.x, tl.y, br.x - tl.x, br.y - tl.y);
-    }
+    NewImages(const StereoPair& pair, const VirtualPair& v, Size imageSize, double depth)
+        : middle{ middleOf(pair.camera1, imageSize, v.R1, Vec3d(), v.centre1, depth, 1),
+                  middleOf(pair.camera2, imageSize, v.R2, pair.T, v.centre2, depth, 2) },
+          regions{ { rectifiedView(pair.camera1, v.R1, Vec3d(), v.centre1, depth), imageSize },
+                   { rectifiedView(pair.camera2, v.R2, pair.T, v.centre2, depth), imageSize } }
+    {}
 
 private:
-    double most(int c, int side, bool isX, int sign) const
+    static PinholeView rectifiedView(const Camera& camera, const Matx33d& R, const Vec3d& T, const Vec3d& centre, double depth)
     {
-        double result = -DBL_MAX;
-        for (const Point2d& p : sides[c][side])
-            result = std::max(result, sign*(isX ? p.x : p.y));
-        return sign*result;
+        const Vec3d normal = R.t()*Vec3d(0, 0, 1);
+        return { camera, R.t(), R.t()*centre + T, Vec4d(normal[0], normal[1], normal[2], depth + normal.dot(T)) };
     }
-
-    std::vector<Point2d> sides[2][4];
 };
 
-//! By which a rectangle (focal length 1) round the principal point must grow until it covers the image or, if not, just fits.
-double scaleTo(const Rect2d& r, double focal, const Point2d& principal, Size size, bool covers)
-{
-    const double ratios[] = { -principal.x/(focal*r.x), -principal.y/(focal*r.y),
-                              (size.width - 1 - principal.x)/(focal*(r.x + r.width)),
-                              (size.height - 1 - principal.y)/(focal*(r.y + r.height)) };
-    return covers ? *std::max_element(ratios, ratios + 4) : *std::min_element(ratios, ratios + 4);
-}
-
-NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders& borders, const RectifyOptions& options)
+NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewImages& images, const RectifyOptions& options)
 {
     const int row = 1 - v.axis;
     const Size size = options.newImageSize;
@@ -141,24 +71,34 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
         result.focal += 0.5*ratio*camera->cameraMatrix().at<double>(row, row)*paraxialMagnification(*camera);
     Point2d* p = result.principal;
     for (int c = 0; c < 2; c++)
-        p[c] = Point2d((size.width - 1)/2., (size.height - 1)/2.) - result.focal*borders.middle[c];     // stays in the middle
+        p[c] = Point2d((size.width - 1)/2., (size.height - 1)/2.) - result.focal*images.middle[c];     // stays in the middle
     const Point2d mean = 0.5*(p[0] + p[1]);
     for (int c = 0; c < 2; c++)
         p[c] = Point2d(v.axis == 0 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].x : mean.x,
                        v.axis == 1 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].y : mean.y);
     if (options.alpha >= 0)
     {
-        double covers = 0, fits = DBL_MAX;
+        const double alpha = std::min(options.alpha, 1.);
+        double covers[] = { 0, 0 }, fits[] = { 0, 0 };
         for (int c = 0; c < 2; c++)
         {
-            if (!borders.isComplete(c))
+            const ShownRegion& region = images.regions[c];
+            const Vec2d focal(result.focal, result.focal);
+            Rect2d inner, outer;
+            if (!region.findInner(size, inner))
                 CV_Error_(Error::StsBadArg, ("alpha is %g: no point on a border of the image of camera%d can be shown by a pinhole "
                                              "camera; its lens is too wide, or imageSize %dx%d is wrong. Use a negative alpha",
                                              options.alpha, c + 1, options.imageSize.width, options.imageSize.height));
-            covers = std::max(covers, scaleTo(borders.inner(c), result.focal, p[c], size, true));
-            fits = std::min(fits, scaleTo(borders.outer(c), result.focal, p[c], size, false));
+            if (alpha > 0 && !region.findOuter(outer))
+                CV_Error_(Error::StsBadArg, ("alpha is %g: pixels of camera%d are 89 degrees or more from the axis of its new image, and "
+                                             "no pinhole camera shows them all. Use alpha 0 or a negative one", options.alpha, c + 1));
+            if (alpha < 1)
+                covers[c] = scaleToImage(inner, focal, p[c], size, true);
+            if (alpha > 0)
+                fits[c] = scaleToImage(outer, focal, p[c], size, false);
         }
-        const double alpha = std::min(options.alpha, 1.), scale = covers*(1 - alpha) + fits*alpha;
+        const double most = covers[0] > covers[1] ? covers[0] : covers[1], least = fits[0] < fits[1] ? fits[0] : fits[1];
+        const double scale = most*(1 - alpha) + least*alpha + 0*(covers[0] + fits[0]);      // NaN if one is
         if (!(scale > 0 && std::isfinite(scale)))
             CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits, as a principal point, (%g, %g) or (%g, %g), is outside "
                                          "the images; with flags 0 each image has its own", options.alpha, p[0].x, p[0].y,
@@ -166,13 +106,6 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewBorders&
         result.focal *= scale;
     }
     return result;
-}
-
-Rect validPixels(const Rect2d& inner, double focal, const Point2d& principal, Size size)
-{
-    const Rect r(cvCeil(focal*inner.x + principal.x), cvCeil(focal*inner.y + principal.y), cvFloor(focal*inner.width),
-                 cvFloor(focal*inner.height));
-    return r & Rect(Point(), size);
 }
 
 Mat projectionMatrix(double focal, const Point2d& principal, const Vec3d& centre)
@@ -198,6 +131,57 @@ Mat disparityToPoint(const NewCameras& n, const VirtualPair& v)
         Q.at<double>(3, c) = w[c];
     }
     return Q;
+}
+
+//! What refractiveStereoRectify returns.
+struct Rectification
+{
+    Mat R1, R2, P[2], Q;
+    Rect roi[2];
+};
+
+Rectification rectifyVirtual(const StereoPair& pair, const VirtualPair& v, const NewImages& images, const RectifyOptions& options,
+                             bool wantsRois)
+{
+    const NewCameras cameras = place(pair, v, images, options);
+    Rectification result = { Mat(v.R1, true), Mat(v.R2, true), { projectionMatrix(cameras.focal, cameras.principal[0], v.centre1),
+                             projectionMatrix(cameras.focal, cameras.principal[1], v.centre2) }, disparityToPoint(cameras, v), {} };
+    Rect2d inner;
+    for (int c = 0; c < 2 && wantsRois; c++)
+        if (images.regions[c].findInner(options.newImageSize, inner))
+            result.roi[c] = pixelsWithin(inner, Vec2d::all(cameras.focal), cameras.principal[c], options.newImageSize);
+    return result;
+}
+
+//! calib3d's own answer; false if it is none: it shows something else than alpha says, or a border of a raw image is behind.
+bool rectifyPlain(const StereoPair& pair, const NewImages& images, const RectifyOptions& options, Rectification& result)
+{
+    const double SLACK = 0.01;      // of the image; calib3d looks at 9x9 places
+    const Size size = options.newImageSize;
+    const Camera* const cameras[] = { &pair.camera1, &pair.camera2 };
+    if (!images.regions[0].hasWholeBorder() || !images.regions[1].hasWholeBorder())
+        return false;
+    stereoRectify(cameras[0]->cameraMatrix(), cameras[0]->distCoeffs(), cameras[1]->cameraMatrix(), cameras[1]->distCoeffs(),
+                  options.imageSize, pair.R, pair.T, result.R1, result.R2, result.P[0], result.P[1], result.Q, options.flags,
+                  options.alpha, size, &result.roi[0], &result.roi[1]);
+    for (int c = 0; c < 2; c++)
+    {
+        const double focal = result.P[c].at<double>(0, 0), slack = SLACK*std::max(size.width, size.height)/focal;
+        const Point2d principal(result.P[c].at<double>(0, 2), result.P[c].at<double>(1, 2));
+        const auto placesOf = [&](const Rect& pixels)
+        { return Rect2d((pixels.x - principal.x)/focal, (pixels.y - principal.y)/focal, (pixels.width - 1)/focal,
+                        (pixels.height - 1)/focal); };
+        const auto isWithin = [&](const Rect2d& r, const Rect2d& in)
+        { return r.x > in.x - slack && r.y > in.y - slack && r.br().x < in.br().x + slack && r.br().y < in.br().y + slack; };
+        const Rect2d whole = placesOf(Rect(Point(), size));
+        Rect2d inner, outer;
+        if (!(focal > 0) || !images.regions[c].findInner(size, inner) ||
+            (options.alpha == 0 && !isWithin(whole, inner)) ||
+            (!result.roi[c].empty() && !isWithin(placesOf(result.roi[c]), inner)) ||
+            (options.alpha >= 1 && !(images.regions[c].findOuter(outer) && isWithin(outer, whole))))
+            return false;
+    }
+    return true;
 }
 
 Size checkedSize(Size size, const char* name)
@@ -243,32 +227,22 @@ Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<Re
     const RowSamples samples(pair, imageSize, range);
     const double depth = 2/(1/range[0] + 1/range[1]);     // the middle of the disparities
     const VirtualPair v(pair, bestVirtualCentres(pair, samples, depth));
-    double focal;
-    if (isPlainOpenCV(pair.camera1) && isPlainOpenCV(pair.camera2))
-    {
-        Mat p1;
-        stereoRectify(camera1->cameraMatrix(), camera1->distCoeffs(), camera2->cameraMatrix(), camera2->distCoeffs(), imageSize,
-                      pair.R, pair.T, R1, R2, p1, P2, Q, flags, alpha, newImageSize, validPixROI1, validPixROI2);
-        focal = p1.at<double>(0, 0);
-        p1.copyTo(P1);
-    }
-    else
-    {
-        const NewBorders borders(pair, v, imageSize, depth);
-        const NewCameras cameras = place(pair, v, borders, options);
-        focal = cameras.focal;
-        Mat(v.R1).copyTo(R1);
-        Mat(v.R2).copyTo(R2);
-        projectionMatrix(focal, cameras.principal[0], v.centre1).copyTo(P1);
-        projectionMatrix(focal, cameras.principal[1], v.centre2).copyTo(P2);
-        if (Q.needed())
-            disparityToPoint(cameras, v).copyTo(Q);
-        Rect* const rois[] = { validPixROI1, validPixROI2 };
-        for (int c = 0; c < 2; c++)
-            if (rois[c])
-                *rois[c] = borders.isComplete(c) ? validPixels(borders.inner(c), focal, cameras.principal[c], options.newImageSize)
-                                                 : Rect();
-    }
+    const NewImages images(pair, v, imageSize, depth);
+    Rectification result;
+    const bool arePlain = isPlainOpenCV(pair.camera1) && isPlainOpenCV(pair.camera2);
+    if (!arePlain || !rectifyPlain(pair, images, options, result))
+        result = rectifyVirtual(pair, v, images, options, validPixROI1 || validPixROI2);
+    result.R1.copyTo(R1);
+    result.R2.copyTo(R2);
+    result.P[0].copyTo(P1);
+    result.P[1].copyTo(P2);
+    if (Q.needed())
+        result.Q.copyTo(Q);
+    Rect* const rois[] = { validPixROI1, validPixROI2 };
+    for (int c = 0; c < 2; c++)
+        if (rois[c])
+            *rois[c] = result.roi[c];
+    const double focal = result.P[0].at<double>(0, 0);
     return sizeOf(samples.differences(v, depth), focal);
 }
 
