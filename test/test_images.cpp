@@ -80,6 +80,46 @@ TEST_CASE("An undistorted image: types, overloads, in place, without window cv::
     CHECK_THAT(thrown([&] { refractiveUndistortImage(noise, ours, c, noArray()); }), Contains("depth is empty"));
 }
 
+TEST_CASE("An image that is too large for cv::remap is undistorted in parts", "[undistort_image]")
+{
+    CAPTURE(seed());
+    Random random(3);
+    for (const Size& size : { Size(40000, 60), Size(50, 36000), Size(32767, 20) })
+        for (double zoom : { 1., 0.2 })     // small: a part of the new image shows all of the raw one
+        {
+            const Point2d middle(0.5*(size.width - 1), 0.5*(size.height - 1));
+            const double f = std::max(size.width, size.height);
+            const GlassWindow window(size.width > size.height ? Vec3d(0.05, 0, 1) : Vec3d(0, 0.05, 1), 10, 1.5, 10, 1.333);
+            const Matx33d large(f, 0, middle.x, 0, f, middle.y, 0, 0, 1), newK(zoom*f, 0, middle.x, 0, zoom*f, middle.y, 0, 0, 1);
+            const Ptr<RefractiveCamera> c = RefractiveCamera::create(large, std::vector<double>{ -0.05, 0.01, 0, 0 }, window);
+            Mat image(size, CV_8U), corrected, map, none;
+            for (uchar& v : Mat_<uchar>(image))
+                v = (uchar)random.below(256);
+            GaussianBlur(image, image, Size(), 2);
+            refractiveUndistortImage(image, corrected, c, 900., newK);
+            REQUIRE(corrected.size() == size);
+            initRefractiveUndistortRectifyMap(c, 900., noArray(), newK, size, CV_32FC2, map, none);
+            const auto at = [&](double x, double y)     // far outside of a lens no int holds them
+            {
+                return x >= 0 && x < size.width && y >= 0 && y < size.height ? image.at<uchar>((int)y, (int)x) : 0.;
+            };
+            double worst = 0;
+            for (int y = 0; y < size.height; y++)
+                for (int x = 0; x < size.width; x++)
+                {
+                    const Vec2f p = map.at<Vec2f>(y, x);
+                    const double column = std::floor(p[0]), row = std::floor(p[1]);
+                    const double a = p[0] - column, b = p[1] - row;
+                    const double expected = (1 - b)*((1 - a)*at(column, row) + a*at(column + 1, row)) +
+                                            b*((1 - a)*at(column, row + 1) + a*at(column + 1, row + 1));
+                    worst = std::max(worst, std::abs(expected - corrected.at<uchar>(y, x)));
+                }
+            CAPTURE(size, zoom);
+            CHECK(countNonZero(corrected) > 0);
+            CHECK(worst < 12);      // remap's thirty-seconds of a pixel; at a border to black
+        }
+}
+
 TEST_CASE("Axes are drawn where the window shows them", "[frame_axes]")
 {
     // Before water, which moves what it shows by tens of pixels.

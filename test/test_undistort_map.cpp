@@ -173,6 +173,33 @@ TEST_CASE("cv::remap with the map shows the plane as the pinhole would", "[undis
     CHECK(largestDifference(raw(inner), expected(inner)) > 10);
 }
 
+TEST_CASE("16 bits hold no raw pixel beyond 32767: of an image that has it, it is refused", "[undistort_map]")
+{
+    const Matx33d far(20000, 0, 20000, 0, 20000, 50, 0, 0, 1), few(500, 0, 500, 0, 500, 5, 0, 0, 1);
+    Mat map1, map2;
+    for (const GlassWindow& window : { GlassWindow(), GlassWindow(Vec3d(0.05, 0, 1), 10, 1.5, 10) })
+    {
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(far, noArray(), window);
+        const auto init = [&](const Matx33d& newK, Size size, int type)
+        { return thrown([&] { initRefractiveUndistortRectifyMap(camera, 1000., noArray(), newK, size, type, map1, map2); }); };
+        CHECK_THAT(init(far, Size(40000, 10), CV_16SC2), Contains("m1type is CV_16SC2") && Contains("new pixel (327") &&
+                                                         Contains("(32768"));
+        CHECK_THAT(init(few, Size(1000, 10), CV_16SC2), Contains("m1type is CV_16SC2"));
+        CHECK(init(far, Size(30000, 10), CV_16SC2) == "");
+        CHECK(init(far, Size(40000, 10), CV_32FC1) == "");
+        CHECK(map1.at<float>(5, 39990) > 39000);
+        // Of an image that does not reach so far, what is beyond it is beyond it.
+        camera->setImageSize(Size(30000, 100));
+        CHECK(init(far, Size(40000, 10), CV_16SC2) == "");
+        CHECK(map1.at<Vec2s>(5, 39990)[0] == 32767);
+    }
+    const Ptr<RefractiveCamera> high = RefractiveCamera::create(Matx33d(20000, 0, 50, 0, 20000, 20000, 0, 0, 1), noArray());
+    CHECK_THAT(thrown([&] { initRefractiveStereoRectifyMap(high, Mat(40000, 10, CV_32F, Scalar(1000)), Matx33d::eye(),
+                                                           Matx34d(20000, 0, 50, 0, 0, 20000, 20000, 0, 0, 0, 1, 0), noArray(),
+                                                           Size(10, 40000), CV_16SC2, map1, map2); }),
+               Contains("m1type is CV_16SC2") && Contains("new pixel (0, 32768)"));
+}
+
 TEST_CASE("Bad arguments of the map are named", "[undistort_map]")
 {
     Mat a, b;

@@ -718,7 +718,9 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
-@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2, which holds raw pixels up to
+32767 and is refused where the raw image (imageSize() of the camera, else twice its principal point) has farther ones that are
+needed.
 @param map1 first map, accurate to 1e-6 px before rounding to its type; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
@@ -742,7 +744,9 @@ refractiveUndistortPoints.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
-@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2, which holds raw pixels up to
+32767 and is refused where the raw image (imageSize() of the camera, else twice its principal point) has farther ones that are
+needed.
 @param map1 first map, accurate to 1e-6 px before rounding to its type; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
@@ -765,7 +769,8 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
 @param depth z > 0 of the plane, camera frame; may be infinity.
 @param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
 
-Calls initRefractiveUndistortRectifyMap and cv::remap (bilinear). For many images compute the maps once.
+Calls initRefractiveUndistortRectifyMap and cv::remap (bilinear); in parts where the image is larger than the 32766 pixels that
+cv::remap takes. For many images compute the maps once.
 */
 CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
         const GlassWindow& window, double depth, InputArray newCameraMatrix = noArray());
@@ -796,13 +801,20 @@ CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, cons
 @param window see GlassWindow.
 @param depth z > 0 of the plane, camera frame; may be infinity.
 @param imageSize of the raw image.
-@param alpha 0: all new pixels are valid, 1: no raw pixel is lost; values between interpolate.
+@param alpha 0: all new pixels are valid, 1: no raw pixel that sees the plane is lost; values between interpolate.
 @param newImageSize of the new image; Size(): imageSize.
 @param validPixROI rectangle of the new image in which all pixels are valid.
 @param centerPrincipalPoint the principal point is in the middle of the new image.
-@return 3x3 CV_64F. Without window and with OpenCV's lens the result is that of cv::getOptimalNewCameraMatrix.
+@return 3x3 CV_64F.
 
-Throws if no point on a border of the raw image can be shown by a pinhole camera (the lens is too wide).
+Valid is a new pixel that has a raw one, by the maps for the plane. As in calib3d the valid rectangle is between the borders of
+the raw image. Where the lens folds back, light is totally reflected, or the window or the plane ends within the image, it is
+the largest part of that in which all pixels are valid. Without a window cv::getOptimalNewCameraMatrix has other numbers: it
+looks at 9x9 places of the image, and takes lenses beyond their fold. For ordinary lenses it differs by some tenths of a percent
+(doc/upstream.md).
+
+Throws if nothing bounds the valid part, as of a lens that looks 90 degrees from the axis on a border of its image, and with
+alpha > 0 if a raw pixel is 89 degrees or more from the axis: a pinhole camera does not show it.
 */
 CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
         double depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
@@ -1059,16 +1071,18 @@ virtual centres and, as in calib3d, P2 the baseline.
 with maps for a depth per pixel.
 @param flags RECTIFY_ZERO_DISPARITY or 0.
 @param alpha as in cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative:
-neither of them.
+neither of them. The promise is that of getOptimalNewRefractiveCameraMatrix, and so is what is refused.
 @param newImageSize of the new images; Size(): imageSize.
 @param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty if the lens is
-so wide that a border of the raw image cannot be shown in the new image.
+so wide that nothing bounds it.
 @param validPixROI2 the same of the new image 2.
 @return RMS and largest difference of rows (of columns, if one camera is above the other) over the common view and depthRange
 with maps for the plane, in pixels.
 
-For two cameras without windows and with OpenCV's lenses the result is that of cv::stereoRectify. Throws if the cameras have no
-common point in depthRange beyond their windows.
+For two cameras without windows and with OpenCV's lenses the result is that of cv::stereoRectify where that is one: the whole
+borders of both raw images are in front of the new cameras, and what alpha promises holds to a hundredth of the image. Elsewhere
+it is found or refused as for cameras behind windows. Throws if the cameras have no common point in depthRange beyond their
+windows.
 */
 CV_EXPORTS_W Vec2d refractiveStereoRectify(const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputArray R, InputArray T, Size imageSize, const Vec2d& depthRange,
@@ -1093,7 +1107,7 @@ CV_EXPORTS_W Vec2d refractiveStereoRectify(InputArray cameraMatrix1, InputArray 
 that of the camera. The pinhole must be on the axis of the camera's window (without window: at its centre of projection), as
 refractiveStereoRectify returns it; otherwise T, P and the camera do not belong together, and this throws.
 @param size of the new image.
-@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2.
+@param m1type as initRefractiveUndistortRectifyMap.
 @param map1 first map; pixels without a solution map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */

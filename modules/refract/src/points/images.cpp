@@ -5,17 +5,63 @@
 #include "arrays/arrays.hpp"
 #include "camera/camera.hpp"
 #include "opencv2/imgproc.hpp"
+#include <climits>
 
 /* What calib3d does with images: one corrected, and the axes of a frame drawn into one. */
 
 namespace cv { namespace refract {
 
+namespace {
+
+//! cv::remap counts pixels in 16 bits.
+bool isLarge(Size size) { return std::max(size.width, size.height) >= SHRT_MAX; }
+
+//! A part of the corrected image, from the part of the raw one that it shows; in smaller parts where that is too large.
 template<typename Depth>
-static void undistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, const Depth& depth,
-                           InputArray newCameraMatrix)
+void undistortPart(const Mat& image, Mat& corrected, const Ptr<RefractiveCamera>& camera, const Depth& depth, const Matx33d& newK,
+                   const Rect& part)
+{
+    const Matx33d toPart(1, 0, -part.x, 0, 1, -part.y, 0, 0, 1);
+    Mat map1, map2;
+    initRefractiveUndistortRectifyMap(camera, depth, noArray(), toPart*newK, part.size(), CV_32FC2, map1, map2);
+    const int NEIGHBOURS = 2;       // of a pixel that remap looks at, and what float32 rounds
+    const Vec2f NONE(-1, -1);
+    Rect seen;
+    for (const Vec2f& p : Mat_<Vec2f>(map1))
+        if (p != NONE && p[0] > -NEIGHBOURS && p[1] > -NEIGHBOURS && p[0] < image.cols + NEIGHBOURS && p[1] < image.rows + NEIGHBOURS)
+            seen |= Rect(cvFloor(p[0]) - NEIGHBOURS, cvFloor(p[1]) - NEIGHBOURS, 2*NEIGHBOURS + 1, 2*NEIGHBOURS + 1);
+    seen &= Rect(Point(), image.size());
+    if (seen.empty())
+        return;
+    if (isLarge(seen.size()))
+    {
+        const bool isWide = part.width >= part.height;
+        const int half = (isWide ? part.width : part.height)/2;
+        Rect first = part, second = part;
+        (isWide ? first.width : first.height) = half;
+        (isWide ? second.x : second.y) += half;
+        (isWide ? second.width : second.height) -= half;
+        undistortPart(image, corrected, camera, depth, newK, first);
+        undistortPart(image, corrected, camera, depth, newK, second);
+        return;
+    }
+    const Ptr<RefractiveCamera> cropped = camera->clone();
+    Mat lens = cropped->lensParameters();
+    lens.at<double>(2) -= seen.x;
+    lens.at<double>(3) -= seen.y;
+    cropped->setLensParameters(lens);
+    cropped->setImageSize(seen.size());
+    initRefractiveUndistortRectifyMap(cropped, depth, noArray(), toPart*newK, part.size(), CV_16SC2, map1, map2);
+    Mat result = corrected(part);
+    remap(image(seen), result, map1, map2, INTER_LINEAR, BORDER_CONSTANT);
+}
+
+template<typename Depth>
+void undistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, const Depth& depth,
+                    InputArray newCameraMatrix)
 {
     const Mat image = src.getMat();
-    Mat map1, map2, corrected;
+    Mat corrected;      // not dst, which may be src
     if (image.empty())
     {
         dst.release();
@@ -23,10 +69,26 @@ static void undistortImage(InputArray src, OutputArray dst, const Ptr<Refractive
     }
     if (image.dims > 2)
         CV_Error_(Error::StsBadSize, ("src has %d dimensions; it must be an image", image.dims));
-    initRefractiveUndistortRectifyMap(camera, depth, noArray(), newCameraMatrix, image.size(), CV_16SC2, map1, map2);
-    remap(image, corrected, map1, map2, INTER_LINEAR, BORDER_CONSTANT);     // not into dst, which may be src
+    if (isLarge(image.size()))
+    {
+        const int PART = 2048;
+        const Matx33d newK = newCameraMatrix.empty() ? Matx33d(cameraOf(camera).cameraMatrix().ptr<double>())
+                                                     : readProjection(newCameraMatrix, "newCameraMatrix");
+        corrected = Mat::zeros(image.size(), image.type());
+        for (int y = 0; y < image.rows; y += PART)
+            for (int x = 0; x < image.cols; x += PART)
+                undistortPart(image, corrected, camera, depth, newK, Rect(x, y, PART, PART) & Rect(Point(), image.size()));
+    }
+    else
+    {
+        Mat map1, map2;
+        initRefractiveUndistortRectifyMap(camera, depth, noArray(), newCameraMatrix, image.size(), CV_16SC2, map1, map2);
+        remap(image, corrected, map1, map2, INTER_LINEAR, BORDER_CONSTANT);
+    }
     corrected.copyTo(dst);
 }
+
+} // namespace
 
 void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, double depth,
                               InputArray newCameraMatrix)

@@ -6,6 +6,8 @@
 #include "arrays/array_kernels.hpp"
 #include "points/point_kernels.hpp"
 #include "points/plane.hpp"
+#include <climits>
+#include <mutex>
 
 /* Pixels of the pinhole camera without window -> raw pixels, for whole images (initRefractiveUndistortRectifyMap).
 
@@ -89,29 +91,98 @@ bool findNodes(const PinholeView& view, Point tile, Nodes& nodes)
     return good;
 }
 
-//! Stores one run of a row in the formats of cv::initUndistortRectifyMap.
-void storeMap(Mat& map1, Mat& map2, int row, int column, int n, const double* u, const double* v)
+
+//! The type that m1type means, whether counted as by OpenCV 4 or 5: a Python program's cv2 need not be the OpenCV inside.
+int typeOfMap(int m1type)
 {
-    const int BITS = 5, SIZE = 1 << BITS;   // INTER_BITS, INTER_TAB_SIZE of imgproc
-    if (map1.type() == CV_32FC2)
-        arrayKernels().store(map1.ptr<Vec2f>(row) + column, true, n, u, v, NULL);
-    else if (map1.type() == CV_32FC1)
+    if (m1type <= 0)
+        return CV_16SC2;
+    for (int known : { CV_16SC2, CV_32FC1, CV_32FC2 })
+        for (int channelShift : { 3, 5 })
+            if (m1type == CV_MAT_DEPTH(known) + ((CV_MAT_CN(known) - 1) << channelShift))
+                return known;
+    CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
+                                            typeToString(m1type).c_str()));
+}
+
+/** The maps to fill, of the types that m1type means.
+
+16 bits hold pixels up to 32767. What is farther is outside of most images, and saturated it still is: cv::remap does not tell the
+difference. Of a larger image it would be another pixel, so that there it is refused. */
+class Maps
+{
+public:
+    Maps(const Camera& camera, Size size, int m1type, OutputArray first_, OutputArray second_)
     {
-        std::transform(u, u + n, map1.ptr<float>(row) + column, [](double a) { return (float)a; });
-        std::transform(v, v + n, map2.ptr<float>(row) + column, [](double a) { return (float)a; });
-    }
-    else
-    {
-        Vec2s* whole = map1.ptr<Vec2s>(row) + column;
-        ushort* part = map2.ptr<ushort>(row) + column;
-        for (int i = 0; i < n; i++)
+        m1type = typeOfMap(m1type);
+        if (size.width < 0 || size.height < 0)
+            CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
+        first_.create(size, m1type);
+        first = first_.getMat();
+        if (m1type == CV_32FC2)
+            second_.release();
+        else
         {
-            const int a = saturate_cast<int>(u[i]*SIZE), b = saturate_cast<int>(v[i]*SIZE);
-            whole[i] = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
-            part[i] = (ushort)((b & (SIZE - 1))*SIZE + (a & (SIZE - 1)));
+            second_.create(size, m1type == CV_32FC1 ? CV_32FC1 : CV_16UC1);
+            second = second_.getMat();
+        }
+        const std::vector<double> lens = camera.lens().parameters();
+        const Size known = camera.imageSize();      // else its middle is at the principal point
+        const double width = known.empty() ? 2*lens[2] : known.width, height = known.empty() ? 2*lens[3] : known.height;
+        isLarge = std::max(width, height) > SHRT_MAX;
+    }
+
+    //! Stores one run of a row in the formats of cv::initUndistortRectifyMap.
+    void store(int row, int column, int n, const double* u, const double* v)
+    {
+        const int BITS = 5, SIZE = 1 << BITS;   // INTER_BITS, INTER_TAB_SIZE of imgproc
+        if (first.type() == CV_32FC2)
+            arrayKernels().store(first.ptr<Vec2f>(row) + column, true, n, u, v, NULL);
+        else if (first.type() == CV_32FC1)
+        {
+            std::transform(u, u + n, first.ptr<float>(row) + column, [](double a) { return (float)a; });
+            std::transform(v, v + n, second.ptr<float>(row) + column, [](double a) { return (float)a; });
+        }
+        else
+        {
+            Vec2s* whole = first.ptr<Vec2s>(row) + column;
+            ushort* part = second.ptr<ushort>(row) + column;
+            for (int i = 0; i < n; i++)
+            {
+                const int a = saturate_cast<int>(u[i]*SIZE), b = saturate_cast<int>(v[i]*SIZE);
+                whole[i] = Vec2s(saturate_cast<short>(a >> BITS), saturate_cast<short>(b >> BITS));
+                part[i] = (ushort)((b & (SIZE - 1))*SIZE + (a & (SIZE - 1)));
+                if (isLarge && std::max(a, b) >> BITS > SHRT_MAX)
+                    addTooFar(Point(column + i, row), Point2d(u[i], v[i]));
+            }
         }
     }
-}
+
+    //! Throws with the first pixel that did not fit.
+    void check() const
+    {
+        if (hasTooFar)
+            CV_Error_(Error::StsOutOfRange, ("m1type is CV_16SC2, which holds raw pixels up to %d; that of the new pixel (%d, %d) is (%g, "
+                                             "%g). Use CV_32FC1 or CV_32FC2", SHRT_MAX, tooFar.x, tooFar.y, tooFarRaw.x, tooFarRaw.y));
+    }
+
+private:
+    void addTooFar(const Point& pixel, const Point2d& raw)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (hasTooFar && (tooFar.y < pixel.y || (tooFar.y == pixel.y && tooFar.x < pixel.x)))
+            return;
+        hasTooFar = true;
+        tooFar = pixel;
+        tooFarRaw = raw;
+    }
+
+    Mat first, second;
+    bool isLarge, hasTooFar = false;
+    Point tooFar;
+    Point2d tooFarRaw;
+    std::mutex mutex;
+};
 
 //! One run of a row, every pixel by itself; (-1, -1) where there is no answer. planeD: of each pixel, or null.
 void solveRow(const PinholeView& view, int row, int column, int n, const double* planeD, double* u, double* v)
@@ -205,7 +276,7 @@ bool findSurface(const PinholeView& view, Point corner, SurfaceTile& tile)
 }
 
 //! A tile, or what of it is in the new image.
-void mapTile(const PinholeView& view, const Rect& tile, Mat& map1, Mat& map2)
+void mapTile(const PinholeView& view, const Rect& tile, Maps& maps)
 {
     static const PixelWeights pixels(0, 1);
     Nodes nodes;
@@ -220,12 +291,12 @@ void mapTile(const PinholeView& view, const Rect& tile, Mat& map1, Mat& map2)
         }
         else
             solveRow(view, tile.y + r, tile.x, tile.width, NULL, u, v);
-        storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
+        maps.store(tile.y + r, tile.x, tile.width, u, v);
     }
 }
 
 //! A tile whose pixels have planes of their own.
-void mapSurfaceTile(const PinholeView& view, const PlaneReader& read, const Rect& tile, Mat& map1, Mat& map2)
+void mapSurfaceTile(const PinholeView& view, const PlaneReader& read, const Rect& tile, Maps& maps)
 {
     static const PixelWeights pixels(0, 1);
     std::vector<double> planeD(TILE*tile.height);
@@ -246,7 +317,7 @@ void mapSurfaceTile(const PinholeView& view, const PlaneReader& read, const Rect
             pointKernels().interpolateSurface(surface, pixels.byPlace[r], pixels.byNode[0], row, TILE, u, v);
         else
             solveRow(view, tile.y + r, tile.x, tile.width, row, u, v);
-        storeMap(map1, map2, tile.y + r, tile.x, tile.width, u, v);
+        maps.store(tile.y + r, tile.x, tile.width, u, v);
     }
 }
 
@@ -260,40 +331,6 @@ void forEachTile(Size size, const Body& body)
                 body(Rect(column, t*TILE, TILE, TILE) & Rect(Point(), size));
     });
 }
-
-//! The type that m1type means, whether counted as by OpenCV 4 or 5: a Python program's cv2 need not be the OpenCV inside.
-static int typeOfMap(int m1type)
-{
-    if (m1type <= 0)
-        return CV_16SC2;
-    for (int known : { CV_16SC2, CV_32FC1, CV_32FC2 })
-        for (int channelShift : { 3, 5 })
-            if (m1type == CV_MAT_DEPTH(known) + ((CV_MAT_CN(known) - 1) << channelShift))
-                return known;
-    CV_Error_(Error::StsUnsupportedFormat, ("m1type is %s; it must be CV_16SC2, CV_32FC1 or CV_32FC2",
-                                            typeToString(m1type).c_str()));
-}
-
-//! The maps to fill, of the types that m1type means.
-struct Maps
-{
-    Maps(Size size, int m1type, OutputArray first_, OutputArray second_)
-    {
-        m1type = typeOfMap(m1type);
-        if (size.width < 0 || size.height < 0)
-            CV_Error_(Error::StsBadSize, ("size is %dx%d; it must not be negative", size.width, size.height));
-        first_.create(size, m1type);
-        first = first_.getMat();
-        if (m1type == CV_32FC2)
-            second_.release();
-        else
-        {
-            second_.create(size, m1type == CV_32FC1 ? CV_32FC1 : CV_16UC1);
-            second = second_.getMat();
-        }
-    }
-    Mat first, second;
-};
 
 } // namespace
 
@@ -322,14 +359,16 @@ void PinholeView::toRaw(int n, const double* column, const double* row, const do
 
 void mapPlane(const PinholeView& view, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
-    Maps maps(size, m1type, map1, map2);
-    forEachTile(size, [&](const Rect& tile) { mapTile(view, tile, maps.first, maps.second); });
+    Maps maps(view.camera, size, m1type, map1, map2);
+    forEachTile(size, [&](const Rect& tile) { mapTile(view, tile, maps); });
+    maps.check();
 }
 
 void mapSurface(const PinholeView& view, const PlaneReader& planeD, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
-    Maps maps(size, m1type, map1, map2);
-    forEachTile(size, [&](const Rect& tile) { mapSurfaceTile(view, planeD, tile, maps.first, maps.second); });
+    Maps maps(view.camera, size, m1type, map1, map2);
+    forEachTile(size, [&](const Rect& tile) { mapSurfaceTile(view, planeD, tile, maps); });
+    maps.check();
 }
 
 Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name)
