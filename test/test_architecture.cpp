@@ -222,24 +222,24 @@ TEST_CASE("Ceres and Eigen stay where calibrations are", "[architecture]")
     }
 }
 
-TEST_CASE("Of Eigen all sources but those that the page lists include no more than its core", "[architecture]")
+TEST_CASE("Of Eigen the module's sources include its core only, but for those that the page lists", "[architecture]")
 {
     const std::string text = page();
-    const size_t begin = text.find("## Eigen\n");
+    const size_t begin = text.find("## Eigen in the module\n");
     REQUIRE(begin != std::string::npos);
     const std::vector<std::string> listed = matches(text.substr(begin, text.find("\n## ", begin) - begin), R"(\n\| `([\w/.*]+)`)");
     std::vector<std::string> found;
-    for (const std::string& tree : TREES)
-        for (const std::string& file : below(ROOT + "/" + tree, false))
-        {
-            std::vector<std::string> headers = matches(contentsOf(ROOT + "/" + tree + "/" + file), "#include <((?:unsupported/)?Eigen/\\w+)>");
-            headers.erase(std::remove(headers.begin(), headers.end(), "Eigen/Core"), headers.end());
-            if (headers.empty())
-                continue;
-            CAPTURE(file);
-            CHECK(std::any_of(listed.begin(), listed.end(), [&](const std::string& l) { return isAnyOf({ file }, l); }));
-            found.push_back(file);
-        }
+    for (const std::string& file : below(ROOT + "/" + TREES[0], false))
+    {
+        std::vector<std::string> headers = matches(contentsOf(ROOT + "/" + TREES[0] + "/" + file),
+                                                   R"(#include <((?:unsupported/)?Eigen/\w+)>)");
+        headers.erase(std::remove(headers.begin(), headers.end(), "Eigen/Core"), headers.end());
+        if (headers.empty())
+            continue;
+        CAPTURE(file);
+        CHECK(std::any_of(listed.begin(), listed.end(), [&](const std::string& l) { return isAnyOf({ file }, l); }));
+        found.push_back(file);
+    }
     for (const std::string& wildcard : listed)
     {
         CAPTURE(wildcard);
