@@ -7,13 +7,13 @@
 #include "console/failure.hpp"
 #include "console/table.hpp"
 #include "measure/student_t.hpp"
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -111,18 +111,18 @@ LinearQuantity planeDistanceOf(const TestPoints& points, const std::string& imag
     X.conservativeResize(used.size(), 3);
     const Eigen::RowVector3d middle = X.colwise().mean();
     X.rowwise() -= middle;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(X.transpose()*X);
-    const Eigen::Vector3d spread = axes.eigenvalues();
+    const SymmetricEigen3 axes(transposeTimes(X, X));
+    const Eigen::Vector3d& spread = axes.values;
     if (!(spread[1] > 1e-6*spread[2]) || !(spread[0] <= FLAT*FLAT*variance))        // in a line, or with depth
         return quantity;
-    Eigen::Vector3d n = axes.eigenvectors().col(0);
+    Eigen::Vector3d n = axes.vectors.col(0);
     if (middle.dot(n) < 0)
         n = -n;
     MatrixXd D(used.size(), 3);
-    D << VectorXd::Ones(used.size()), X*axes.eigenvectors().rightCols(2);
+    D << VectorXd::Ones(used.size()), X*axes.vectors.rightCols(2);
     Eigen::RowVector3d foot;
-    foot << 1., -middle*axes.eigenvectors().rightCols(2);
-    const Eigen::RowVectorXd weights = foot*D.completeOrthogonalDecomposition().pseudoInverse();
+    foot << 1., -middle*axes.vectors.rightCols(2);
+    const Eigen::RowVectorXd weights = foot*pseudoInverse(D);
     quantity.value = middle.dot(n);
     for (size_t i = 0; i < used.size(); i++)
         quantity.weights.push_back({used[i], weights[i]*Vec3d(n[0], n[1], n[2])});
@@ -166,7 +166,8 @@ void PointErrors::requireSamePoints(const TestPoints& points, const RigPixels& p
 double PointErrors::noiseVariance(const TestPoint& point, size_t i)
 {
     const double stated = point.sigma.dot(point.sigma), shape = joint_.noise[i].trace();
-    const double ofCalibration = (joint_.byCalibration[i]*covariance_*joint_.byCalibration[i].transpose()).trace();
+    const double ofCalibration = diagonalOfProduct(product(joint_.byCalibration[i], covariance_),
+                                                   joint_.byCalibration[i].transpose()).sum();
     const double expected = pixelSigma_*pixelSigma_;
     if (!(stated == stated) || std::abs(stated - ofCalibration - expected*shape) < ROUNDING*stated)
         return expected;

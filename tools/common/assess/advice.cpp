@@ -7,8 +7,8 @@
 #include "measure/view_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
+#include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -82,9 +82,7 @@ public:
         if (c_.data.cameraCount > 1 && images.back().camera == 0)
             return MatrixXd();
         const ViewDerivatives d = differentiateView(c_.fit.rig, board_, placement.rvec, placement.tvec, images);
-        const MatrixXd J = PoseNullSpace(d.byPose)(d.byParameters);
-        const Eigen::Index n = std::min(J.rows(), J.cols());
-        return Eigen::HouseholderQR<MatrixXd>(J).matrixQR().topRows(n).triangularView<Eigen::Upper>();
+        return QR(PoseNullSpace(d.byPose)(d.byParameters)).R();
     }
 
     MatrixXd covarianceAfter(const MatrixXd& before, const MatrixXd& information) const

@@ -3,11 +3,12 @@
 
 #include "assess/check_level.hpp"
 #include "measure/f_distribution.hpp"
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 #include <map>
+
+using namespace cv::refract;
 
 namespace tools {
 
@@ -19,8 +20,8 @@ const int DRAWS = 20000, LEAST_IN_TAIL = 50;
 MatrixXd whitening(const TestedDirections& tested, const MatrixXd& G)
 {
     const Eigen::Index size = tested.directions.rows();
-    const MatrixXd part = tested.directions.transpose()*G.block(tested.first, tested.first, size, size)*tested.directions;
-    return part.llt().matrixL().solve(MatrixXd(tested.directions.transpose()));
+    const MatrixXd part = product(transposeTimes(tested.directions, G.block(tested.first, tested.first, size, size)), tested.directions);
+    return LLT(part).solveL(tested.directions.transpose());
 }
 
 //! Of the noise's variance over its estimate, of so many degrees of freedom: Wilson and Hilferty's cube.
@@ -34,7 +35,7 @@ double drawnVariance(double dof, cv::RNG& random)
 
 double gainOf(const TestedDirections& tested, const MatrixXd& G, const VectorXd& score)
 {
-    return (whitening(tested, G)*score.segment(tested.first, tested.directions.rows())).squaredNorm();
+    return timesVector(whitening(tested, G), score.segment(tested.first, tested.directions.rows())).squaredNorm();
 }
 
 double probabilityOf(double gain, int count, double dof)
@@ -47,11 +48,11 @@ double criticalProbability(const std::vector<TestedDirections>& tested, const Ma
     const double bonferroni = falseAlarm/std::max((size_t)1, tested.size());
     if (tested.empty() || falseAlarm*DRAWS < LEAST_IN_TAIL)
         return bonferroni;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
-    const MatrixXd root = eigen.eigenvectors()*eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+    const SymmetricEigen eigen(G);
+    const MatrixXd root = eigen.vectors*eigen.values.cwiseMax(0.).cwiseSqrt().asDiagonal();
     std::vector<MatrixXd> white;
     for (const TestedDirections& t : tested)
-        white.push_back(whitening(t, G)*root.middleRows(t.first, t.directions.rows()));
+        white.push_back(product(whitening(t, G), root.middleRows(t.first, t.directions.rows())));
     cv::RNG random(0x5eed);
     std::vector<double> least;
     VectorXd z(root.cols());
@@ -63,7 +64,7 @@ double criticalProbability(const std::vector<TestedDirections>& tested, const Ma
         for (size_t i = 0; i < tested.size(); i++)
         {
             double& gain = largest[tested[i].count()];
-            gain = std::max(gain, (white[i]*z).squaredNorm());
+            gain = std::max(gain, timesVector(white[i], z).squaredNorm());
         }
         const double variance = drawnVariance(dof, random);
         double p = 1.;

@@ -3,9 +3,7 @@
 
 #include "assess/check_problem.hpp"
 #include "console/failure.hpp"
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <cmath>
 #include <limits>
 
@@ -24,21 +22,21 @@ MatrixXd rootOf(const MatrixXd& C)
 {
     const VectorXd std = C.diagonal().cwiseMax(0.).cwiseSqrt();
     const VectorXd inverse = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
+    const SymmetricEigen eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
     const double NOTHING = 1e-13;
-    const VectorXd& values = eigen.eigenvalues();
+    const VectorXd& values = eigen.values;
     const Eigen::Index zeros = (values.array() <= NOTHING*values.cwiseMax(0.).sum()).count();
     const Eigen::Index rank = values.size() - zeros;
     if (rank == 0)          // an exact calibration: one direction along which nothing moves, as Eigen wants a column
         return MatrixXd::Zero(C.rows(), 1);
-    return std.asDiagonal()*eigen.eigenvectors().rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
+    return std.asDiagonal()*eigen.vectors.rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
 }
 
 //! Of L, which has full column rank; its rows are of all sizes.
 MatrixXd leftInverseOf(const MatrixXd& L)
 {
     const VectorXd inverse = L.rowwise().norm().unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    return MatrixXd(inverse.asDiagonal()*L).completeOrthogonalDecomposition().pseudoInverse()*inverse.asDiagonal();
+    return pseudoInverse(inverse.asDiagonal()*L)*inverse.asDiagonal();
 }
 
 void move(ViewObservations& observed, const VectorXd& pose)
@@ -89,7 +87,7 @@ CheckProblem::CheckProblem(const CheckInput& input, const std::vector<View>& vie
 RigModel CheckProblem::rigOf(const VectorXd& q, const Change* change, const VectorXd& delta) const
 {
     RigModel rig = input_.rig.clone();
-    setParameters(rig, parameters_ + root_*q);
+    setParameters(rig, parameters_ + timesVector(root_, q));
     if (change)
         change->apply(rig, delta);
     return rig;
@@ -119,7 +117,8 @@ CheckProblem::Rows CheckProblem::linearise(const RigModel& rig, const std::vecto
     for (const ViewObservations& observed : views)
     {
         const ViewDerivatives view = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
-        Rows::OfView of{observed.pixels - view.predicted, view.byParameters*root_, view.byParameters*byDelta, view.byPose};
+        Rows::OfView of{observed.pixels - view.predicted, product(view.byParameters, root_), product(view.byParameters, byDelta),
+                        view.byPose};
         rows.squares += of.residual.squaredNorm();
         if (!of.residual.allFinite() || !of.byPose.allFinite())
         {
@@ -143,8 +142,8 @@ CheckProblem::Normal CheckProblem::normalEquations(const Rows& rows, const Vecto
     const Eigen::Index n = rows.byQ.cols(), k = rows.byDelta.cols();
     MatrixXd J(rows.byQ.rows(), n + k);
     J << rows.byQ, rows.byDelta;
-    Normal normal{MatrixXd::Zero(n + k, n + k), J.transpose()*rows.residual/(sigma_*sigma_)};
-    normal.H.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose(), 1./(sigma_*sigma_));
+    Normal normal{MatrixXd::Zero(n + k, n + k), transposeTimesVector(J, rows.residual)/(sigma_*sigma_)};
+    addGram(J, 1./(sigma_*sigma_), normal.H);
     normal.H.triangularView<Eigen::StrictlyUpper>() = normal.H.transpose();
     normal.H.diagonal().head(n).array() += 1.;
     normal.gradient.head(n) -= q;
@@ -156,10 +155,10 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
     CheckFit fit = start;
     const Eigen::Index n = root_.cols(), k = directions.cols();
     VectorXd eta = VectorXd::Zero(k);
-    const auto tangent = [&] { return change ? MatrixXd(derivative(*change, fit.q, directions*eta)*directions)
+    const auto tangent = [&] { return change ? product(derivative(*change, fit.q, timesVector(directions, eta)), directions)
                                              : MatrixXd(parameters_.size(), 0); };
     const auto objective = [&](const Rows& rows, const VectorXd& q) { return rows.squares/(sigma_*sigma_) + q.squaredNorm(); };
-    fit.delta = directions*eta;
+    fit.delta = timesVector(directions, eta);
     fit.rig = rigOf(fit.q, change, fit.delta);
     Rows rows = linearise(fit.rig, fit.views, tangent());
     for (int i = 0; i < ITERATIONS; i++)
@@ -168,17 +167,18 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
         if (!rows.isFinite())
             return fit;
         const Normal normal = normalEquations(rows, fit.q);
-        const Eigen::LDLT<MatrixXd> inverse(normal.H);
-        const VectorXd step = inverse.solve(normal.gradient);
+        const LDLT H(normal.H);
+        const VectorXd step = H.solve(normal.gradient);
         if (!step.allFinite())
             return fit;
         const double before = objective(rows, fit.q);
         std::vector<VectorXd> poses;
         for (const Rows::OfView& of : rows.views)
-            poses.push_back(of.byPose.colPivHouseholderQr().solve(of.residual - of.byQ*step.head(n) - of.byDelta*step.tail(k)));
+            poses.push_back(PivotedQR(of.byPose).solve(VectorXd(of.residual - timesVector(of.byQ, step.head(n))
+                                                                - timesVector(of.byDelta, step.tail(k)))));
         // What is left if the linearisation holds; the rest of the decrease is that of the poses.
         const double after = rows.residual.squaredNorm()/(sigma_*sigma_) + fit.q.squaredNorm() - normal.gradient.dot(step);
-        fit.covariance = directions*inverse.solve(MatrixXd::Identity(n + k, n + k)).bottomRightCorner(k, k)*directions.transpose();
+        fit.covariance = propagated(H.inverse().bottomRightCorner(k, k), directions);
         const CheckFit last = fit;
         const VectorXd lastEta = eta;
         bool isBetter = false;
@@ -188,7 +188,7 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
             fit = last;
             eta = lastEta + share*step.tail(k);
             fit.q += share*step.head(n);
-            fit.delta = directions*eta;
+            fit.delta = timesVector(directions, eta);
             for (size_t v = 0; v < fit.views.size(); v++)
                 move(fit.views[v], share*poses[v]);
             try
@@ -270,16 +270,17 @@ CheckProblem::Information CheckProblem::information(const std::vector<Change>& c
         return {};
     // r + A dp is what the calibrated values leave; S^-1 by the matrix inversion lemma.
     const double precision = 1./(sigma_*sigma_);
-    const VectorXd r = rows.residual + rows.byQ*at.q;
-    MatrixXd H = precision*rows.byQ.transpose()*rows.byQ;
+    const VectorXd r = rows.residual + timesVector(rows.byQ, at.q);
+    MatrixXd H = transposeTimes(rows.byQ, rows.byQ, precision);
     H.diagonal().array() += 1.;
-    const MatrixXd mixed = precision*rows.byQ.transpose()*rows.byDelta;
-    const Eigen::LDLT<MatrixXd> inverse(H);
+    const MatrixXd mixed = transposeTimes(rows.byQ, rows.byDelta, precision);
+    const LDLT ldlt(H);
     Information result;
-    result.G = precision*rows.byDelta.transpose()*rows.byDelta - mixed.transpose()*inverse.solve(mixed);
-    result.score = precision*(rows.byDelta.transpose()*r - rows.byDelta.transpose()*rows.byQ
-                              * inverse.solve(precision*rows.byQ.transpose()*r));
-    result.byParameters = inverse.solve(mixed).transpose()*leftInverseOf(root_);       // B^T S^-1 A L = (H^-1 mixed)^T
+    result.G = transposeTimes(rows.byDelta, rows.byDelta, precision) - transposeTimes(mixed, ldlt.solve(mixed));
+    result.score = precision*(transposeTimesVector(rows.byDelta, r)
+                              - timesVector(transposeTimes(rows.byDelta, rows.byQ),
+                                            ldlt.solve(transposeTimesVector(rows.byQ, r, precision))));
+    result.byParameters = transposeTimes(ldlt.solve(mixed), leftInverseOf(root_));     // B^T S^-1 A L = (H^-1 mixed)^T
     return result;
 }
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/heldout_test.hpp"
+#include "assess/thin_svd.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/view_observations.hpp"
-#include <Eigen/SVD>
-#include <Eigen/Eigenvalues>
+#include "math/dense.hpp"
 #include <cmath>
 #include <limits>
 
@@ -21,8 +21,8 @@ MatrixXd rootOf(const MatrixXd& covariance)
 {
     const VectorXd deviations = covariance.diagonal().cwiseMax(0.).cwiseSqrt();
     const VectorXd inverse = (deviations.array() > 0.).select(deviations.cwiseInverse(), 0.);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal()*covariance*inverse.asDiagonal());
-    return deviations.asDiagonal()*correlation.eigenvectors()*correlation.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+    const SymmetricEigen correlation(inverse.asDiagonal()*covariance*inverse.asDiagonal());
+    return deviations.asDiagonal()*correlation.vectors*correlation.values.cwiseMax(0.).cwiseSqrt().asDiagonal();
 }
 
 } // namespace
@@ -55,21 +55,21 @@ HeldOutTest testHeldOut(const RigModel& rig, const Mat& covariance, double sigma
         ViewObservations observed = observationsOf(rig, view);
         const ViewDerivatives derivatives = refinePose(rig, observed);
         const PoseNullSpace project(derivatives.byPose);
-        const MatrixXd part = project(derivatives.byParameters*H);
+        const MatrixXd part = project(product(derivatives.byParameters, H));
         const Eigen::Index rows = r.size();
         AH.conservativeResize(rows + part.rows(), Eigen::NoChange);
         AH.bottomRows(part.rows()) = part;
         r.conservativeResize(rows + part.rows());
         r.tail(part.rows()) = project(observed.pixels - derivatives.predicted);
     }
-    const Eigen::BDCSVD<MatrixXd> svd(AH, Eigen::ComputeThinU);
+    const ThinSvd svd(AH);
     HeldOutTest test;
     test.squares = r.squaredNorm();
-    test.expectedSquares = sigma*sigma*(double)r.size() + svd.singularValues().squaredNorm();
-    for (int i = 0; i < svd.singularValues().size() && svd.singularValues()[i] > sigma; i++)
+    test.expectedSquares = sigma*sigma*(double)r.size() + svd.values.squaredNorm();
+    for (int i = 0; i < svd.values.size() && svd.values[i] > sigma; i++)
     {
-        const double variance = sigma*sigma + std::pow(svd.singularValues()[i], 2);
-        test.chiSquare += std::pow(svd.matrixU().col(i).dot(r), 2)/variance;
+        const double variance = sigma*sigma + std::pow(svd.values[i], 2);
+        test.chiSquare += std::pow(svd.U.col(i).dot(r), 2)/variance;
         test.directions++;
     }
     return test;

@@ -5,11 +5,12 @@
 #include "measure/eigen_matrix.hpp"
 #include "measure/view_observations.hpp"
 #include "console/failure.hpp"
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -44,13 +45,13 @@ void addImage(const RigModel& rig, const View& view, double& squares, double& do
     const VectorXd residual = observed.pixels - derivatives.predicted;
     if (n < POINTS_PER_TERM*TERMS || !residual.allFinite())
         return;
-    const Eigen::ColPivHouseholderQR<MatrixXd> smooth(polynomials(observed.pixels));
+    const PivotedQR smooth(polynomials(observed.pixels));
     for (int axis = 0; axis < 2; axis++)
     {
         VectorXd rest(n);
         for (Eigen::Index i = 0; i < n; i++)
             rest[i] = residual[2*i + axis];
-        rest.applyOnTheLeft(smooth.householderQ().adjoint());
+        rest = smooth.rotate(rest);
         squares += rest.tail(n - smooth.rank()).squaredNorm();
         dof += (double)(n - smooth.rank());
     }

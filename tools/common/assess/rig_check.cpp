@@ -10,8 +10,7 @@
 #include "measure/f_distribution.hpp"
 #include "diagnose/ranking.hpp"
 #include "console/failure.hpp"
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -164,9 +163,9 @@ private:
     //! In units of the ranges: eigenvectors whose standard deviation is well within them.
     MatrixXd toldDirections(int first, int size) const
     {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(information_.G.block(first, first, size, size));
-        const Eigen::Index told = (eigen.eigenvalues().array() > 1./(TOLD*TOLD)).count();
-        return eigen.eigenvectors().rightCols(told);
+        const SymmetricEigen eigen(information_.G.block(first, first, size, size));
+        const Eigen::Index told = (eigen.values.array() > 1./(TOLD*TOLD)).count();
+        return eigen.vectors.rightCols(told);
     }
 
     double probabilityOfResiduals(double chiSquare, int parameters) const
@@ -238,7 +237,7 @@ private:
             return false;
         const MatrixXd outer = problem_->directionsOf(*large.change), inner = problem_->directionsOf(*small.change);
         const double NOTHING = 1e-4;
-        const MatrixXd rest = inner - outer*outer.colPivHouseholderQr().solve(inner);
+        const MatrixXd rest = inner - product(outer, PivotedQR(outer).solve(inner));
         return rest.norm() < NOTHING*inner.norm();
     }
 
@@ -336,8 +335,8 @@ private:
         // The covariance of the linear test, which holds whatever was found.
         const MatrixXd ranges = tested.change->ranges().asDiagonal();
         const int n = check.parameters;
-        const MatrixXd V = ranges*information_.G.block(tested.at.first, tested.at.first, n, n).inverse()*ranges;
-        const VectorXd variances = Eigen::SelfAdjointEigenSolver<MatrixXd>(V).eigenvalues();
+        const MatrixXd V = product(product(ranges, inverse(information_.G.block(tested.at.first, tested.at.first, n, n))), ranges);
+        const VectorXd variances = SymmetricEigen(V).values;
         check.stdDeg[0] = std::sqrt(variances[n - 1])*degrees;
         check.stdDeg[1] = std::sqrt(variances[n - 2])*degrees;
         if (!isSeen || !std::isfinite(tested.fit.chiSquare))

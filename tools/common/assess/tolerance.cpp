@@ -10,8 +10,8 @@
 #include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -230,7 +230,7 @@ Tolerance summarise(const Cause& cause, const Volume& volume, const std::vector<
         for (size_t f = 0; f < fields.size(); f++)
             map.col(f) << fields[f][i][0], fields[f][i][1], fields[f][i][2];
         if (map.allFinite())
-            moves.push_back(Eigen::JacobiSVD<Eigen::MatrixXd>(map).singularValues()[0]);
+            moves.push_back(SingularValues(map).values[0]);
     }
     for (const std::vector<Vec3d>& field : fields)
         lengths.push_back(rmsOfAll(volume.stretches(field)));

@@ -4,9 +4,7 @@
 #include "diagnose/relaxed_fit.hpp"
 #include "diagnose/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "math/dense.hpp"
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -42,9 +40,9 @@ MatrixXd informationOf(const MatrixXd& covariance)
     for (size_t i = 0; i < known.size(); i++)
         for (size_t j = 0; j < known.size(); j++)
             part(i, j) = covariance(known[i], known[j])*scale[i]*scale[j];
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(part);
-    const VectorXd inverse = solver.eigenvalues().unaryExpr([](double x) { return x > 1e-12 ? 1./x : 0.; });
-    const MatrixXd of = solver.eigenvectors()*inverse.asDiagonal()*solver.eigenvectors().transpose();
+    const SymmetricEigen eigen(part);
+    const VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-12 ? 1./x : 0.; });
+    const MatrixXd of = timesTranspose(eigen.vectors*inverse.asDiagonal(), eigen.vectors);
     MatrixXd information = MatrixXd::Zero(n, n);
     for (size_t i = 0; i < known.size(); i++)
         for (size_t j = 0; j < known.size(); j++)
@@ -168,7 +166,7 @@ MatrixXd changesOf(const RigModel& rig, const MatrixXd& free, const std::vector<
         for (const auto& number : freed[k].numbers)
             if (glass || !freed[k].glassOnly)
                 changes(number.first, free.cols() + k) += number.second;
-    return consistentChanges(rig)*changes;
+    return product(consistentChanges(rig), changes);
 }
 
 VectorXd toVector(const Vec3d& rvec, const Vec3d& tvec)
@@ -261,7 +259,7 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
 double RelaxedFit::priorOf(const VectorXd& numbers) const
 {
     const VectorXd off = numbers - known_;
-    return off.dot(information_*off);
+    return off.dot(timesVector(information_, off));
 }
 
 //! @param changes of the numbers of direct images and of those through the windows
@@ -282,16 +280,16 @@ RelaxedFit::Rows RelaxedFit::rowsOf(const Relaxed& at, size_t k, const std::vect
         const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
                                                        observed.tvec, images[glass]);
         const Eigen::Index n = view.predicted.size();
-        rows.byAll.middleRows(row, n).noalias() = view.byParameters*(changes[glass]/noise_);
+        rows.byAll.middleRows(row, n) = product(view.byParameters, changes[glass]/noise_);
         rows.byPose.middleRows(row, n) = view.byPose/noise_;
         rows.rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
         row += n;
     }
     if (known > 0)
     {
-        const MatrixXd root = poseInformation_[k].llt().matrixU();
+        const MatrixXd root = LLT(poseInformation_[k]).L().transpose();
         rows.byPose.bottomRows(6) = root;
-        rows.rest.tail(6) = root*(knownPoses_[k] - toVector(observed.rvec, observed.tvec));
+        rows.rest.tail(6) = timesVector(root, knownPoses_[k] - toVector(observed.rvec, observed.tvec));
     }
     if (isExact)
         rows.byPose.resize(count, 0);
@@ -304,11 +302,11 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
     const std::vector<MatrixXd> changes = {changesOf(at.direct, free_, freed, false), changesOf(at.glass, free_, freed, true)};
     Normal normal;
     normal.glassChanges = changes[true];
-    const MatrixXd own = free_.transpose()*information_;
+    const MatrixXd own = transposeTimes(free_, information_);
     normal.matrix = MatrixXd::Zero(count, count);
     normal.right = VectorXd::Zero(count);
-    normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = own*free_;
-    normal.right.head(free_.cols()) = own*(known_ - at.before);
+    normal.matrix.topLeftCorner(free_.cols(), free_.cols()) = product(own, free_);
+    normal.right.head(free_.cols()) = timesVector(own, known_ - at.before);
     normal.chiSquare = priorOf(at.before);
     for (size_t k = 0; k < at.views.size(); k++)
     {
@@ -321,8 +319,8 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
         if (rows.byPose.cols() > 0)
             all = PoseNullSpace(rows.byPose)(all);
         const auto byAll = all.leftCols(count);
-        normal.matrix.selfadjointView<Eigen::Lower>().rankUpdate(byAll.transpose());
-        normal.right.noalias() += byAll.transpose()*all.col(count);
+        addGram(byAll, 1., normal.matrix);
+        normal.right += transposeTimesVector(byAll, all.col(count));
         normal.rows.push_back(rows);
     }
     normal.matrix = normal.matrix.selfadjointView<Eigen::Lower>();
@@ -346,7 +344,7 @@ bool RelaxedFit::setRigs(const std::vector<Shift>& freed, Relaxed& at) const
 
 bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const
 {
-    at.before += free_*step.head(free_.cols());
+    at.before += timesVector(free_, step.head(free_.cols()));
     at.shifts += step.tail(at.shifts.size());
     if (!setRigs(freed, at))
         return false;
@@ -355,7 +353,7 @@ bool RelaxedFit::move(const Normal& normal, const std::vector<Shift>& freed, con
         const Rows& rows = normal.rows[k];
         if (rows.byPose.cols() == 0)
             continue;
-        const VectorXd pose = rows.byPose.colPivHouseholderQr().solve(rows.rest - rows.byAll*step);
+        const VectorXd pose = PivotedQR(rows.byPose).solve(VectorXd(rows.rest - timesVector(rows.byAll, step)));
         for (int i = 0; i < 3; i++)
         {
             at.views[k].rvec[i] += pose[i];
@@ -371,7 +369,7 @@ static VectorXd solved(const MatrixXd& matrix, const VectorXd& right, double dam
     const VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     MatrixXd scaled = scale.asDiagonal()*matrix*scale.asDiagonal();
     scaled.diagonal().array() += damping;
-    return scale.asDiagonal()*scaled.ldlt().solve(scale.asDiagonal()*right);
+    return scale.asDiagonal()*LDLT(scaled).solve(VectorXd(scale.asDiagonal()*right));
 }
 
 /** Distances stay before the boards: where a step would carry one beyond, it ends at the bound, and all else is solved for with that. A fit
@@ -392,7 +390,7 @@ VectorXd RelaxedFit::stepFrom(const Relaxed& at, const Normal& normal, double da
     if (columns.empty())
         return step;
     MatrixXd matrix = normal.matrix;
-    VectorXd right = normal.right - normal.matrix*held;
+    VectorXd right = normal.right - timesVector(normal.matrix, held);
     for (int column : columns)
     {
         matrix.row(column).setZero();
@@ -439,10 +437,10 @@ Relaxed RelaxedFit::fit(const Relaxed& start, const std::vector<Shift>& freed) c
     const VectorXd scale = normal.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     MatrixXd scaled = scale.asDiagonal()*normal.matrix*scale.asDiagonal();
     scaled.diagonal().array() += 1e-12;
-    const MatrixXd inverse = scale.asDiagonal()*scaled.ldlt().solve(MatrixXd::Identity(scaled.rows(), scaled.cols()))*scale.asDiagonal();
+    const MatrixXd inverse = scale.asDiagonal()*LDLT(scaled).inverse()*scale.asDiagonal();
     MatrixXd all(normal.glassChanges.rows() + freed.size(), inverse.cols());
     all << normal.glassChanges, MatrixXd::Zero(freed.size(), free_.cols()), MatrixXd::Identity(freed.size(), freed.size());
-    at.covariance = all*inverse*all.transpose();
+    at.covariance = propagated(inverse, all);
     return at;
 }
 

@@ -6,7 +6,7 @@
 #include "console/file_output.hpp"
 #include "console/json.hpp"
 #include "console/sha256.hpp"
-#include <Eigen/LU>
+#include "math/dense.hpp"
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -14,6 +14,7 @@
 #include <iomanip>
 #include <sstream>
 
+using namespace cv::refract;
 using cv::format;
 
 namespace tools {
@@ -61,8 +62,8 @@ Json valuesOf(const CheckHistory& history, const CheckRecord& check)
     {
         const ChartedChange& change = history.changes[c];
         const int size = change.size();
-        const MatrixXd C = check.information.block(first, first, size, size).inverse();
-        const VectorXd value = change.factor*C*check.score.segment(first, size);
+        const MatrixXd C = inverse(check.information.block(first, first, size, size));
+        const VectorXd value = change.factor*timesVector(C, check.score.segment(first, size));
         const VectorXd std = std::abs(change.factor)*C.diagonal().cwiseSqrt();
         values.append({{"name", change.name}, {"value", std::vector<double>(value.begin(), value.end())},
                        {"std", std::vector<double>(std.begin(), std.end())}, {"unit", change.unit}});

@@ -3,11 +3,12 @@
 
 #include "history/drift.hpp"
 #include "console/table.hpp"
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+using namespace cv::refract;
 
 namespace tools {
 
@@ -35,7 +36,7 @@ int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, i
 //! A change's own estimate: to multiply the rows of its score with.
 MatrixXd inverseOf(const CheckRecord& check, int row, int size)
 {
-    return check.information.block(row, row, size, size).inverse();
+    return inverse(check.information.block(row, row, size, size));
 }
 
 //! One parameter, of all checks that tell of it.
@@ -59,7 +60,7 @@ Series seriesOf(const CheckHistory& history, const MatrixXd& C, int change, int 
         if (row < 0)
             continue;
         const Eigen::RowVectorXd of = factor*inverseOf(check, row, size).row(axis);
-        const VectorXd d = (of*check.byParameters.middleRows(row, size)).transpose();
+        const VectorXd d = transposeTimesVector(check.byParameters.middleRows(row, size), of.transpose());
         series.months.push_back((secondsOf(check.time) - start)/MONTH);
         values.push_back(of.dot(check.score.segment(row, size)));
         variances.push_back(of*check.information.block(row, row, size, size)*of.transpose());
@@ -70,7 +71,7 @@ Series seriesOf(const CheckHistory& history, const MatrixXd& C, int change, int 
     series.covariance.resize(n, n);
     for (Eigen::Index i = 0; i < n; i++)
         for (Eigen::Index j = 0; j < n; j++)
-            series.covariance(i, j) = i == j ? variances[i] : byParameters[i].dot(C*byParameters[j]);
+            series.covariance(i, j) = i == j ? variances[i] : byParameters[i].dot(timesVector(C, byParameters[j]));
     return series;
 }
 
@@ -86,9 +87,9 @@ Trend lineThrough(const Series& series)
     MatrixXd J(series.value.size(), 2);
     for (Eigen::Index i = 0; i < J.rows(); i++)
         J.row(i) << 1., series.months[i];
-    const Eigen::LDLT<MatrixXd> S(series.covariance);
-    const MatrixXd C = (J.transpose()*S.solve(J)).inverse();
-    const VectorXd line = C*(J.transpose()*S.solve(series.value));
+    const LDLT S(series.covariance);
+    const MatrixXd C = inverse(transposeTimes(J, S.solve(J)));
+    const VectorXd line = timesVector(C, transposeTimesVector(J, S.solve(series.value)));
     trend.perMonth = line[1];
     trend.std = std::sqrt(C(1, 1));
     return trend;
@@ -185,8 +186,8 @@ private:
     void addSums(const Innovation& innovation)
     {
         const MatrixXd& X = innovation.value;
-        const MatrixXd WX = innovation.inverse*X;
-        b_ += WX.transpose()*X.col(0);
+        const MatrixXd WX = product(innovation.inverse, X);
+        b_ += transposeTimesVector(WX, X.col(0));
         for (const Column& c : columns_)
             for (int other = 0; other < history_.changes[c.change].size(); other++)
                 A_(c.at, other) += WX.col(c.at).dot(X.col(c.at - c.axis + other));
@@ -196,14 +197,14 @@ private:
     {
         const int size = history_.changes[first.change].size();
         const MatrixXd A = A_.block(first.at, 0, size, size);
-        const Eigen::FullPivLU<MatrixXd> inverse(A);
-        if (!inverse.isInvertible())
+        const FullPivLU lu(A);
+        if (!lu.isInvertible())
             return;
-        const VectorXd b = b_.segment(first.at, size), value = inverse.solve(b);
+        const VectorXd b = b_.segment(first.at, size), value = lu.solve(b);
         if (!(b.dot(value) > best.gain))
             return;
         const double factor = history_.changes[first.change].factor;
-        best = {first.change, first.fromStart, first.since, first.steady, b.dot(value), factor*value, factor*factor*inverse.inverse()};
+        best = {first.change, first.fromStart, first.since, first.steady, b.dot(value), factor*value, factor*factor*lu.inverse()};
     }
 
     static const int MOST_AXES = 3;
@@ -225,7 +226,8 @@ public:
         const int row = rowOf(last, history.changes, change), size = history.changes[change].size();
         unit_ = MatrixXd::Zero(last.score.size(), DIRECTIONS);
         for (int i = 0; i < DIRECTIONS && row >= 0; i++)
-            unit_.col(i) = last.information.middleCols(row, size)*direction(i, size)*perCheck/history.changes[change].factor;
+            unit_.col(i) = timesVector(last.information.middleCols(row, size), direction(i, size))*perCheck
+                           / history.changes[change].factor;
         for (const CheckRecord& check : history.checks)
             step(check, MatrixXd::Zero(check.score.size(), DIRECTIONS));
     }
@@ -308,9 +310,9 @@ Estimates estimatesOf(const CheckHistory& history, const CheckRecord& check, con
         const int row = rowOf(check, history.changes, c), size = history.changes[c].size();
         const double factor = history.changes[c].factor;
         const MatrixXd M = factor*inverseOf(check, row, size), D = check.byParameters.middleRows(row, size);
-        const MatrixXd noise = check.information.block(row, row, size, size) - D*covariance*D.transpose();
-        result.value.segment(first[c], size) = M*check.score.segment(row, size);
-        result.std.segment(first[c], size) = (M*noise*M.transpose()).diagonal().cwiseMax(0.).cwiseSqrt();
+        const MatrixXd noise = check.information.block(row, row, size, size) - timesTranspose(product(D, covariance), D);
+        result.value.segment(first[c], size) = timesVector(M, check.score.segment(row, size));
+        result.std.segment(first[c], size) = diagonalOfProduct(product(M, noise), M.transpose()).cwiseMax(0.).cwiseSqrt();
     }
     return result;
 }

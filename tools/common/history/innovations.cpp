@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "history/innovations.hpp"
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "math/dense.hpp"
+
+using namespace cv::refract;
 
 namespace tools {
 
@@ -16,13 +17,13 @@ void decompose(const MatrixXd& V, Innovation& innovation)
 {
     const VectorXd std = V.diagonal().cwiseMax(0.).cwiseSqrt();
     const VectorXd scale = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal()*V*scale.asDiagonal());
-    const VectorXd& values = eigen.eigenvalues();
+    const SymmetricEigen eigen(scale.asDiagonal()*V*scale.asDiagonal());
+    const VectorXd& values = eigen.values;
     const Eigen::Index rank = (values.array() > NOTHING*values.cwiseMax(0.).sum()).count();
-    const MatrixXd vectors = eigen.eigenvectors().rightCols(rank);
+    const MatrixXd vectors = eigen.vectors.rightCols(rank);
     innovation.root = std.asDiagonal()*vectors*values.tail(rank).cwiseSqrt().asDiagonal();
     const MatrixXd inverseRoot = scale.asDiagonal()*vectors*values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
-    innovation.inverse = inverseRoot*inverseRoot.transpose();
+    innovation.inverse = timesTranspose(inverseRoot, inverseRoot);
 }
 
 //! Block by block the inverse of the information: from a score to the estimates of changes, each by itself.
@@ -33,7 +34,7 @@ MatrixXd estimatesOfScore(const CheckRecord& check, const std::vector<ChartedCha
     for (int c : check.changes)
     {
         const int size = changes[c].size();
-        M.block(first, first, size, size) = check.information.block(first, first, size, size).inverse();
+        M.block(first, first, size, size) = inverse(check.information.block(first, first, size, size));
         first += size;
     }
     return M;
@@ -50,15 +51,15 @@ Innovation InnovationFilter::add(const CheckRecord& check, const std::vector<Cha
 {
     const MatrixXd& D = check.byParameters;
     Innovation result;
-    decompose(check.information - D*(C0_ - C_)*D.transpose(), result);
-    result.value = scores - D*mean_;
-    const MatrixXd gain = C_*D.transpose()*result.inverse;
-    mean_ += gain*result.value;
-    C_ -= gain*D*C_;
+    decompose(check.information - timesTranspose(product(D, C0_ - C_), D), result);
+    result.value = scores - product(D, mean_);
+    const MatrixXd gain = product(timesTranspose(C_, D), result.inverse);
+    mean_ += product(gain, result.value);
+    C_ -= product(product(gain, D), C_);
     C_ = 0.5*(C_ + C_.transpose()).eval();
     const MatrixXd M = estimatesOfScore(check, changes);
-    result.alone = M*result.value;
-    result.rootAlone = M*result.root;
+    result.alone = product(M, result.value);
+    result.rootAlone = product(M, result.root);
     result.stdAlone = result.rootAlone.rowwise().norm();
     return result;
 }

@@ -6,8 +6,8 @@
 #include "calibrate/rigid_transform.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
+#include "math/dense.hpp"
 #include <opencv2/core/persistence.hpp>
-#include <Eigen/QR>
 #include <cmath>
 
 using namespace cv;
@@ -111,7 +111,7 @@ VectorXd EmitterPrior::deviation(const Emitter& other) const
     VectorXd difference(basis_.rows());
     const Vec3d r = rotationVector(other.R*emitter_.R.t()), c = other.position - emitter_.position;
     difference << r[0], r[1], r[2], c[0], c[1], c[2], parametersOf(*other.camera) - parametersOf(*emitter_.camera);
-    return basis_.colPivHouseholderQr().solve(difference);
+    return PivotedQR(basis_).solve(difference);
 }
 
 Emitter EmitterPrior::moved(const Emitter& from, const VectorXd& step) const

@@ -9,8 +9,8 @@
 #include "measure/eigen_matrix.hpp"
 #include "measure/point_derivatives.hpp"
 #include "measure/target_pose.hpp"
+#include "math/dense.hpp"
 #include <opencv2/core/persistence.hpp>
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
@@ -163,7 +163,7 @@ OnSheetDerivatives differentiateOnSheet(const Calibration& calibration, const Sh
     {
         Eigen::Matrix3d M;
         M << d.byPose.block(2*i, 3, 2, 3), from.byPoint.row(i);
-        const Eigen::Matrix3d inverse = M.inverse();
+        const Eigen::Matrix3d inverse = inverse3(M);
         result.byAcross.middleRows(3*i, 3) = inverse*Eigen::Vector3d(line[i].across[0], line[i].across[1], 0.);
         result.byState.middleRows(3*i, 3) = -inverse.col(2)*from.byState.row(i);
         result.byParameters.middleRows(3*i, 3) = -inverse.leftCols(2)*d.byParameters.middleRows(2*i, 2)

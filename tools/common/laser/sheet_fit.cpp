@@ -5,11 +5,12 @@
 #include "laser/sheet_consensus.hpp"
 #include "laser/sheet_line.hpp"
 #include "console/failure.hpp"
-#include <Eigen/LU>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -44,21 +45,21 @@ struct SheetStep
         {
             if ((int)m == left)
                 continue;
-            const MatrixXd HtW = lines[m].byState.transpose()*lines[m].weight(poseNoise);
-            information += HtW*lines[m].byState;
-            gradient += HtW*lines[m].e;
-            gradientByParameters += HtW*lines[m].byParameters;
+            const MatrixXd HtW = transposeTimes(lines[m].byState, lines[m].weight(poseNoise));
+            information += product(HtW, lines[m].byState);
+            gradient += timesVector(HtW, lines[m].e);
+            gradientByParameters += product(HtW, lines[m].byParameters);
         }
-        covariance = information.inverse();
-        step = -covariance*gradient;
-        byParameters = -covariance*gradientByParameters;
+        covariance = inverse(information);
+        step = -timesVector(covariance, gradient);
+        byParameters = -product(covariance, gradientByParameters);
         if (prior)
             chiSquare = (deviation + step).squaredNorm();
         for (size_t m = 0; m < lines.size(); m++)
             if ((int)m != left)
             {
-                const VectorXd rest = lines[m].e + lines[m].byState*step;
-                chiSquare += rest.dot(lines[m].weight(poseNoise)*rest);
+                const VectorXd rest = lines[m].e + timesVector(lines[m].byState, step);
+                chiSquare += rest.dot(timesVector(lines[m].weight(poseNoise), rest));
             }
     }
 };

@@ -4,12 +4,12 @@
 #include "laser/sheet_line.hpp"
 #include "laser/sheet_consensus.hpp"
 #include "measure/point_derivatives.hpp"
-#include <Eigen/LU>
-#include <Eigen/QR>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -94,7 +94,7 @@ LineRows rowsOf(const Calibration& calibration, const BoardImage& image, const s
     const OnLine line(image, points, sheet);
     LineRows rows;
     rows.e = line.distances.e;
-    rows.byState = line.distances.byState*sheet.basis();
+    rows.byState = product(line.distances.byState, sheet.basis());
     rows.sigma.resize(count);
     rows.along.resize(count);
     rows.byPose.resize(count, 6);
@@ -108,7 +108,7 @@ LineRows rowsOf(const Calibration& calibration, const BoardImage& image, const s
         rows.along[k] = line.direction.dot(Vec3d(p.inCamera) - middle);
         // X = R X_board + t, and X_board stays on the pixel: G dX = du - A dp
         const Eigen::Matrix2d GR = d.byPose.block(2*k, 3, 2, 3)*R2;
-        const Eigen::RowVector2d byPixel = n*R2*GR.inverse();
+        const Eigen::RowVector2d byPixel = n*R2*inverse2(GR);
         rows.byPose.row(k) = n*image.pose.differentiatePoint(onBoard[k]) - byPixel*d.byPose.middleRows(2*k, 2);
         rows.byParameters.row(k) = rows.byPose.row(k)*image.pose.byParameters - byPixel*d.byParameters.middleRows(2*k, 2);
     }
@@ -123,14 +123,15 @@ ReducedLine::ReducedLine(const LineRows& rows, int coefficients)
     for (int i = 1; i < coefficients; i++)
         D.col(i) = D.col(i - 1).cwiseProduct(along);
     const VectorXd weights = rows.sigma.cwiseAbs2().cwiseInverse();
-    ofNoise = (D.transpose()*weights.asDiagonal()*D).inverse();
-    const MatrixXd reduce = ofNoise*D.transpose()*weights.asDiagonal();
-    e = reduce*rows.e;
-    byState = reduce*rows.byState;
-    byParameters = reduce*rows.byParameters;
-    const MatrixXd byPose = reduce*rows.byPose;
-    ofPose = byPose*rows.ofPose*byPose.transpose();
+    ofNoise = inverse(transposeTimes(weights.asDiagonal()*D, D));
+    const MatrixXd reduce = timesTranspose(ofNoise, D)*weights.asDiagonal();
+    e = timesVector(reduce, rows.e);
+    byState = product(reduce, rows.byState);
+    byParameters = product(reduce, rows.byParameters);
+    ofPose = propagated(rows.ofPose, product(reduce, rows.byPose));
 }
+
+MatrixXd ReducedLine::weight(double poseNoise) const { return inverse(ofNoise + poseNoise*poseNoise*ofPose); }
 
 std::vector<int> pointsOnSheet(const BoardImage& image, const SheetSurface& sheet, double scale, double near)
 {
@@ -177,7 +178,7 @@ std::vector<double> straightResiduals(const BoardImage& image, const std::vector
         const Eigen::RowVector3d n = line.distances.byPoint.row(k);
         off[k] *= n.dot(Eigen::RowVector3d(p.byAcross[0], p.byAcross[1], p.byAcross[2])) < 0. ? -1. : 1.;
     }
-    const VectorXd rest = off - D*D.householderQr().solve(off);
+    const VectorXd rest = off - timesVector(D, QR(D).solve(off));
     return std::vector<double>(rest.data(), rest.data() + rest.size());
 }
 

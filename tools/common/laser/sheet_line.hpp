@@ -32,7 +32,7 @@ struct ReducedLine
     MatrixXd byState, byParameters, ofNoise, ofPose;
 
     ReducedLine(const LineRows& rows, int coefficients);
-    MatrixXd weight(double poseNoise) const { return (ofNoise + poseNoise*poseNoise*ofPose).inverse(); }
+    MatrixXd weight(double poseNoise) const;
 };
 
 /** What lies where the sheet puts the line; empty: too little.

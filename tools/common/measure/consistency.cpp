@@ -5,10 +5,8 @@
 #include "measure/eigen_matrix.hpp"
 #include "measure/point_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -80,18 +78,18 @@ public:
         {
             const Camera& camera = cameras_[views[k]];
             const Point2d error = m_.pixels[views[k]][i] - camera.predicted[i];
-            J.middleRows(2*k, 2) = camera.derivatives.byPose.block(2*i, 3, 2, 3)*camera.R;
+            J.middleRows(2*k, 2) = refract::product(camera.derivatives.byPose.block(2*i, 3, 2, 3), camera.R);
             e.segment(2*k, 2) << error.x, error.y;
         }
         if (dof < 1 || !J.allFinite() || !e.allFinite())
             return {NOT_KNOWN, NOT_KNOWN, dof, J};
-        const MatrixXd over = MatrixXd(Eigen::HouseholderQR<MatrixXd>(J).householderQ()).rightCols(dof);
-        const Eigen::VectorXd w = over.transpose()*e;
+        const MatrixXd over = refract::QR(J).Q().rightCols(dof);
+        const Eigen::VectorXd w = refract::transposeTimesVector(over, e);
         const MatrixXd S = covarianceOf(i, views, over);
         const double expected = std::sqrt(S.trace()/dof);
         if (!(sigma_ > 0))
             return {std::sqrt(w.squaredNorm()/dof), expected, dof, J};
-        return {std::sqrt(w.dot(S.ldlt().solve(w))/dof)*expected, expected, dof, J};
+        return {std::sqrt(w.dot(refract::LDLT(S).solve(w))/dof)*expected, expected, dof, J};
     }
 
 private:
@@ -117,8 +115,8 @@ private:
             if (views[k] > 0)
                 A.block(2*k, camera.place, 2, 6) = d.byPose.middleRows(2*i, 2);
         }
-        const MatrixXd a = A.transpose()*over;
-        return S + a.transpose()*covariance_*a;
+        const MatrixXd a = refract::transposeTimes(A, over);
+        return S + refract::product(refract::transposeTimes(a, covariance_), a);
     }
 
     const Measurement& m_;
@@ -182,7 +180,7 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
             const double beyond = std::max(0., residual*residual - std::pow(times*farOff(USUAL), 2));
             const double more = (times*times - 1)*pixelSigma*pixelSigma + beyond;
             const MatrixXd& J = residuals[i].byPoint;
-            const MatrixXd C = more*(J.transpose()*J).inverse();
+            const MatrixXd C = more*refract::inverse(refract::transposeTimes(J, J));
             for (int k = 0; k < 3; k++)
                 m.sigma[i][k] = std::sqrt(m.sigma[i][k]*m.sigma[i][k] + C(k, k));
         }

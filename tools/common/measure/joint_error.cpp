@@ -4,11 +4,11 @@
 #include "measure/joint_error.hpp"
 #include "measure/point_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "math/dense.hpp"
 #include <limits>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -41,7 +41,7 @@ MatrixXd directionsOf(const std::optional<Vec4d>& plane)
     if (!plane)
         return MatrixXd::Identity(3, 3);
     const Eigen::RowVector3d normal((*plane)[0], (*plane)[1], (*plane)[2]);
-    return Eigen::JacobiSVD<MatrixXd>(normal, Eigen::ComputeFullV).matrixV().rightCols(2);
+    return SingularValues(normal).V.rightCols(2);
 }
 
 } // namespace
@@ -64,16 +64,16 @@ JointError jointErrorOf(const Calibration& calibration, const std::vector<Point3
         {
             const CameraDerivatives& camera = cameras[views[k]];
             const PointDerivatives& d = camera.derivatives;
-            J.middleRows(2*k, 2) = d.byPose.block(2*i, 3, 2, 3)*camera.R*B;
+            J.middleRows(2*k, 2) = product(product(d.byPose.block(2*i, 3, 2, 3), camera.R), B);
             A.block(2*k, camera.column, 2, d.byParameters.cols()) = d.byParameters.middleRows(2*i, 2);
             if (views[k] > 0)
                 A.block(2*k, camera.place, 2, 6) = d.byPose.middleRows(2*i, 2);
         }
         const bool determined = J.rows() >= J.cols() && J.allFinite();
-        const MatrixXd inverse = determined ? MatrixXd((J.transpose()*J).inverse())
-                                            : MatrixXd::Constant(B.cols(), B.cols(), std::numeric_limits<double>::quiet_NaN());
-        result.noise.push_back(B*inverse*B.transpose());
-        result.byCalibration.push_back(-B*inverse*J.transpose()*A);
+        const MatrixXd C = determined ? inverse(transposeTimes(J, J))
+                                      : MatrixXd::Constant(B.cols(), B.cols(), std::numeric_limits<double>::quiet_NaN());
+        result.noise.push_back(timesTranspose(product(B, C), B));
+        result.byCalibration.push_back(-transposeTimes(timesTranspose(J, product(B, C)), A));
     }
     return result;
 }

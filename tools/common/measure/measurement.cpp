@@ -7,8 +7,7 @@
 #include "measure/target_pose.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -97,14 +96,13 @@ Measurement measureOnPlane(const Calibration& calibration, const std::vector<Poi
     refract::refractivePointsOnPlane(pixels, result.points, camera, plane, result.status);
     const PointDerivatives d = differentiatePoints(camera, result.points, Vec3d(), Vec3d());
     const MatrixXd C = covarianceOfCamera1(calibration, d.byParameters.cols());
-    const MatrixXd B = Eigen::JacobiSVD<MatrixXd>(Eigen::RowVector3d(plane[0], plane[1], plane[2]),
-                                                  Eigen::ComputeFullV).matrixV().rightCols(2);
+    const MatrixXd B = refract::SingularValues(Eigen::RowVector3d(plane[0], plane[1], plane[2])).V.rightCols(2);
     for (size_t i = 0; i < pixels.size(); i++)
     {
         const MatrixXd A = d.byParameters.middleRows(2*i, 2);
-        const MatrixXd byPixel = B*(d.byPose.block(2*i, 3, 2, 3)*B).inverse();
-        const MatrixXd ofPixel = pixelSigma*pixelSigma*MatrixXd::Identity(2, 2) + A*C*A.transpose();
-        result.sigma.push_back(deviations(byPixel*ofPixel*byPixel.transpose()));
+        const MatrixXd byPixel = refract::product(B, refract::inverse(refract::product(d.byPose.block(2*i, 3, 2, 3), B)));
+        const MatrixXd ofPixel = pixelSigma*pixelSigma*MatrixXd::Identity(2, 2) + refract::timesTranspose(refract::product(A, C), A);
+        result.sigma.push_back(deviations(refract::timesTranspose(refract::product(byPixel, ofPixel), byPixel)));
     }
     return result;
 }
@@ -119,14 +117,15 @@ Measurement measureTarget(const Calibration& calibration, const std::vector<Poin
     if (pose.residual > pixelSigma)
         pixelSigma = pose.residual;
     const MatrixXd C = covarianceOfCamera1(calibration, pose.byParameters.cols());
-    const MatrixXd ofPose = pixelSigma*pixelSigma*pose.byNoise + pose.byParameters*C*pose.byParameters.transpose();
+    const MatrixXd ofPose = pixelSigma*pixelSigma*pose.byNoise
+                            + refract::timesTranspose(refract::product(pose.byParameters, C), pose.byParameters);
     const Matx33d R = pose.rotation();
     result.pixels = {pixels};
     for (const Point3d& point : objectPoints)
     {
         const MatrixXd byPose = pose.differentiatePoint(point);
         result.points.push_back(Point3d(R*Vec3d(point) + pose.tvec));
-        result.sigma.push_back(deviations(byPose*ofPose*byPose.transpose()));
+        result.sigma.push_back(deviations(refract::timesTranspose(refract::product(byPose, ofPose), byPose)));
         result.status.push_back(refract::REFRACT_OK);
     }
     return result;

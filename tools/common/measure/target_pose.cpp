@@ -5,8 +5,8 @@
 #include "measure/point_derivatives.hpp"
 #include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
+#include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/LU>
 #include <cmath>
 
 using namespace cv;
@@ -53,8 +53,8 @@ TargetPose poseOfTarget(const Calibration& calibration, const std::vector<Point3
         squares += std::pow(norm(seenPixels[i] - predicted[i]), 2);
     pose.residual = std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
     const PointDerivatives d = differentiatePoints(camera, seenPoints, pose.rvec, pose.tvec);
-    pose.byNoise = (d.byPose.transpose()*d.byPose).inverse();
-    pose.byParameters = -pose.byNoise*d.byPose.transpose()*d.byParameters;
+    pose.byNoise = refract::inverse(refract::transposeTimes(d.byPose, d.byPose));
+    pose.byParameters = -refract::product(refract::timesTranspose(pose.byNoise, d.byPose), d.byParameters);
     return pose;
 }
 

@@ -5,7 +5,6 @@
 #include "measure/eigen_matrix.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/Cholesky>
 
 using namespace cv;
 using namespace cv::refract;
@@ -25,7 +24,7 @@ struct PoseInImage
         if (image.glass && !rig.targetCovariance.empty())
             follow(rig.targetMotion, byMotion);
         if (image.camera > 0)
-            byMotion = follow(rig.extrinsics[image.camera], byRig)*byMotion;
+            byMotion = product(follow(rig.extrinsics[image.camera], byRig), byMotion);
     }
     Vec3d rvec, tvec;
     MatrixXd byPose, byMotion, byRig;
@@ -41,7 +40,7 @@ private:
         MatrixXd byBefore(6, 6);
         byBefore << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
         byTransform << toEigen(rr2), toEigen(rt2), toEigen(tr2), toEigen(tt2);
-        byPose = byBefore*byPose;
+        byPose = product(byBefore, byPose);
         return byBefore;
     }
 };
@@ -97,14 +96,14 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
             view.predicted[row + 2*i] = pixels[i].x;
             view.predicted[row + 2*i + 1] = pixels[i].y;
         }
-        view.byPose.middleRows(row, n) = J.leftCols(6)*pose.byPose;
+        view.byPose.middleRows(row, n) = product(J.leftCols(6), pose.byPose);
         view.byParameters.block(row, at.lens, n, own) = J.middleCols(6, own);
         if (image.camera > 0)
-            view.byParameters.block(row, extrinsicsColumn(rig, image.camera), n, 6) = J.leftCols(6)*pose.byRig;
+            view.byParameters.block(row, extrinsicsColumn(rig, image.camera), n, 6) = product(J.leftCols(6), pose.byRig);
         if (hasTargetErrors)
         {
             view.byParameters.block(row, ofTargets, n, 1) = byScale(J.middleCols(3, 3), given, rotationMatrix(pose.rvec));
-            view.byParameters.block(row, ofTargets + 1, n, 6) = J.leftCols(6)*pose.byMotion;
+            view.byParameters.block(row, ofTargets + 1, n, 6) = product(J.leftCols(6), pose.byMotion);
         }
         row += n;
     }
@@ -133,22 +132,19 @@ static MatrixXd scaled(const MatrixXd& byPose)
     return byPose.array().rowwise()/scale.array();
 }
 
-PoseNullSpace::PoseNullSpace(const MatrixXd& byPose) : qr_(scaled(byPose)) {}
+PoseNullSpace::PoseNullSpace(const MatrixXd& byPose) : qr_(scaled(byPose)), columns_(byPose.cols()) {}
 
 MatrixXd PoseNullSpace::operator()(const MatrixXd& rows) const
 {
-    // Not as a product: Q has as many columns as the view has rows.
-    MatrixXd rotated = rows;
-    rotated.applyOnTheLeft(qr_.householderQ().adjoint());
-    return rotated.bottomRows(rows.rows() - qr_.cols());
+    return qr_.rotate(rows).bottomRows(rows.rows() - columns_);
 }
 
 MatrixXd covarianceWith(const MatrixXd& covariance, const MatrixXd& byParameters, double sigma)
 {
-    const MatrixXd CJt = covariance*byParameters.transpose();
-    MatrixXd predicted = byParameters*CJt;
+    const MatrixXd CJt = timesTranspose(covariance, byParameters);
+    MatrixXd predicted = product(byParameters, CJt);
     predicted.diagonal().array() += sigma*sigma;
-    return covariance - CJt*predicted.ldlt().solve(CJt.transpose());
+    return covariance - product(CJt, LDLT(predicted).solveTranspose(CJt));
 }
 
 } // namespace tools

@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_VIEW_DERIVATIVES_HPP
 
 #include "calibrate/rig_model.hpp"
-#include <Eigen/QR>
+#include "math/dense.hpp"
 
 /* The information in one view of the target, taken or only planned, about a calibrated rig, to first order:
 
@@ -45,7 +45,8 @@ public:
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& rows) const;
 
 private:
-    Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+    cv::refract::QR qr_;
+    Eigen::Index columns_;
 };
 
 /** The covariance of the parameters when a view has been added.

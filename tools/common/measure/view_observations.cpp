@@ -3,8 +3,8 @@
 
 #include "measure/view_observations.hpp"
 #include "console/failure.hpp"
+#include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
-#include <Eigen/QR>
 
 using namespace cv;
 using namespace cv::refract;
@@ -63,7 +63,7 @@ ViewDerivatives refinePose(const RigModel& rig, ViewObservations& observed)
     ViewDerivatives derivatives = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
     for (int i = 0; i < ITERATIONS; i++)
     {
-        const VectorXd step = derivatives.byPose.colPivHouseholderQr().solve(observed.pixels - derivatives.predicted);
+        const VectorXd step = PivotedQR(derivatives.byPose).solve(VectorXd(observed.pixels - derivatives.predicted));
         for (int k = 0; k < 3; k++)
         {
             observed.rvec[k] += step[k];

@@ -7,7 +7,7 @@
 #include "console/table.hpp"
 #include "report/figures.hpp"
 #include "report/plot.hpp"
-#include <Eigen/Eigenvalues>
+#include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -91,14 +91,14 @@ public:
         const Vec3d z(0, 0, 1);
         Eigen::Matrix2d onPlane;
         onPlane << z.dot(C*z), z.dot(C*across_), z.dot(C*across_), across_.dot(C*across_);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(onPlane);
-        const Eigen::Vector2d std = solver.eigenvalues().cwiseMax(0.).cwiseSqrt();
+        const SymmetricEigen eigen(onPlane);
+        const Eigen::Vector2d std = eigen.values.cwiseMax(0.).cwiseSqrt();
         Path path;
         const int STEPS = 60;
         for (int i = 0; i <= STEPS; i++)
         {
             const double angle = 2.*CV_PI*i/STEPS;
-            const Eigen::Vector2d p = widened*(solver.eigenvectors()*Eigen::Vector2d(std[0]*std::cos(angle), std[1]*std::sin(angle)));
+            const Eigen::Vector2d p = widened*timesVector(eigen.vectors, Eigen::Vector2d(std[0]*std::cos(angle), std[1]*std::sin(angle)));
             path.push_back(onPaper(window_.center) + Point2d(p[0], p[1]));
         }
         return path;

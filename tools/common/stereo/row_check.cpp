@@ -6,13 +6,13 @@
 #include "measure/eigen_matrix.hpp"
 #include "measure/point_derivatives.hpp"
 #include "stereo/row_cells.hpp"
+#include "math/dense.hpp"
 
 #include <opencv2/calib3d.hpp>
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+using namespace cv::refract;
 
 namespace tools {
 
@@ -60,17 +60,17 @@ private:
         MatrixXd A = MatrixXd::Zero(4, byParameters.cols());
         for (int c = 0; c < 2; c++)
         {
-            J.middleRows(2*c, 2) = derivatives[c].byPose.block(2*i, 3, 2, 3)*toEigen(cv::Mat(model_.extrinsics[c].R));
+            J.middleRows(2*c, 2) = product(derivatives[c].byPose.block(2*i, 3, 2, 3), toEigen(cv::Mat(model_.extrinsics[c].R)));
             const MatrixXd& byCamera = derivatives[c].byParameters;
             A.block(2*c, columnsOf(model_, c).lens, 2, byCamera.cols()) = byCamera.middleRows(2*i, 2);
         }
         A.block(2, extrinsicsColumn(model_, 1), 2, 6) = derivatives[1].byPose.middleRows(2*i, 2);
         if (!J.allFinite() || !A.allFinite())
             return;
-        const Eigen::HouseholderQR<MatrixXd> qr(J);
-        const VectorXd over = MatrixXd(qr.householderQ()).col(3);
+        const QR qr(J);
+        const VectorXd over = qr.Q().col(3);
         const double sign = over[vertical ? 0 : 1] > 0 ? 1 : -1;
-        byParameters.row(i) = sign*std::sqrt(2.)*(over.transpose()*A);
+        byParameters.row(i) = transposeTimesVector(A, sign*std::sqrt(2.)*over);
         depthByParameters.row(i) = -qr.solve(A).row(2)/z;
     }
 
@@ -158,12 +158,13 @@ Explanation explain(const RowModel& model, const Cause& cause, const VectorXd& s
     for (size_t k = 0; k < cause.directions.size(); k++)
         directions.col((Eigen::Index)k) = cause.directions[k];
     const VectorXd weights = sigma.cwiseInverse();
-    const MatrixXd G = weights.asDiagonal()*(model.byParameters*directions);
+    const MatrixXd G = weights.asDiagonal()*product(model.byParameters, directions);
     const VectorXd r = weights.cwiseProduct(model.offsets());
-    const MatrixXd N = G.transpose()*G + MatrixXd::Identity(G.cols(), G.cols());
-    const VectorXd p = N.ldlt().solve(G.transpose()*r), change = directions*p;
+    const MatrixXd N = transposeTimes(G, G) + MatrixXd::Identity(G.cols(), G.cols());
+    const VectorXd p = LDLT(N).solve(transposeTimesVector(G, r)), change = timesVector(directions, p);
     const double n = (double)r.size();
-    return {(r - G*p).norm()/std::sqrt(n), (model.depthByParameters*change).norm()/std::sqrt(n), sizeOf(change, cause)};
+    return {(r - timesVector(G, p)).norm()/std::sqrt(n), timesVector(model.depthByParameters, change).norm()/std::sqrt(n),
+            sizeOf(change, cause)};
 }
 
 //! The causes that explain the rows about as well as the best, and what they do to depths.
@@ -208,9 +209,9 @@ RowCheck checkRows(const RectifiedRig& rig, const DenseStereo& stereo)
     if (covariance.empty())
         S.diagonal().array() += NOT_STATED*NOT_STATED;
     else
-        S += model.byParameters*toEigen(covariance)*model.byParameters.transpose();
+        S += propagated(toEigen(covariance), model.byParameters);
     result.expected = std::sqrt(S.trace()/n);
-    result.times = std::sqrt(r.dot(S.ldlt().solve(r))/n);
+    result.times = std::sqrt(r.dot(LDLT(S).solve(r))/n);
     if (result.contradicts())
         explainRows(model, own, result);
     return result;

@@ -17,11 +17,12 @@ typedef Eigen::Ref<const Eigen::MatrixXd> MatrixRef;
 typedef Eigen::Ref<const Eigen::VectorXd> VectorRef;
 
 Eigen::MatrixXd product(const MatrixRef& A, const MatrixRef& B);                    //!< A B
-Eigen::MatrixXd transposeTimes(const MatrixRef& A, const MatrixRef& B);             //!< A^T B
+Eigen::MatrixXd transposeTimes(const MatrixRef& A, const MatrixRef& B, double factor = 1); //!< factor A^T B
 Eigen::MatrixXd timesTranspose(const MatrixRef& A, const MatrixRef& B);             //!< A B^T
 Eigen::VectorXd timesVector(const MatrixRef& A, const VectorRef& x);                //!< A x
-Eigen::VectorXd transposeTimesVector(const MatrixRef& A, const VectorRef& x);       //!< A^T x
+Eigen::VectorXd transposeTimesVector(const MatrixRef& A, const VectorRef& x, double factor = 1); //!< factor A^T x
 Eigen::VectorXd diagonalOfProduct(const MatrixRef& A, const MatrixRef& B);       //!< diag(A B)
+Eigen::MatrixXd propagated(const MatrixRef& C, const MatrixRef& A);                //!< A C A^T: the covariance of A x, by that of x
 //! C -= A^T B
 void subtractTransposeTimes(const MatrixRef& A, const MatrixRef& B, Eigen::Ref<Eigen::MatrixXd> C);
 //! Adds factor A^T A to the lower half of C.
@@ -29,6 +30,22 @@ void addGram(const MatrixRef& A, double factor, Eigen::MatrixXd& C);
 
 //! A^-1, by LU with partial pivoting.
 Eigen::MatrixXd inverse(const MatrixRef& A);
+//! A^-1, by minors.
+Eigen::Matrix2d inverse2(const Eigen::Matrix2d& A);
+Eigen::Matrix3d inverse3(const Eigen::Matrix3d& A);
+
+//! P A Q = L U: of a matrix that may be singular.
+class FullPivLU
+{
+public:
+    explicit FullPivLU(const MatrixRef& A);
+    bool isInvertible() const;
+    Eigen::MatrixXd inverse() const;
+    Eigen::VectorXd solve(const Eigen::VectorXd& b) const;      //!< A^-1 b
+
+private:
+    std::shared_ptr<const Eigen::FullPivLU<Eigen::MatrixXd> > lu_;
+};
 
 //! A = L L^T, of the lower half of A.
 class LLT
@@ -53,6 +70,8 @@ public:
     Eigen::VectorXd solveL(const Eigen::VectorXd& b) const;     //!< L^-1 b
     Eigen::VectorXd solve(const Eigen::VectorXd& b) const;      //!< A^-1 b
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;      //!< A^-1 B
+    Eigen::MatrixXd solveTranspose(const MatrixRef& B) const;   //!< A^-1 B^T
+    Eigen::MatrixXd inverse() const;
 
 private:
     std::shared_ptr<const Eigen::LDLT<Eigen::MatrixXd> > ldlt_;
@@ -92,6 +111,7 @@ private:
 };
 
 //! A^+, by a complete orthogonal decomposition. @param threshold as PivotedQR's
+Eigen::MatrixXd pseudoInverse(const MatrixRef& A);
 Eigen::MatrixXd pseudoInverse(const MatrixRef& A, double threshold);
 
 //! A V = V diag(values), of the lower half of the symmetric A; values ascend.

@@ -40,6 +40,11 @@ MatrixXd PivotedQR::solveR(const MatrixRef& B) const
     return qr_->colsPermutation()*X;
 }
 
+MatrixXd pseudoInverse(const MatrixRef& A)
+{
+    return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).pseudoInverse();
+}
+
 MatrixXd pseudoInverse(const MatrixRef& A, double threshold)
 {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
