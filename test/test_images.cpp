@@ -170,6 +170,8 @@ TEST_CASE("Bad arguments of drawRefractiveFrameAxes are named", "[frame_axes]")
     const Vec3d zero, ahead(0, 0, 600);
     CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(image, camera(), zero, ahead, 0); }), Contains("length is 0"));
     CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(image, camera(), zero, ahead, (float)NaN); }), Contains("length is nan"));
+    CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(image, camera(), zero, ahead, 5, 0); }), Contains("thickness is 0"));
+    CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(image, camera(), zero, ahead, 5, 40000); }), Contains("thickness is 40000"));
     CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(two, camera(), zero, ahead, 5); }), Contains("2 channels"));
     CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(none, camera(), zero, ahead, 5); }), Contains("image is 0x0"));
     CHECK_THAT(thrown([&] { drawRefractiveFrameAxes(image, camera(), zero, Vec2d(), 5); }), Contains("tvec"));

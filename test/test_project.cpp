@@ -244,7 +244,8 @@ TEST_CASE("Bad pose arguments are named with their value", "[project]")
     CHECK_THAT(project(Vec2d(1, 2), Vec3d()), Contains("rvec") && Contains("2x1"));
     CHECK_THAT(project(Vec3d(), Vec4d()), Contains("tvec") && Contains("4x1"));
     CHECK_THAT(project(Matx33d::eye()*2, Vec3d()), Contains("rvec is not a rotation"));
-    CHECK_THAT(project(Matx33d(1, 0, 0, 0, 1, 0, 0, 0, -1), Vec3d()), Contains("rvec is not a rotation"));
+    CHECK_THAT(project(Matx33d(1, 0, 0, 0, 1, 0, 0, 0, -1), Vec3d()),
+               Contains("rvec is not a rotation") && Contains("determinant is -1"));
 }
 
 TEST_CASE("The form with derivatives projects as the one without, also by the smallest rotations", "[project]")

@@ -292,9 +292,11 @@ Matx33d readRotation(InputArray a, const char* name)
     if (count != 9)
         wrongShape(a, name, "3x3 or a rotation vector of 3");
     const Matx33d R(r);
-    if (cv::norm(R*R.t() - Matx33d::eye()) > 1e-3 || determinant(R) < 0)
-        CV_Error_(Error::StsBadArg, ("%s is not a rotation: |R R^T - I| = %g", name,
-                                     cv::norm(R*R.t() - Matx33d::eye())));
+    const double off = cv::norm(R*R.t() - Matx33d::eye());
+    if (!(off <= 1e-3))
+        CV_Error_(Error::StsBadArg, ("%s is not a rotation: |R R^T - I| = %g", name, off));
+    if (determinant(R) < 0)
+        CV_Error_(Error::StsBadArg, ("%s is not a rotation: its determinant is %g", name, determinant(R)));
     // Printed matrices are rotations to a few digits only; inverses by the transpose need one to all digits.
     return nearestRotation(R);
 }

@@ -125,12 +125,15 @@ void drawRefractiveFrameAxes(InputOutputArray image, const Ptr<RefractiveCamera>
 
     const int PIECES = 32;              // of an axis, which is a curve
     const double VISIBLE = 1e6;         // px; cv::line counts in whole numbers
+    const int MOST_THICKNESS = SHRT_MAX;
     const int channels = image.channels();
     if (image.empty() || (channels != 1 && channels != 3 && channels != 4))
         CV_Error_(Error::StsBadArg, ("image is %dx%d with %d channels; it must not be empty and have 1, 3 or 4", image.cols(),
                                      image.rows(), channels));
     if (!(length > 0) || !std::isfinite(length))
         CV_Error_(Error::StsOutOfRange, ("length is %g; it must be positive", length));
+    if (thickness < 1 || thickness > MOST_THICKNESS)
+        CV_Error_(Error::StsOutOfRange, ("thickness is %d; it must be 1 to %d", thickness, MOST_THICKNESS));
     const Scalar colours[] = { Scalar(0, 0, 255), Scalar(0, 255, 0), Scalar(255, 0, 0) };
     for (int axis = 0; axis < 3; axis++)
     {
