@@ -265,6 +265,42 @@ TEST_CASE("The form with derivatives projects as the one without, also by the sm
     }
 }
 
+TEST_CASE("A rotation vector of any length: derivatives are by it, not by the shorter one of the same rotation", "[project]")
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(900, 0, 640, 0, 905, 470, 0, 0, 1), noArray(),
+                                                                  GlassWindow(Vec3d(0.1, 0.1, 1), 20, 1.5, 40));
+    CAPTURE(seed());
+    Random random;
+    const std::vector<Vec3d> points = { { 100, -50, 30 }, { -80, 20, -60 }, { 10, 90, 0 } };
+    for (double angle : { 0., 1e-300, 1e-16, 1e-9, 1e-6, 1e-3, 1., 3., CV_PI, 3.2, 4., 2*CV_PI - 1e-3, 2*CV_PI, 10., 100. })
+        for (int trial = 0; trial < 20; trial++)
+        {
+            const Vec3d axis = normalize(random.vector(1)), rvec = angle*axis, tvec(10, -20, 600);
+            std::vector<Vec2d> plain, pixels;
+            std::vector<uchar> status;
+            Mat J;
+            refractiveProjectPoints(points, rvec, tvec, camera, plain);
+            refractiveProjectPoints(points, rvec, tvec, camera, pixels, status, J);
+            CAPTURE(angle, axis);
+            REQUIRE(largestDifference(plain, pixels) < 1e-10);
+            for (int k = 0; k < 3; k++)
+            {
+                const double STEP = 1e-4;
+                const auto moved = [&](double steps)
+                {
+                    Vec3d r = rvec;
+                    std::vector<Vec2d> out;
+                    r[k] += steps*STEP;
+                    refractiveProjectPoints(points, r, tvec, camera, out);
+                    return Mat(out, true).reshape(1, (int)points.size()*2);
+                };
+                // To the fourth order in the step; what is left is rounding.
+                const Mat by = (8*(moved(1) - moved(-1)) - (moved(2) - moved(-2)))/(12*STEP);
+                REQUIRE(norm(by, J.col(k), NORM_INF) < 1e-8*(1 + 10*norm(by, NORM_INF)));
+            }
+        }
+}
+
 TEST_CASE("The jacobian against central differences of several steps", "[project]")
 {
     const WindowKind kind = GENERATE(from_range(allWindows()));

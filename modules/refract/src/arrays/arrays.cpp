@@ -301,6 +301,16 @@ Matx33d readRotation(InputArray a, const char* name)
     return nearestRotation(R);
 }
 
+Vec3d readRotationVector(InputArray a, const char* name)
+{
+    const double ROUNDING = 1e-6;
+    const Vec3d shortest = rotationVector(readRotation(a, name));
+    if (a.total()*a.channels() != 3)
+        return shortest;
+    const Vec3d given = readVec3(a, name);
+    return norm(given - shortest) < ROUNDING ? shortest : given;
+}
+
 Vec3d readVec3(InputArray a, const char* name)
 {
     Vec3d v;

@@ -97,6 +97,8 @@ void forEachBlock(int size, const Body& body) { forEachBlock(size, POINT_COST, b
 // Small arguments. Each throws with the argument's name and value.
 Matx33d readCameraMatrix(InputArray m, const char* name);
 Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector; empty = identity
+//! The same as a rotation vector: one that is given is returned as it is, though it may turn the long way round.
+Vec3d readRotationVector(InputArray r, const char* name);
 Vec3d readVec3(InputArray v, const char* name);
 /** A range of depths with a finite near end; the far one is infinity from DBL_MAX on, which is what a default argument can say.
 @param mayBeZero so may near */

@@ -67,7 +67,7 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
     const Camera& cam = cameraOf(camera);
     const PointReader in(objectPoints, 3, "objectPoints");
     Matx33d dR[3];
-    const Vec3d r = rotationVector(readRotation(rvec, "rvec")), t = readVec3(tvec, "tvec");
+    const Vec3d r = readRotationVector(rvec, "rvec"), t = readVec3(tvec, "tvec");
     const Matx33d R = rotationMatrix(r, dR);
     const int count = 6 + cam.parameterCount();
     PointWriter out(imagePoints, in.size(), 2, in.depth());
