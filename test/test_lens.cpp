@@ -177,6 +177,48 @@ TEST_CASE("Where the monotone range ends is known exactly", "[lens]")
           == REFRACT_OUTSIDE_LENS_MODEL);
 }
 
+TEST_CASE("Next to a rational lens's pole every pixel has its direction", "[lens]")
+{
+    CAPTURE(seed());
+    Random random;
+    int lenses = 0;
+    double worst = 0;
+    for (int i = 0; lenses < 200 && i < 20000; i++)
+    {
+        LensKind kind = { "rational", "opencv", { 2400, 0, 1920, 0, 2390, 1090, 0, 0, 1 },
+                          { random.uniform(-3, 3), random.uniform(-6, 6), random.normal(1e-3), random.normal(1e-3), random.uniform(-2, 2),
+                            random.uniform(-4, 4), random.uniform(-5, 5), random.uniform(-6, 6) }, 0 };
+        const double* k = kind.coefficients.data();
+        const auto divisor = [=](double s) { return 1 + s*(k[5] + s*(k[6] + s*k[7])); };
+        const auto radial = [=](double r) { return r*(1 + r*r*(k[0] + r*r*(k[1] + r*r*k[4])))/divisor(r*r); };
+        double pole = 0, most = 0;
+        for (double r = 0; r < 2 && divisor(r*r) > 0; r += 1e-4)
+        {
+            pole = r;
+            if (radial(r) < most)
+                break;                  // it turns back before the pole
+            most = radial(r);
+        }
+        if (!(divisor((pole + 1e-4)*(pole + 1e-4)) < 0) || pole < 0.2)
+            continue;
+        lenses++;
+        const Ptr<Lens> lens = makeLens(kind);
+        for (int j = 0; j < 300; j++)
+        {
+            const double r = pole*(1 - random.logUniform(1e-7, 1e-1)), azimuth = random.uniform(0, 2*CV_PI);
+            const Vec3d d = normalize(Vec3d(r*std::cos(azimuth), r*std::sin(azimuth), 1));
+            Vec2d pixel;
+            Vec3d back;
+            if (project(*lens, d, pixel) != REFRACT_OK)
+                continue;
+            QUICK_REQUIRE(unproject(*lens, pixel, back) == REFRACT_OK, i, j, r/pole, pixel);
+            worst = std::max(worst, norm(back - d));
+        }
+    }
+    CHECK(lenses == 200);
+    CHECK(worst < 1e-13);
+}
+
 TEST_CASE("Directions behind the camera have no image", "[lens]")
 {
     const LensKind kind = GENERATE(from_range(allLenses()));

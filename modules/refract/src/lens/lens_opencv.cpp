@@ -204,7 +204,9 @@ uchar OpenCVLens::undistort(double xd, double yd, double& x, double& y) const
     {
         const Distorted<double> d = distort(m_, x, y);
         const double ex = d.x - xd, ey = d.y - yd, error = std::abs(ex) + std::abs(ey);
-        if (error <= floor || (error >= best && error <= 1e3*floor))     // rounding has taken over
+        // What a rounding of x and y alone moves the distorted point by: much next to a pole.
+        const double rounding = DBL_EPSILON*(std::abs(d.xx) + std::abs(d.xy) + std::abs(d.yx) + std::abs(d.yy))*std::hypot(x, y);
+        if (error <= floor || (error >= best && error <= std::max(1e3*floor, 400*rounding)))     // rounding has taken over
             return inside(x, y, d) ? REFRACT_OK : REFRACT_OUTSIDE_LENS_MODEL;
         best = std::min(best, error);
         const double determinant = d.determinant();
