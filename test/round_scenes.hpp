@@ -75,11 +75,11 @@ inline cv::Vec2d placeErrors(const RigCall& call, const RigTruth& truth, int c =
     return { norm(off.cross(found.axis)), std::asin(norm(found.axis.cross(exact.axis))) };
 }
 
-//! What was found less what is true, of all parameters of a window; a tube's center where its axis is nearest to what was found.
+//! What was found less what is true, of all parameters of a window; a tube's center is where its axis is nearest to the camera.
 inline std::vector<double> windowErrors(const GlassWindow& found, GlassWindow exact)
 {
     if (exact.shape == cv::refract::WINDOW_TUBE)
-        exact.center += exact.axis.dot(found.center - exact.center)*exact.axis;
+        exact.center -= exact.axis.dot(exact.center)*exact.axis;
     std::vector<double> errors = cv::refract::windowParameters(found);
     const std::vector<double> truth = cv::refract::windowParameters(exact);
     for (size_t i = 0; i < errors.size(); i++)

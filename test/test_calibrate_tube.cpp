@@ -31,6 +31,53 @@ TEST_CASE("Two cameras in one tube are calibrated together", "[tube][calibrate]"
     }
 }
 
+TEST_CASE("A tube's center is where its axis is nearest to the camera, and its covariance is of that point", "[tube][calibrate]")
+{
+    const int TRIALS = trials(8);
+    const bool shared = GENERATE(false, true);
+    double ofCenters = 0, ofPlaces = 0;
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(6710 + trial);
+        CAPTURE(shared, trial, seed());
+        const RigTruth truth = roundRig(tubeAt, 2, shared, 1.333, { 5, -4, 9 }, random, shared ? 0.02 : 0.2);
+        RigCall call = callFromCentre(truth, makeRigScene(truth, 4, random, SIGMA), true);
+        for (const Ptr<RefractiveCamera>& camera : call.cameras)        // any point of the axis will do to begin with
+        {
+            GlassWindow window = camera->window();
+            window.center += random.uniform(-50, 50)*window.axis;
+            camera->setWindow(window);
+        }
+        call.run(GLASS_FREE_EXTRINSICS);
+        for (int c = 0; c < 2; c++)
+        {
+            const GlassWindow found = call.cameras[c]->window();
+            REQUIRE(std::abs(found.axis.dot(found.center)) < 1e-9);
+            const int before = c*COUNT;
+            const Matx33d ofCenter(Mat(call.covariance(Rect(before + CENTER, before + CENTER, 3, 3)).clone()).ptr<double>());
+            const Matx33d ofAxis(Mat(call.covariance(Rect(before + AXIS, before + AXIS, 3, 3)).clone()).ptr<double>());
+            // As the axis turns by da, the nearest point moves along it by -center.da.
+            const double along = found.axis.dot(ofCenter*found.axis), byTurn = found.center.dot(ofAxis*found.center);
+            CHECK(along == Approx(byTurn).epsilon(1e-6));
+            const std::vector<double> errors = windowErrors(found, truth.cameras[c]->window());
+            for (int k = 0; k < 3; k++)
+            {
+                const double sigma = call.deviations.at<double>(before + CENTER + k);
+                CHECK(sigma == Approx(std::sqrt(ofCenter(k, k))));
+                ofCenters += errors[k]*errors[k]/(sigma*sigma)/(6*TRIALS);
+            }
+            ofPlaces += overStated(errors, call.covariance, placeRows(found, before), before)/(2*4*TRIALS);
+        }
+    }
+    CAPTURE(shared, seed());
+    printNumber(shared ? "centers of a shared tube, squares over stated" : "centers of tubes, squares over stated", ofCenters, "");
+    // Means of chi^2 over its freedom: a camera has four of a place, and two cameras of one tube hardly more.
+    const double spread = 3*std::sqrt(2./(TRIALS*(shared ? 4 : 8)));
+    CHECK(ofPlaces < 1 + spread);
+    CHECK(ofPlaces > 1 - spread);
+    CHECK(ofCenters < 1 + 1.5*spread);
+}
+
 TEST_CASE("What is known of a tube's place is a prior", "[tube][calibrate]")
 {
     Random random(6703);

@@ -92,11 +92,12 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
         return determined.converged() ? outcome : determined;
     const int count = problem.publicCount() - (problem.targetBlock() < 0 ? 0 : SharedTargetErrors::COUNT);
     eigen2cv(Eigen::MatrixXd(covariance.ofParameters.topLeftCorner(count, count)), fit.covariance);
-    sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     if (task.wantsPointDeviations)
         fit.pointDeviations = covariance.ofPoints();
     describe(problem, fit);
     rig = problem.rig();
+    toNearestCenters(rig, fit);
+    sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     return outcome;
 }
 

@@ -167,6 +167,31 @@ double describeImage(const Problem& problem, const Image& image, int column, int
     return squares;
 }
 
+void toNearestCenters(Rig& rig, RigFit& fit)
+{
+    int first = 0;          // of the camera's parameters
+    for (Camera& camera : rig.cameras)
+    {
+        GlassWindow window = camera.window();
+        const WindowLayout& at = camera.layers().at();
+        const Range center(first + camera.lensCount() + at.normal, first + camera.lensCount() + at.normal + 3);
+        const Range axis(center.start + at.axis - at.normal, center.end + at.axis - at.normal);
+        first += camera.parameterCount();
+        if (window.shape != WINDOW_TUBE || countNonZero(fit.covariance(Range(center.start, axis.end), Range::all())) == 0)
+            continue;
+        const Vec3d a = window.axis, c = window.center;
+        const double along = a.dot(c);
+        Mat change = Mat::eye(fit.covariance.size(), CV_64F);
+        Mat(Matx33d::eye() - a*a.t()).copyTo(change(center, center));
+        Mat(-(a*c.t() + along*Matx33d::eye())).copyTo(change(center, axis));
+        fit.covariance = change*fit.covariance*change.t();
+        if (!fit.jacobian.empty())
+            fit.jacobian.colRange(axis) += along*fit.jacobian.colRange(center);
+        window.center = c - along*a;
+        camera.setWindow(window);
+    }
+}
+
 FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
 {
     const TermCriteria criteria = checkedCriteria(given.criteria);
@@ -199,7 +224,6 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
     eigen2cv(covariance.ofParameters, fit.covariance);
-    sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);
     markUnusable(given, fit);
@@ -208,6 +232,8 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
     for (int view = 0; view < problem.viewCount(); view++)
         fit.poses.push_back(problem.pose(view));
     rig = problem.rig();
+    toNearestCenters(rig, fit);
+    sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
     return outcome;
 }
 

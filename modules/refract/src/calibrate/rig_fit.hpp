@@ -36,6 +36,11 @@ FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit);
 //! What a calibration and a bundle adjustment tell of one image: its RMS, and which points are inliers. Returns its squares.
 double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit);
 
+/** While a tube is estimated, its center is any point of its axis. What is returned is the one nearest to the camera: with
+c' = c - (a.c) a of center c and axis a, so do the center's rows of the covariance, and the axis' columns of the jacobian (if there is
+one), which is a turn about c' then. Tubes that were given stay as they are. */
+void toNearestCenters(Rig& rig, RigFit& fit);
+
 //! What all calibrators return; copies what is wanted.
 void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
               OutputArray covariance, OutputArray perViewErrors);
