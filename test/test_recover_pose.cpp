@@ -524,6 +524,76 @@ TEST_CASE("Cameras that only turn: the rotation, and no long T", "[pose][recover
     }
 }
 
+TEST_CASE("Where all points may be infinitely far T has no direction, and no covariance", "[pose][recover]")
+{
+    const int TRIALS = trials(20);
+    int without = 0;
+    double chi2 = 0;
+    for (int trial = 0; trial < TRIALS; trial++)
+        for (double length : { 0., 20. })       // the longer one moves pixels by 20 to 60
+        {
+            Random random(6610 + trial);
+            Matched m = matchedScene(NOTHING, random, 80);
+            refractiveProjectPoints(m.points, m.rvec, length*normalize(m.T), m.camera2, m.perfect2);
+            disturb(m, random, 0.1, 0);
+            Mat R, T, mask, covariance;
+            Vec2d interval;
+            CAPTURE(trial, length, seed());
+            REQUIRE(refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 1, mask, covariance, interval) > 60);
+            REQUIRE(std::isinf(interval[1]));
+            const Matx33d ofRotation(Mat(covariance(Rect(0, 0, 3, 3)).clone()).ptr<double>());
+            REQUIRE(checkRange(ofRotation));
+            if (length > 0)
+            {
+                REQUIRE(checkRange(covariance));
+                continue;
+            }
+            int numbers = 0;
+            for (int k = 0; k < 36; k++)
+                numbers += !std::isnan(covariance.at<double>(k/6, k % 6));
+            REQUIRE((numbers == 9 || numbers == 36));
+            without += numbers == 9;
+            Mat exact;
+            Vec3d turn;
+            Rodrigues(m.rvec, exact);
+            Rodrigues(R*exact.t(), turn);
+            chi2 += turn.dot(ofRotation.inv()*turn)/TRIALS;
+        }
+    CAPTURE(seed());
+    CHECK(without == TRIALS);
+    CHECK(chi2 < 3 + 3*std::sqrt(6./TRIALS));
+}
+
+TEST_CASE("A covariance is not narrower than the interval of the length", "[pose][recover]")
+{
+    // Domes off the centre tell the length, now and then to an end that is far away.
+    const int TRIALS = trials(24);
+    const double MOST = 2.9;        // standard deviations to an end of 95 %, 1.96 where the likelihood is normal
+    int finite = 0;
+    double widest = 0;
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(6640 + trial);
+        Matched m = matchedScene(DOME, random, 80, DEEP, random.vector(0.15), random.uniform(100, 200)*normalize(random.vector(1)));
+        disturb(m, random, 0.3, 0);
+        Mat R, T, mask, covariance;
+        Vec2d interval;
+        CAPTURE(trial, seed());
+        if (refractiveRecoverPose(m.pixels1, m.pixels2, m.camera1, m.camera2, R, T, 0.999, 2, mask, covariance, interval) == 0
+            || std::isinf(interval[1]))
+            continue;
+        finite++;
+        const double length = norm(T);
+        const Mat along = T/length;
+        const double sigma = std::sqrt(Mat(along.t()*covariance(Rect(3, 3, 3, 3))*along).at<double>(0));
+        widest = std::max(widest, std::max(interval[1] - length, length - interval[0])/sigma);
+    }
+    CAPTURE(finite, seed());
+    printNumber("ends of finite intervals of lengths, standard deviations away", widest, "");
+    CHECK(finite >= TRIALS/4);
+    CHECK(widest < MOST);
+}
+
 TEST_CASE("Relative poses: unseen points, nothing to find, overload, errors", "[pose][recover]")
 {
     Random random(6300);

@@ -1837,7 +1837,8 @@ CV_EXPORTS_W int refractiveRecoverPose(InputArray points1, InputArray points2,
 @param threshold as above.
 @param mask as above.
 @param covariance 6x6 CV_64F of the rotation vector of R and of T, scaled by the residuals. If scaleInterval has no upper end,
-it is that of R and the direction of T only, for the returned length (its rank is 5).
+it is that of R and the direction of T only, for the returned length (its rank is 5); where the noise explains as well that all
+points are infinitely far, T has no direction, and all but the part of R is NaN.
 @param scaleInterval 95 % confidence interval of the length of T, low and high end, from the profile likelihood. If refraction
 gives little information, it is not symmetric, and its high end may be infinite. (0, infinity): no information.
 @param cameraCovariances uncertainty of both cameras: an LxL covariance of the L lens parameters, or a PxP one of the P

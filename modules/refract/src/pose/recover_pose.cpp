@@ -223,6 +223,18 @@ void widen(Matx66d& covariance, const Matx33d& other)
             covariance(r, c) = wider(r, c);
 }
 
+/** Where lengths are hardly known, the pose at an end of the length's 95 % interval may be farther off than the covariance of the best pose
+says: that becomes at least so large in this direction. */
+void widenToLength(const RigidTransform& end, Estimate& e)
+{
+    const double NORMAL = 3.841459, MUCH = 2;       // the square that 5 % exceed; more of it than rounding and curvature
+    const Vec3d turned = difference(rotationVector(e.motion.R), rotationVector(end.R)), moved = end.t - e.motion.t;
+    const Vec6d off(turned[0], turned[1], turned[2], moved[0], moved[1], moved[2]);
+    const double off2 = off.dot(inverseOfPositive(e.covariance)*off);
+    if (off2 > MUCH*NORMAL)
+        e.covariance += (1/NORMAL - 1/off2)*off*off.t();
+}
+
 /** The rotation at an end of the length's 95 % interval is as likely as that, and as uncertain as it is there. A covariance of the best
 pose need not say this: where T is hardly known, rotation and T are not each other's linear functions. */
 void widenToEnd(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& end, Estimate& e)
@@ -232,6 +244,21 @@ void widenToEnd(const MatchedCameras& pair, const PixelMatches& matches, const R
     const Vec3d off = difference(rotationVector(e.motion.R), rotationVector(end.R));
     widen(e.covariance, off*off.t()*(1/NORMAL));
     widen(e.covariance, (e.variance*covarianceOf(pair, matches, end, !pair.refracts(), byPose)).get_minor<3, 3>(0, 0));
+}
+
+/** Whether all points may be infinitely far, so that T has no direction. A match's error along its curve is noise then, as the one across
+it; else it is what the point's distance does. By the ratio of their mean squares, whose logarithm is nearly normal (Fisher's z). */
+bool isWithoutDirection(const MatchedCameras& pair, const PixelMatches& matches, const RigidTransform& pose)
+{
+    const double CUT_NORMAL = 3.72;         // exceeded with a chance of 1e-4
+    const double OF_LINES = 0, count = (double)matches.size(), freedomAcross = count - 5, freedomAlong = count + 2;
+    std::vector<double> errors;
+    sampsonErrors(pair, matches, pose, errors, nullptr, OF_LINES);
+    const double across = norm(errors, NORM_L2SQR);
+    Matx33d R = pose.R;
+    const double both = refineRotation(matches, R, 30), noise = std::max(across/freedomAcross, LEAST_SCALE*LEAST_SCALE);
+    const double ratio = (both - across)/freedomAlong/noise;
+    return !(std::log(ratio) > CUT_NORMAL*std::sqrt(2/freedomAlong + 2/freedomAcross));
 }
 
 //! The most likely pose over all lengths, from a good one; false if there are too few inliers.
@@ -276,7 +303,15 @@ bool estimate(const MatchedCameras& pair, const PixelMatches& matches, double li
     }
     e.covariance = e.variance*covarianceOf(pair, some, e.motion, e.interval[1] == INFINITE, byPose);
     for (const RigidTransform& end : lengths.ends)
+    {
+        if (e.interval[1] < INFINITE)
+            widenToLength(end, e);
         widenToEnd(pair, some, end, e);
+    }
+    if (e.interval[1] == INFINITE && isWithoutDirection(pair, some, e.motion))
+        for (int k = 0; k < 36; k++)
+            if (k/6 >= 3 || k % 6 >= 3)
+                e.covariance.val[k] = NaN;
     e.fitted = fitted;
     e.inliers = best.inliers;
     e.squares.assign(matches.size(), limit*limit);

@@ -300,4 +300,45 @@ double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, R
     });
 }
 
+double refineRotation(const PixelMatches& matches, Matx33d& R, int iterations)
+{
+    const LeastSquaresEnd end = { iterations, 1e-7, 1e-12 };        // square pixels
+    const auto evaluate = [&](const Vec3d& turn, SumOfSquares<3>& sum)
+    {
+        const Rotation rotation(turn.val);
+        for (const Match& m : matches)
+        {
+            const Matx33d turned = rotation.R*R;
+            const Matx<double, 2, 3> across = tangents(m.ray2.direction).t();
+            const Vec2d off = across*(turned*m.ray1.direction - m.ray2.direction);
+            const Matx<double, 2, 3> byTurn = across*rotation.derivativeOf(R*m.ray1.direction);
+            const Vec2d byPixels[] = { across*(turned*m.ray1.directionByU), across*(turned*m.ray1.directionByV),
+                                       across*m.ray2.directionByU, across*m.ray2.directionByV };
+            Matx22d C;
+            for (const Vec2d& by : byPixels)
+                C += by*by.t();
+            // Cholesky's factor of the covariance: whitened errors are of pixels.
+            const double first = std::sqrt(C(0, 0)), both = C(1, 0)/first, second = std::sqrt(C(1, 1) - both*both);
+            const double e0 = off[0]/first, e1 = (off[1] - both*e0)/second;
+            if (std::isnan(e0) || std::isnan(e1))
+                return false;
+            double by0[3], by1[3];
+            for (int k = 0; k < 3; k++)
+            {
+                by0[k] = byTurn(0, k)/first;
+                by1[k] = (byTurn(1, k) - both*by0[k])/second;
+            }
+            sum.add(e0, by0);
+            sum.add(e1, by1);
+        }
+        return !matches.empty();
+    };
+    Vec3d turn;
+    const double sum = minimizeSquares<3>(evaluate, end, turn);
+    if (std::isnan(sum))
+        return std::numeric_limits<double>::infinity();
+    R = rotationMatrix(turn)*R;
+    return sum;
+}
+
 }} // namespace

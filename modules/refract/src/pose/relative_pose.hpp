@@ -65,6 +65,10 @@ double refine(const MatchedCameras& pair, const PixelMatches& matches, RigidTran
 //! The same for the length that T has.
 double refineAtLength(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations);
 
+/** The most likely rotation near this one if all points are infinitely far: the sum of squared errors, of which a match then has two,
+infinite if there is none. */
+double refineRotation(const PixelMatches& matches, Matx33d& R, int iterations);
+
 //! Columns: how the rotation vector and T move by the five parameters that refineAtLength estimates.
 Matx<double, 6, 5> motionAtLength(const RigidTransform& pose);
 
