@@ -4,6 +4,7 @@
 // Bent panes; in every call as two of allWindows().
 #include "curved_scenes.hpp"
 #include "quick_require.hpp"
+#include "scenes.hpp"
 #include "window/curved.hpp"
 #include "window/curved_path.hpp"
 #include "window/parameters.hpp"
@@ -250,6 +251,89 @@ TEST_CASE("A bent pane is a dome of the same spheres", "[bent]")
     }
 }
 
+TEST_CASE("A pane that bends towards the camera shows what lies behind its sphere, too", "[bent]")
+{
+    CAPTURE(seed());
+    Random random;
+    int inside = 0, behind = 0, several = 0;
+    for (int i = 0; i < 20000; i++)
+    {
+        GlassWindow window = randomBent(random, i % 2 ? LEANING : UPRIGHT, 40);
+        window.distance = random.uniform(0, 50);
+        window.curvature = -1/random.logUniform(2e3, 1e6);
+        const Layers layers(window);
+        const Vec3d side = unit(window.normal.cross(random.vector(1)));
+        const double angle = random.uniform(0, 1.4);
+        const Vec3d w = std::cos(angle)*window.normal + std::sin(angle)*side;
+        Vec3d point, direction = w, back;
+        double grazing = 1;
+        if (trace(window, point, direction, &grazing) != REFRACT_OK || grazing < 0.1)
+            continue;
+        const double radius = -1/window.curvature, way = radius*random.logUniform(1e-3, 1e3);
+        const Vec3d X = point + way*direction, centre = (window.distance + radius)*window.normal;
+        (norm(X - centre) < radius ? inside : behind)++;
+        QUICK_REQUIRE(layers.isBeyond(X[0], X[1], X[2]), i, X, angle);
+        QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, X, angle);
+        if (norm(unit(back) - w)*grazing*grazing >= 1e-12)      // of several images any is right
+        {
+            Vec3d leaving, along = unit(back);
+            QUICK_REQUIRE(trace(window, leaving, along) == REFRACT_OK, i, X, angle);
+            QUICK_REQUIRE(norm((X - leaving).cross(along)) < 1e-9*norm(X), i, X, angle, norm((X - leaving).cross(along)));
+            QUICK_REQUIRE((X - leaving).dot(along) > 0, i, X, angle);
+            several++;
+        }
+        QUICK_REQUIRE(solveIn(layers, direction, 0, back) == REFRACT_OK, i, X, angle);
+        // A ray meets what it comes to behind the pane: before it, beside the sphere, there is nothing.
+        Rays rays;
+        uchar status = REFRACT_OK;
+        layers.traceOut(1, &w[0], &w[1], &w[2], rays, &status);
+        const Vec3d d = rays.direction(0), before = point - random.logUniform(1e-2, 0.3)*norm(point)*d;
+        QUICK_REQUIRE(isBeyondAlong(layers.lastSurface(), X[0], X[1], X[2], 1., d[0], d[1], d[2]), i, X);
+        QUICK_REQUIRE((!isBeyondAlong(layers.lastSurface(), before[0], before[1], before[2], 1., d[0], d[1], d[2])), i, before);
+        // The same seen from elsewhere.
+        const Matx33d R(windowAxes(randomNormal(random, 60)).val);
+        const Vec3d t = random.vector(radius), moved = R.t()*(X - t), d2 = R.t()*d;
+        const Surface elsewhere = inFrame(layers.lastSurface(), R.val, t.val);
+        QUICK_REQUIRE(isBeyond(elsewhere, moved[0], moved[1], moved[2], 1.) == isBeyond(layers.lastSurface(), X[0], X[1], X[2], 1.), i, X);
+        QUICK_REQUIRE((isBeyondAlong(elsewhere, moved[0], moved[1], moved[2], 1., d2[0], d2[1], d2[2])), i, X);
+    }
+    CHECK(inside > 1000);
+    CHECK(behind > 1000);
+    CHECK(several < 100);
+    printNumber("points behind a pane that bends towards the camera with another image", several, "");
+    // And beside it, where no light through it goes: what is not beyond is behind the window.
+    const GlassWindow window = [] { GlassWindow w(Vec3d(0, 0, 1), 10, 1.52, 30); w.shape = WINDOW_BENT; w.curvature = -1e-3; return w; }();
+    for (const Vec3d& X : { Vec3d(0, 0, 20), Vec3d(3000, 0, 45), Vec3d(0, -5000, -3000), Vec3d(0, 0, -1e5) })
+    {
+        Vec3d d;
+        CAPTURE(X);
+        CHECK(!Layers(window).isBeyond(X[0], X[1], X[2]));
+        CHECK(solveIn(Layers(window), X, 1, d) == REFRACT_BEHIND_WINDOW);
+    }
+}
+
+TEST_CASE("Points behind the sphere of a pane, and beside it, are triangulated", "[bent][triangulate]")
+{
+    GlassWindow window(Vec3d(0, 0, 1), 10, 1.5, 50);
+    window.shape = WINDOW_BENT;
+    window.curvature = -1e-3;
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(Matx33d(500, 0, 900, 0, 500, 900, 0, 0, 1), noArray(), window);
+    const std::vector<Vec3d> points = { { 10, 20, 500 }, { 3000, 0, 5000 }, { -2000, 9000, 6000 }, { 1500, 0, 500 } };
+    const Vec3d rvec, tvec(-20, 0, 0);
+    std::vector<Vec2d> pixels1, pixels2;
+    std::vector<Vec3d> found;
+    std::vector<uchar> status;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels1);
+    refractiveProjectPoints(points, rvec, tvec, camera, pixels2);
+    for (int flags : { 0, (int)TRIANGULATE_MIDPOINT })
+    {
+        triangulateRefractive(camera, camera, rvec, tvec, pixels1, pixels2, found, status, flags);
+        CAPTURE(flags);
+        CHECK(status == std::vector<uchar>(4, REFRACT_OK));
+        CHECK(largestDifference(found, points) < 1e-4);
+    }
+}
+
 TEST_CASE("What a pane that bends towards the camera hides has a status", "[bent]")
 {
     // A sphere of radius 1000 whose centre is 1050 ahead; the camera sees up to 72 degrees of it.
@@ -263,7 +347,16 @@ TEST_CASE("What a pane that bends towards the camera hides has a status", "[bent
     CHECK(solveIn(layers, Vec3d(0, 0, 1), 0, d) == REFRACT_OK);
     CHECK(unit(d)[2] == 1);
     CHECK(solveIn(layers, Vec3d(0, 0, 55), 1, d) == REFRACT_BEHIND_WINDOW);
-    CHECK(solveIn(layers, Vec3d(1500, 0, 500), 1, d) == REFRACT_BEHIND_WINDOW);     // beside the sphere, not behind it
+    CHECK(solveIn(layers, Vec3d(1500, 0, 300), 1, d) == REFRACT_BEHIND_WINDOW);     // beside the sphere, not behind it
+    CHECK(!layers.isBeyond(1500, 0, 300));
+    // The straight way misses the sphere by 6, but the glass bends light so far.
+    const Vec3d beside(1500, 0, 500);
+    CHECK(layers.isBeyond(beside[0], beside[1], beside[2]));
+    CHECK(solveIn(layers, beside, 1, d) == REFRACT_OK);
+    Vec3d leaving, along = unit(d);
+    CHECK(trace(window, leaving, along) == REFRACT_OK);
+    CHECK(norm((beside - leaving).cross(along)) < 1e-9);
+    CHECK((beside - leaving).dot(along) > 0);
     CHECK(solveIn(layers, Vec3d(0, 0, -1), 0, d) == REFRACT_BEHIND_WINDOW);
     CHECK(solveIn(layers, Vec3d(1, 0, 1e-3), 0, d) != REFRACT_OK);
     for (double degrees : { 70., 71., 73., 89., 91., 180. })

@@ -44,8 +44,13 @@ void checkBeyond(const PlacedCameras& cameras, PixelBlock& block, int n)
         const RigidTransform& place = cameras[c].place;
         const Surface last = inFrame(layers.lastSurface(), place.R.val, place.t.val);       // the frame of camera 1
         for (int i = 0; i < n && layers.refracts(); i++)
-            if (!isBeyond(last, block.x[i], block.y[i], block.z[i], 1.) && block.status[i] == REFRACT_OK && block.isSeen(c, i))
+        {
+            if (isBeyond(last, block.x[i], block.y[i], block.z[i], 1.) || block.status[i] != REFRACT_OK || !block.isSeen(c, i))
+                continue;
+            const Vec3d X = place.R*Vec3d(block.x[i], block.y[i], block.z[i]) + place.t;
+            if (!(last.curvature < 0) || !layers.isBeyond(X[0], X[1], X[2]))
                 block.status[i] = REFRACT_BEHIND_WINDOW;
+        }
     }
 }
 

@@ -64,7 +64,7 @@ uchar findBentPath(const CurvedFaces& window, const Vec3d& X, double w, Vec3d& d
     CurvedFaces upright = window;
     upright.faces = faces.data();
     const uchar status = findInPlane(upright, X, w, direction);
-    if (isUpright(window))
+    if (status == REFRACT_OK && isUpright(window))
         return status;
     const Vec3d ahead(0, 0, 1);
     for (Vec3d start : { direction, Vec3d(direction + 0.1*ahead), ahead })

@@ -66,7 +66,7 @@ std::vector<CurvedFace> bentFaces(const GlassWindow& window, const std::vector<F
 Surface surfaceOf(const CurvedFaces& window, const CurvedFace& face)
 {
     const Vec3d normal = Matx33d(window.axes).t()*Vec3d(face.gradient);
-    Surface surface = { { normal[0], normal[1], normal[2] }, face.distance, face.curvature, { 0, 0, 0 } };
+    Surface surface = { { normal[0], normal[1], normal[2] }, face.distance, face.curvature, { 0, 0, 0 }, { 0, 0, 0 } };
     if (window.third == 0)
         std::copy_n(window.axes + 6, 3, surface.axis);
     return surface;

@@ -22,14 +22,14 @@ inline Vector bentBy(double curvature, double third, const Vector& a)
     return { curvature*a.x, curvature*a.y, (curvature*third)*a.z };
 }
 
-//! As that of a Surface, of the last face: times w.
+/** As that of a Surface, of the last face: times w. A sphere with its centre in the scene may hide X in more than one way; there it
+counts that the ray to X has passed the face. */
 inline Mask isBeyond(double third, const CurvedFace& last, const Vector& X, Lanes w)
 {
-    const double* const g = last.gradient;
-    const Lanes level = dot(g, X);
+    const Lanes level = dot(last.gradient, X);
     Mask beyond = w*level + 0.5*dot(X, bentBy(last.curvature, third, X)) > w*w*last.distance;
     if (last.curvature < 0)
-        beyond |= -last.curvature*level > (g[0]*g[0] + g[1]*g[1] + g[2]*g[2])*w;
+        beyond |= w == w;
     return beyond;
 }
 

@@ -51,7 +51,7 @@ Layers::Layers(const GlassWindow& window)
     const bool refracts = !window.thickness.empty() || window.innerIndex != outer;
     stack_ = { { normal_[0], normal_[1], normal_[2] }, refracts, total, window.innerIndex, outer, rarest,
                NULL, (int)media_.size(), NULL, NULL, (int)height_.size(), windowLayout(window) };
-    last_ = { { normal_[0], normal_[1], normal_[2] }, total, 0., { 0, 0, 0 } };
+    last_ = { { normal_[0], normal_[1], normal_[2] }, total, 0., { 0, 0, 0 }, { 0, 0, 0 } };
     isTilted_ = isDome_ = isCurved_ = false;
     tilted_ = TiltedFaces();
     dome_ = Dome();
@@ -80,7 +80,7 @@ void Layers::setWedge(const GlassWindow& window)
     if (!isTilted_)
         return;
     const Vec3d last = axes.t()*Vec3d(faces_.back().normal);
-    last_ = { { last[0], last[1], last[2] }, faces_.back().distance, 0., { 0, 0, 0 } };
+    last_ = { { last[0], last[1], last[2] }, faces_.back().distance, 0., { 0, 0, 0 }, { 0, 0, 0 } };
 }
 
 void Layers::setDome(const GlassWindow& window)
@@ -101,7 +101,8 @@ void Layers::setDome(const GlassWindow& window)
     dome_.along = normal_.dot(window.center);
     stack_.total = radius - offset;         // to the nearest point of the last surface
     const Vec3d outwards = -window.center/radius;
-    last_ = { { outwards[0], outwards[1], outwards[2] }, 0.5*(radius - offset)*(1 + offset/radius), 1/radius, { 0, 0, 0 } };
+    last_ = { { outwards[0], outwards[1], outwards[2] }, 0.5*(radius - offset)*(1 + offset/radius), 1/radius, { 0, 0, 0 },
+              { 0, 0, 0 } };
 }
 
 static void setMedia(const Stack& stack, size_t faces, const Matx33d& axes, CurvedFaces& curved)
@@ -291,6 +292,17 @@ void Layers::solveInDome(int n, const double* x, const double* y, const double* 
     });
 }
 
+bool Layers::mayComeRoundEdge(double x, double y, double z, double w) const
+{
+    return last_.curvature < 0 && last_.normal[0]*x + last_.normal[1]*y + last_.normal[2]*z > last_.distance*w;
+}
+
+bool Layers::comesRoundEdge(double x, double y, double z, double w) const
+{
+    Vec3d d;
+    return mayComeRoundEdge(x, y, z, w) && findBentPath(curved_, Matx33d(curved_.axes)*Vec3d(x, y, z), w, d) == REFRACT_OK;
+}
+
 //! The search begins in a tube along the straight way, in a bent pane where planes would have the path.
 void Layers::solveInCurved(int n, const double* x, const double* y, const double* z, const double* w,
                            double* dx, double* dy, double* dz, uchar* status) const
@@ -309,14 +321,15 @@ void Layers::solveInCurved(int n, const double* x, const double* y, const double
     answerMissing(n, dx, status, [=](int i)
     {
         const double weight = w ? w[i] : 1.;
-        if (!isBeyond(x[i], y[i], z[i], weight))
+        const bool isThere = refract::isBeyond(last_, x[i], y[i], z[i], weight);
+        if (!isThere && !mayComeRoundEdge(x[i], y[i], z[i], weight))
             return (uchar)REFRACT_BEHIND_WINDOW;
         const Matx33d axes(curved_.axes);
         Vec3d d;
         const uchar found = (isTube ? findTubePath : findBentPath)(curved_, axes*Vec3d(x[i], y[i], z[i]), weight, d);
         d = axes.t()*d;
         dx[i] = d[0]; dy[i] = d[1]; dz[i] = d[2];
-        return found;
+        return found == REFRACT_OK || isThere ? found : (uchar)REFRACT_BEHIND_WINDOW;
     });
 }
 

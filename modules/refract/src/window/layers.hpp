@@ -60,7 +60,7 @@ public:
 
     //! True where the homogeneous point lies beyond the last surface (always true without window).
     bool isBeyond(double x, double y, double z, double w = 1.) const
-    { return !stack_.refracts || refract::isBeyond(last_, x, y, z, w); }
+    { return !stack_.refracts || refract::isBeyond(last_, x, y, z, w) || comesRoundEdge(x, y, z, w); }
 
     //! 1/s at which a ray leaves the last surface (infinity without window): it exists for smaller 1/s.
     double leavingMu(const Rays& rays, int i) const;
@@ -92,6 +92,10 @@ private:
                      double* dx, double* dy, double* dz, uchar* status) const;
 
     void traceOutCurved(int n, const double* wx, const double* wy, const double* wz, Rays& rays, uchar* status) const;
+    /** Behind a pane that bends towards the camera: what the straight way past its sphere does not show, light that the pane bends may.
+    It leaves from the tangent plane of the last face on, and away from it. */
+    bool comesRoundEdge(double x, double y, double z, double w) const;
+    bool mayComeRoundEdge(double x, double y, double z, double w) const;
     void solveInCurved(int n, const double* x, const double* y, const double* z, const double* w,
                        double* dx, double* dy, double* dz, uchar* status) const;
 
