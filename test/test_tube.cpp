@@ -162,6 +162,39 @@ TEST_CASE("Round trips through tubes, to all sides, of any media", "[tube]")
     printNumber("points with another image than the one they were made from", several, "");
 }
 
+TEST_CASE("Where a tube's cross-section loses light, a point that has a path is seen", "[tube]")
+{
+    // The camera near the wall of a tube of a dense medium, air outside: paths go by the centre.
+    CAPTURE(seed());
+    Random random;
+    int trips = 0, byCenter = 0;
+    for (int i = 0; i < 30000; i++)
+    {
+        const double radius = random.logUniform(5, 500);
+        const Vec3d axis = unit(random.vector(1)), towards = unit(across(random.vector(1), axis));
+        GlassWindow window = GlassWindow::tube(random.uniform(0.4, 0.98)*radius*towards, axis, radius, radius*random.uniform(0.01, 0.5),
+                                               random.uniform(1.3, 1.9), random.below(3) ? 1 : 1.333);
+        window.innerIndex = random.uniform(1.2, 1.7);
+        const Layers layers(window);
+        const Vec3d w = unit(random.vector(1));
+        Vec3d point, direction = w, back;
+        double grazing = norm(across(w, axis));
+        if (grazing < 1e-2 || !trace(window, point, direction, &grazing) || grazing < 1e-2)
+            continue;
+        const Vec3d X = point + radius*random.logUniform(1e-2, 1e6)*direction;
+        QUICK_REQUIRE(solveIn(layers, X, 1, back) == REFRACT_OK, i, w, X, grazing);
+        Vec3d again, leaving = unit(back);      // of several images any is right
+        double grazingBack = 1;
+        QUICK_REQUIRE(trace(window, again, leaving, &grazingBack), i, w, X);
+        QUICK_REQUIRE(norm((X - again).cross(leaving))*grazingBack*grazingBack < 1e-9*norm(X), i, w, X, grazingBack);
+        QUICK_REQUIRE((X - again).dot(leaving) > 0, i, w, X);
+        trips++;
+        byCenter += across(w, axis).dot(towards) > 0;
+    }
+    CHECK(trips > 10000);
+    CHECK(byCenter > 2000);
+}
+
 TEST_CASE("In its cross-section a tube is a dome", "[tube]")
 {
     CAPTURE(seed());

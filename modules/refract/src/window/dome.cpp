@@ -67,8 +67,8 @@ struct AngleAtCenter
     double inverse, e;
 };
 
-//! Newton's method between low, where phi is not larger, and high, where it is not smaller.
-double solveBetween(const AngleAtCenter& angle, double phi, double alpha, double low, double high)
+//! Newton's method between low, where phi is not larger, and high, where it is not smaller; or the other way round where phi falls.
+double solveBetween(const AngleAtCenter& angle, double phi, double alpha, double low, double high, bool falls = false)
 {
     const int STEPS = 200;
     const double FAR = 1e-9;        // radians: where light grazes the slope is infinite, and steps are short far from the root
@@ -77,7 +77,7 @@ double solveBetween(const AngleAtCenter& angle, double phi, double alpha, double
     {
         double value, slope;
         angle(alpha, value, slope);
-        (value < phi ? low : high) = alpha;
+        ((value < phi) != falls ? low : high) = alpha;
         double next = alpha - (value - phi)/slope;
         const bool isStuck = std::abs(next - alpha) <= 1e-3*(high - low) && std::abs(value - phi) > FAR;
         if (!(next >= low && next <= high) || isStuck)
@@ -114,6 +114,15 @@ double solveAcross(const AngleAtCenter& angle, double phi, double first)
     return far;
 }
 
+//! The largest moment l that leaves the dome, if it is less than light at the camera may have.
+double mostMoment(const Dome& dome, double atCamera)
+{
+    double most = atCamera;
+    for (int k = 0; k < dome.count; k++)
+        most = std::min(most, dome.faces[k].after*dome.faces[k].radius);
+    return most;
+}
+
 } // namespace
 
 uchar findDomePath(const Dome& dome, const Vec3d& X, double w, Vec3d& direction)
@@ -127,9 +136,7 @@ uchar findDomePath(const Dome& dome, const Vec3d& X, double w, Vec3d& direction)
         return REFRACT_OK;
     const Vec3d axis = -S/angle.e, across = X - axis.dot(X)*axis;
     const double away = norm(across), phi = std::atan2(away, axis.dot(b)), straight = std::atan2(away, axis.dot(X));
-    double most = dome.inner*angle.e;       // l that leaves the dome
-    for (int k = 0; k < dome.count; k++)
-        most = std::min(most, dome.faces[k].after*dome.faces[k].radius);
+    const double most = mostMoment(dome, dome.inner*angle.e);
     double low = 0, high = CV_PI;
     if (most < dome.inner*angle.e)
     {
@@ -152,6 +159,40 @@ uchar findDomePath(const Dome& dome, const Vec3d& X, double w, Vec3d& direction)
     if (away > 0)
         direction += std::sin(alpha)/away*across;
     return REFRACT_OK;
+}
+
+bool findDomeWay(const Dome& dome, const Vec3d& X, double w, DomeWay way, Vec3d& direction)
+{
+    const Vec3d S(dome.center), b = X - w*S;
+    const AngleAtCenter angle(dome, w/norm(b));
+    const double most = mostMoment(dome, dome.inner*angle.e);
+    if (!(norm(b) > w*dome.faces[dome.count - 1].radius) || !(most < dome.inner*angle.e))
+        return false;
+    const Vec3d axis = -S/angle.e, across = X - axis.dot(X)*axis;
+    const double away = norm(across), seen = std::atan2(away, axis.dot(b)), phi = way == ACROSS_AXIS ? 2*CV_PI - seen : seen;
+    const double last = std::asin(most/(dome.inner*angle.e)), first = CV_PI - last;
+    double low = way == OUTWARDS ? 0 : CV_PI, high = way == OUTWARDS ? last : CV_PI, value, slope;
+    angle(CV_PI, value, slope);
+    if (way == BY_CENTER_MORE || way == BY_CENTER_LESS)
+    {
+        if (!(slope > 0))                   // then phi falls to 180 degrees
+            return false;
+        low = leastBetween(angle, first, CV_PI);
+    }
+    const bool falls = way == ACROSS_AXIS || way == BY_CENTER_MORE;
+    if (falls)
+    {
+        high = low;
+        low = first;
+    }
+    const double atLow = angle.at(low), atHigh = angle.at(high);
+    if (!(std::min(atLow, atHigh) <= phi && phi <= std::max(atLow, atHigh)))
+        return false;
+    const double alpha = solveBetween(angle, phi, 0.5*(low + high), low, high, falls);
+    direction = std::cos(alpha)*axis;
+    if (away > 0)
+        direction += (way == ACROSS_AXIS ? -1 : 1)*std::sin(alpha)/away*across;
+    return true;
 }
 
 }} // namespace

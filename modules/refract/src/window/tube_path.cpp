@@ -13,7 +13,10 @@ the point that the ray has reached along the axis,
     z(t) = sum k/m_i (length in the cross-section),
 
 grows with t: of all ways across, light takes the one of least sum of m_i times length, L(k), and each of these sums is concave in
-k; so L is, and z = -dL/dk. It is z = 0 for t = 0, and has no limit unless the cross-section loses its light. */
+k; so L is, and z = -dL/dk. It is z = 0 for t = 0, and has no limit unless the cross-section loses its light.
+
+Where it loses some, light may come by other ways across, too, by the centre (DomeWay), for some range of k and not for k = 0. Along
+these z(t) need not grow: where it passes z shows at some values of t. */
 
 namespace cv { namespace refract {
 
@@ -35,8 +38,9 @@ public:
         dome_.count = window.count;
     }
 
-    //! The direction across of a ray whose rarest medium has the index m across and k along, with k for its third component.
-    uchar direction(double m, double k, Vec3d& d)
+    /** The direction across of a ray whose rarest medium has the index m across and k along, with k for its third component.
+    @param way DOME_WAYS: that of the least sum, else the one to take */
+    uchar direction(double m, double k, Vec3d& d, DomeWay way = DOME_WAYS)
     {
         const auto across = [&](double index) { return std::sqrt((index - rarest_)*(index + rarest_) + m*m); };
         double before = dome_.inner = across(window_.inner);
@@ -48,16 +52,20 @@ public:
         }
         dome_.outer = before;
         Vec3d there;
-        const uchar status = findDomePath(dome_, across_, weight_, there);
+        uchar status = REFRACT_OK;
+        if (way == DOME_WAYS)
+            status = findDomePath(dome_, across_, weight_, there);
+        else if (!findDomeWay(dome_, across_, weight_, way, there))
+            status = REFRACT_TOTAL_REFLECTION;
         d = dome_.inner*normalize(there) + Vec3d(0, 0, k);
         return status;
     }
 
     //! z(t) and the direction at the camera, of a finite point.
-    uchar follow(double t, Vec3d& d, double& z)
+    uchar follow(double t, Vec3d& d, double& z, DomeWay way = DOME_WAYS)
     {
         const double m = rarest_/std::sqrt(1 + t*t);
-        uchar status = direction(m, t*m, d);
+        uchar status = direction(m, t*m, d, way);
         if (status != REFRACT_OK)
             return status;
         Vec3d P, p = d;
@@ -120,6 +128,97 @@ uchar solveAlong(Section& section, double straight, double z, Vec3d (&sides)[2],
     return status == REFRACT_OK ? status : beyond;
 }
 
+//! One kind of way across, followed along the axis.
+class WayAlong
+{
+public:
+    WayAlong(const CurvedFaces& window, const Vec3d& X, double w, DomeWay way)
+        : window_(window), section_(window, X, w), X_(X), w_(w), way_(way) {}
+
+    //! Whether a path of this kind comes from the point.
+    bool find(Vec3d& direction)
+    {
+        const int STEPS = 24;
+        const double FARTHER = 8;
+        Place last = at(0);
+        const auto passes = [&](double t)
+        {
+            const Place next = at(t);
+            const bool isFound = last.isLit != next.isLit ? isBetween(last.isLit ? last : next, edge(last, next), direction)
+                                                          : next.isLit && isBetween(last, next, direction);
+            last = next;
+            return isFound;
+        };
+        for (int k = 1; k < STEPS; k++)
+            if (passes(std::tan(0.5*CV_PI*k/STEPS)))
+                return true;
+        for (int k = 0; k < STEPS && last.isLit && last.beyond < 0; k++)
+            if (passes(FARTHER*last.t))
+                return true;
+        return false;
+    }
+
+private:
+    struct Place
+    {
+        double t, beyond;       //!< of the point's z
+        bool isLit;
+        Vec3d direction;
+    };
+
+    Place at(double t)
+    {
+        Place place;
+        double z = 0;
+        place.t = t;
+        place.isLit = section_.follow(t, place.direction, z, way_) == REFRACT_OK;
+        place.beyond = z - X_[2]/w_;
+        return place;
+    }
+
+    //! The last place with light, of two of which one has some.
+    Place edge(Place a, Place b)
+    {
+        const int HALVES = 40;
+        for (int k = 0; k < HALVES; k++)
+        {
+            const Place middle = at(0.5*(a.t + b.t));
+            (middle.isLit == a.isLit ? a : b) = middle;
+        }
+        return a.isLit ? a : b;
+    }
+
+    //! Between two places with light: regula falsi, the end that stays having half its weight (Illinois).
+    bool isBetween(Place a, Place b, Vec3d& direction)
+    {
+        const int STEPS = 60;
+        if (!(a.beyond*b.beyond <= 0))
+            return false;
+        for (int k = 0; k < STEPS; k++)
+        {
+            const double part = k % 4 < 3 ? a.beyond/(a.beyond - b.beyond) : 0.5;
+            const Place middle = at(a.t + part*(b.t - a.t));
+            if (!middle.isLit)
+                return false;
+            if (doesReach(window_, X_, w_, direction = middle.direction))
+                break;
+            if ((middle.beyond < 0) == (b.beyond < 0))
+                a.beyond /= 2;
+            else
+                a = b;
+            b = middle;
+        }
+        approachPoint(window_, X_, w_, direction);
+        return doesReach(window_, X_, w_, direction);
+    }
+
+    const CurvedFaces& window_;
+    Section section_;
+    Vec3d X_;
+    double w_;
+    DomeWay way_;
+};
+
 } // namespace
 
 uchar findTubePath(const CurvedFaces& window, const Vec3d& given, double w, Vec3d& direction)
@@ -136,8 +235,9 @@ uchar findTubePath(const CurvedFaces& window, const Vec3d& given, double w, Vec3
         double z = 0;
         status = section.follow(0, direction, z);
         starts[0] = direction;
-        if (status == REFRACT_OK && X[2] > 0)
-            status = solveAlong(section, X[2]/std::sqrt(X[0]*X[0] + X[1]*X[1]), X[2]/w, starts, direction);
+        const double straight = X[2]/std::sqrt(X[0]*X[0] + X[1]*X[1]);
+        if (status == REFRACT_OK && straight > 0)
+            status = solveAlong(section, straight, X[2]/w, starts, direction);
     }
     bool isFound = status == REFRACT_OK && doesReach(window, X, w, direction);
     for (Vec3d start : { starts[0], starts[1], X })
@@ -147,6 +247,8 @@ uchar findTubePath(const CurvedFaces& window, const Vec3d& given, double w, Vec3
         approachPoint(window, X, w, start);
         isFound = doesReach(window, X, w, direction = start);
     }
+    for (int way = 0; way < DOME_WAYS && w > 0 && !isFound; way++)
+        isFound = WayAlong(window, X, w, (DomeWay)way).find(direction);
     if (given[2] < 0)
         direction[2] = -direction[2];
     if (isFound)
