@@ -59,6 +59,29 @@ TEST_CASE("Only the plane counts, not how it is written; both overloads agree", 
     CHECK(largestDifference(a, c) == 0);
 }
 
+TEST_CASE("A plane of any numbers is met, as far away as there are numbers", "[plane]")
+{
+    const std::vector<Vec2d> pixels = { { 100, 100 }, { 640, 480 }, { 1200, 900 } };
+    std::vector<Vec3d> expected, found;
+    std::vector<uchar> status;
+    const Vec4d plane(0.1, 0.2, 1, 700);
+    refractivePointsOnPlane(pixels, expected, PLAIN_K, noArray(), paper::pane(), plane);
+    for (int exponent : { -1000, -700, -520, 520, 700, 1000 })
+    {
+        CAPTURE(exponent);
+        refractivePointsOnPlane(pixels, found, PLAIN_K, noArray(), paper::pane(), plane*std::ldexp(1., exponent), status);
+        CHECK(status == std::vector<uchar>(3, REFRACT_OK));
+        CHECK(largestDifference(found, expected) < 1e-10);
+    }
+    // z is within the numbers, the point's distance is not.
+    refractivePointsOnPlane(std::vector<Vec2d>{ { 640, 480 }, { 640 + 3000, 480 } }, found, PLAIN_K, noArray(), paper::pane(),
+                            Vec4d(0, 0, 1, 1.7e308), status);
+    CHECK(status[0] == REFRACT_OK);
+    CHECK(found[0][2]/1.7e308 == Approx(1));
+    CHECK(status[1] == REFRACT_PARALLEL_RAYS);
+    CHECK(std::isnan(found[1][0]));
+}
+
 TEST_CASE("Pixels that do not meet the plane say why", "[plane]")
 {
     const std::vector<Vec2d> pixels = { { 640, 480 }, { NaN, 480 } };

@@ -301,6 +301,93 @@ TEST_CASE("A rotation vector of any length: derivatives are by it, not by the sh
         }
 }
 
+TEST_CASE("Points as far away as numbers go are seen where their rays lead, with derivatives", "[project]")
+{
+    const WindowKind kind = GENERATE(from_range(allWindows()));
+    CAPTURE(name(kind), seed());
+    Random random(kind);
+    for (const LensKind& lens : allLenses())
+    {
+        const GlassWindow window = makeWindow(kind, random, 10);
+        const Ptr<RefractiveCamera> camera = makeCamera(lens, window);
+        const double side = 0.3*std::tan(std::min(lens.halfField, 60.)*CV_PI/180);
+        std::vector<Vec2d> pixels;
+        for (int i = 0; i < 5; i++)
+            pixels.push_back(Vec2d(lens.K(0, 2) + lens.K(0, 0)*random.uniform(-side, side),
+                                   lens.K(1, 2) + lens.K(1, 1)*random.uniform(-side, side)));
+        std::vector<Vec3d> origins, directions, points;
+        std::vector<uchar> rays, status, same;
+        refractiveUnprojectPoints(pixels, origins, directions, camera, rays);
+        for (double exponent : { 6., 12., 30., 60., 61., 77., 100., 154., 154.5, 155., 200., 300., 307., 308. })
+        {
+            points.clear();
+            for (int i = 0; i < 5; i++)
+                points.push_back(origins[i] + std::pow(10, exponent)*directions[i]);
+            std::vector<Vec2d> seen, again;
+            Mat J;
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, seen, status);
+            refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, again, same, J);
+            REQUIRE(same == status);
+            for (int i = 0; i < 5; i++)
+            {
+                if (rays[i] != REFRACT_OK)
+                    continue;
+                CAPTURE(lens.name, exponent, pixels[i]);
+                REQUIRE(status[i] == REFRACT_OK);
+                REQUIRE(norm(seen[i] - pixels[i]) < 1e-8);
+                REQUIRE(norm(again[i] - pixels[i]) < 1e-8);
+                // A motion across the ray turns it by the motion over the distance; one along it does nothing.
+                const Mat byPoint = J.rowRange(2*i, 2*i + 2).colRange(3, 6)*std::pow(10, exponent);
+                REQUIRE(checkRange(J.rowRange(2*i, 2*i + 2)));
+                REQUIRE(norm(byPoint*Mat(directions[i])) < 1e-5*lens.K(0, 0));
+                REQUIRE(norm(byPoint) > 0.1*lens.K(0, 0));
+                REQUIRE(norm(byPoint) < 100*lens.K(0, 0));
+            }
+        }
+        // From the largest number on there is no point; and a pose that leads beyond it.
+        refractiveProjectPoints(std::vector<Vec3d>{ { 1e308, 1e308, 1.7e308 }, { 0, 0, 1.7e308 }, { INF, 0, 1 } }, Vec3d(0.1, 0, 0),
+                                Vec3d(0, 0, 1.7e308), camera, pixels, status);
+        REQUIRE(status[1] == REFRACT_OK);
+        REQUIRE(status[2] == REFRACT_NOT_FINITE);
+        for (int i = 0; i < 2; i++)
+            REQUIRE((status[i] == REFRACT_OK) == (bool)std::isfinite(pixels[i][0]));
+    }
+}
+
+TEST_CASE("Without a length all points of a ray have one pixel, however near or far", "[project]")
+{
+    GlassWindow atCamera;       // water from the centre of projection on
+    atCamera.normal = Vec3d(0, 0, 1);
+    atCamera.outerIndex = 1.333;
+    CAPTURE(seed());
+    Random random;
+    for (const GlassWindow& window : { GlassWindow(), atCamera })
+        for (const LensKind& lens : allLenses())
+        {
+            const Ptr<RefractiveCamera> camera = makeCamera(lens, window);
+            for (int i = 0; i < 20; i++)
+            {
+                const Vec3d d = randomNormal(random, 20);
+                std::vector<Vec2d> expected, seen, again;
+                std::vector<uchar> status;
+                Mat J, unit;
+                refractiveProjectPoints(std::vector<Vec3d>{ d }, Vec3d(), Vec3d(), camera, expected, status, unit);
+                REQUIRE(status[0] == REFRACT_OK);
+                for (int exponent : { -1000, -800, -520, -511, -300, -200, -100, 100, 200, 300, 511, 520, 1000, 1023 })
+                {
+                    const double scale = std::ldexp(1., exponent);
+                    CAPTURE(lens.name, exponent, d);
+                    refractiveProjectPoints(std::vector<Vec3d>{ scale*d }, Vec3d(), Vec3d(), camera, seen, status);
+                    REQUIRE(status[0] == REFRACT_OK);
+                    REQUIRE(norm(seen[0] - expected[0]) < 1e-9);
+                    refractiveProjectPoints(std::vector<Vec3d>{ scale*d }, Vec3d(), Vec3d(), camera, again, status, J);
+                    REQUIRE(norm(again[0] - expected[0]) < 1e-9);
+                    REQUIRE(norm(J.colRange(3, 6)*scale, unit.colRange(3, 6)) < 1e-9*norm(unit.colRange(3, 6)));
+                }
+            }
+        }
+}
+
 TEST_CASE("The jacobian against central differences of several steps", "[project]")
 {
     const WindowKind kind = GENERATE(from_range(allWindows()));

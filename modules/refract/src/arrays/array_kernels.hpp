@@ -15,6 +15,8 @@ struct ArrayKernels
     //! n interleaved points of 2 (z null) or 3 coordinates -> arrays; true if all are finite.
     bool (*load)(const void* points, bool isFloat, int n, double* x, double* y, double* z);
     void (*store)(void* points, bool isFloat, int n, const double* x, const double* y, const double* z);
+    //! No point is extreme (moderate.hpp).
+    bool (*areModerate)(int n, const double* x, const double* y, const double* z);
 };
 
 const ArrayKernels& arrayKernels();

@@ -76,7 +76,7 @@ void PointReader::load(int begin, int n, double* x, double* y, double* z, uchar*
     if (finite)
         return;
     for (int i = 0; i < n; i++)
-        if (!std::isfinite(x[i] + y[i] + (z ? z[i] : 0)))
+        if (!std::isfinite(x[i]) || !std::isfinite(y[i]) || (z && !std::isfinite(z[i])))
             status[i] = REFRACT_NOT_FINITE;
 }
 

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_ARRAYS_SIMD_HPP
 
 #include "arrays/array_kernels.hpp"
+#include "arrays/moderate.hpp"
 #include "simd/lanes.hpp"
 
 /* Interleaved points of either depth <-> arrays of coordinates. */
@@ -73,8 +74,14 @@ void storePoints(void* points, bool isFloat, int n, const double* x, const doubl
         interleave((double*)points, n, x, y, z);
 }
 
+bool areModerate(int n, const double* x, const double* y, const double* z)
+{
+    Mask extreme = none();
+    eachRegister(n, [&](auto at) { extreme |= isExtreme(load(x, at), load(y, at), load(z, at)); });
+    return !any(extreme);
+}
 
-constexpr ArrayKernels arrayTable = { loadPoints, storePoints };
+constexpr ArrayKernels arrayTable = { loadPoints, storePoints, areModerate };
 
 }}} // namespace
 

@@ -3,18 +3,63 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "camera/camera.hpp"
+#include "arrays/array_kernels.hpp"
 #include "arrays/arrays.hpp"
+#include "arrays/moderate.hpp"
 #include "window/parameters.hpp"
 
 namespace cv { namespace refract {
+
+namespace {
+
+/** Instead of points whose coordinates are extreme (moderate.hpp) others in the same directions, which are seen in the same
+pixels: what is as far away as that is infinitely far for any window. Nearer, only windows without a length do not tell the two apart,
+unless w says how far a point is. */
+struct ModeratePoints
+{
+    //! @param w, areNear of which points too near are replaced, too
+    ModeratePoints(int n, const double* x_, const double* y_, const double* z_, const double* w_, bool areNear)
+    {
+        const int HALF = 100;           // of the exponent of MODERATE
+        for (int i = 0; i < n; i++)
+        {
+            const double sum = std::abs(x_[i]) + std::abs(y_[i]) + std::abs(z_[i]);
+            const double largest = std::max(std::abs(x_[i]), std::max(std::abs(y_[i]), std::abs(z_[i])));
+            const bool isFar = sum > MODERATE && std::isfinite(largest), isNear = sum < 1/MODERATE && largest > 0 && (w_ || areNear);
+            factor[i] = isFar ? std::scalbn(1., HALF - std::ilogb(largest)) : isNear ? std::scalbn(1., -HALF - std::ilogb(largest)) : 1;
+            x[i] = factor[i]*x_[i];
+            y[i] = factor[i]*y_[i];
+            z[i] = factor[i]*z_[i];
+            w[i] = w_ ? factor[i]*w_[i] : 1;
+        }
+    }
+    double x[BLOCK], y[BLOCK], z[BLOCK], w[BLOCK], factor[BLOCK];
+};
+
+//! All lengths of a scene may be multiplied, and no pixel moves.
+bool hasNoLength(const Layers& layers)
+{
+    return !layers.refracts() || (layers.lastSurface().distance == 0 && layers.lastSurface().curvature == 0);
+}
+
+} // namespace
 
 Camera::Camera(const Ptr<Lens>& lens, const GlassWindow& window) : lens_(lens), window_(window), layers_(window) {}
 
 void Camera::project(int n, const double* x, const double* y, const double* z, const double* w,
                      double* u, double* v, uchar* status) const
 {
-    double dx[BLOCK], dy[BLOCK], dz[BLOCK];
     CV_DbgAssert(n <= BLOCK);
+    if (arrayKernels().areModerate(n, x, y, z))
+        return projectModerate(n, x, y, z, w, u, v, status);
+    const ModeratePoints p(n, x, y, z, w, hasNoLength(layers_));
+    projectModerate(n, p.x, p.y, p.z, w ? p.w : NULL, u, v, status);
+}
+
+void Camera::projectModerate(int n, const double* x, const double* y, const double* z, const double* w,
+                             double* u, double* v, uchar* status) const
+{
+    double dx[BLOCK], dy[BLOCK], dz[BLOCK];
     layers_.solveIn(n, x, y, z, w, dx, dy, dz, status);
     lens_->project(n, dx, dy, dz, u, v, status);
 }
@@ -40,8 +85,21 @@ uchar Camera::unproject(const Point2d& pixel, Vec3d& origin, Vec3d& direction) c
 void Camera::projectJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
                              const Columns& byPoint, const Columns& byParameters, uchar* status) const
 {
-    double dx[BLOCK], dy[BLOCK], dz[BLOCK], ratio[BLOCK], D[6*BLOCK];
     CV_DbgAssert(n <= BLOCK);
+    if (arrayKernels().areModerate(n, x, y, z))
+        return projectModerateJacobian(n, x, y, z, u, v, byPoint, byParameters, status);
+    const ModeratePoints p(n, x, y, z, NULL, hasNoLength(layers_));
+    projectModerateJacobian(n, p.x, p.y, p.z, u, v, byPoint, byParameters, status);
+    for (int row = 0; row < 2; row++)
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < n; i++)
+                byPoint.at(row, c)[i] *= p.factor[i];
+}
+
+void Camera::projectModerateJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                                     const Columns& byPoint, const Columns& byParameters, uchar* status) const
+{
+    double dx[BLOCK], dy[BLOCK], dz[BLOCK], ratio[BLOCK], D[6*BLOCK];
     const Columns byDirection = { D, 3, BLOCK };
     layers_.solveIn(n, x, y, z, NULL, dx, dy, dz, status, ratio);
     lens_->projectJacobian(n, dx, dy, dz, u, v, byDirection, byParameters, status);

@@ -24,6 +24,9 @@ public:
     //! Homogeneous camera-frame points (w null: 1; w = 0: infinitely far) -> pixels.
     void project(int n, const double* x, const double* y, const double* z, const double* w,
                  double* u, double* v, uchar* status) const;
+    //! The same of points none of which is extreme (moderate.hpp).
+    void projectModerate(int n, const double* x, const double* y, const double* z, const double* w,
+                         double* u, double* v, uchar* status) const;
 
     //! Pixels -> rays, at most a block.
     void unproject(int n, const double* u, const double* v, Rays& rays, uchar* status) const;
@@ -68,6 +71,9 @@ public:
     void setImageSize(Size size) CV_OVERRIDE;
 
 private:
+    void projectModerateJacobian(int n, const double* x, const double* y, const double* z, double* u, double* v,
+                                 const Columns& byPoint, const Columns& byParameters, uchar* status) const;
+
     Ptr<Lens> lens_;
     GlassWindow window_;
     Layers layers_;

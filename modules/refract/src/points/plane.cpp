@@ -4,6 +4,7 @@
 
 #include "points/plane.hpp"
 #include "arrays/arrays.hpp"
+#include "arrays/moderate.hpp"
 #include "math/missing.hpp"
 #include "points/point_kernels.hpp"
 
@@ -22,6 +23,14 @@ void checkPlane(const Vec4d& p, const char* name)
     if (!(length > 0) || !std::isfinite(length) || std::isnan(p[3]))
         CV_Error_(Error::StsBadArg, ("%s is (%g, %g, %g, %g); (a, b, c) must be finite and not zero",
                                      name, p[0], p[1], p[2], p[3]));
+}
+
+//! The same plane with numbers of which products do not leave the range of double; they are the given ones if those are such.
+static Vec4d moderatePlane(const Vec4d& p)
+{
+    const double largest = std::max(std::abs(p[0]), std::max(std::abs(p[1]), std::abs(p[2])));
+    const bool isModerate = largest <= MODERATE && largest >= 1/MODERATE;
+    return isModerate || !(largest > 0) || !std::isfinite(largest) ? p : p*std::scalbn(1., -std::ilogb(largest));
 }
 
 //! One lane of meetPlane: the answer, or why there is none. m is 1/s of the ray's point.
@@ -66,10 +75,11 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
 
     const Camera& cam = cameraOf(camera);
     const PointReader in(imagePoints, 2, "imagePoints");
-    checkPlane(plane, "plane");
     if (!std::isfinite(plane[3]))
         CV_Error_(Error::StsBadArg, ("plane[3] is %g; it must be finite", plane[3]));
-    const Vec3d abc(plane[0], plane[1], plane[2]);
+    const Vec4d moderate = moderatePlane(plane);
+    checkPlane(moderate, "plane");
+    const Vec3d abc(moderate[0], moderate[1], moderate[2]);
     PointWriter out(points3D, in.size(), 3, in.depth());
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)
@@ -78,7 +88,7 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         double u[BLOCK], v[BLOCK];
         double x[BLOCK], y[BLOCK], z[BLOCK], mu[BLOCK], planeD[BLOCK];
         uchar st[BLOCK];
-        std::fill(planeD, planeD + n, plane[3]);
+        std::fill(planeD, planeD + n, moderate[3]);
         in.load(begin, n, u, v, NULL, st);
         cam.unproject(n, u, v, rays, st);
         out.prepare(begin, n);
@@ -86,6 +96,8 @@ void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         for (int i = 0; i < n; i++)
         {
             x[i] /= mu[i]; y[i] /= mu[i]; z[i] /= mu[i];
+            if (st[i] == REFRACT_OK && !(std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i])))
+                st[i] = REFRACT_PARALLEL_RAYS;      // or so nearly that they meet beyond the largest number
         }
         out.store(begin, n, x, y, z, st);
         outStatus.store(begin, n, st);

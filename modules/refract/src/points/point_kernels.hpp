@@ -84,8 +84,8 @@ struct CurveMotion
 //! What the calls on points ask for, of blocks of them.
 struct PointKernels
 {
-    //! In place: X -> R X + t, R row-major.
-    void (*transform)(const double* R, const double* t, int n, double* x, double* y, double* z);
+    //! In place: X -> R X + t, R row-major; whether no point is extreme then (moderate.hpp).
+    bool (*transform)(const double* R, const double* t, int n, double* x, double* y, double* z);
     //! (x, y, z) = factor v
     void (*multiples)(const double* v, int n, const double* factor, double* x, double* y, double* z);
     //! X -> (x, y) = H X, dehomogenised; no answer unless axis.X > 0.

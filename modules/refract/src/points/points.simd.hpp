@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_POINTS_SIMD_HPP
 #define OPENCV_REFRACT_POINTS_SIMD_HPP
 
+#include "arrays/moderate.hpp"
 #include "points/point_kernels.hpp"
 #include "simd/vectors.hpp"
 
@@ -12,17 +13,23 @@
 
 namespace cv { namespace refract { namespace {
 
-void transform(const double* rotation, const double* translation, int n, double* x, double* y, double* z)
+bool transform(const double* rotation, const double* translation, int n, double* x, double* y, double* z)
 {
     const Constants<9> R(rotation);
     const Constants<3> t(translation);
+    Mask extreme = none();
     eachRegister(n, [&](auto at)
     {
         const Lanes a = load(x, at), b = load(y, at), c = load(z, at);
-        store(R[0]*a + R[1]*b + R[2]*c + t[0], x, at);
-        store(R[3]*a + R[4]*b + R[5]*c + t[1], y, at);
-        store(R[6]*a + R[7]*b + R[8]*c + t[2], z, at);
+        const Lanes X = R[0]*a + R[1]*b + R[2]*c + t[0];
+        const Lanes Y = R[3]*a + R[4]*b + R[5]*c + t[1];
+        const Lanes Z = R[6]*a + R[7]*b + R[8]*c + t[2];
+        store(X, x, at);
+        store(Y, y, at);
+        store(Z, z, at);
+        extreme |= isExtreme(X, Y, Z);
     });
+    return !any(extreme);
 }
 
 void multiples(const double* vector, int n, const double* factor, double* x, double* y, double* z)

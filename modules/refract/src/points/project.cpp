@@ -11,6 +11,38 @@
 
 namespace cv { namespace refract {
 
+const double EIGHTH = 0.125;
+
+/** Where R X + t is too large for a number, it is taken of an eighth of X and t, which is seen in the same pixel.
+@param x, y, z X
+@param X, Y, Z R X + t
+@return which points those are */
+static std::vector<int> takeEighths(const Matx33d& R, const Vec3d& t, int n, const double* x, const double* y, const double* z,
+                                    double* X, double* Y, double* Z)
+{
+    std::vector<int> tooLarge;
+    for (int i = 0; i < n; i++)
+    {
+        if (std::isfinite(X[i]) && std::isfinite(Y[i]) && std::isfinite(Z[i]))
+            continue;
+        const Vec3d moved = R*(EIGHTH*Vec3d(x[i], y[i], z[i])) + EIGHTH*t;
+        tooLarge.push_back(i);
+        X[i] = moved[0]; Y[i] = moved[1]; Z[i] = moved[2];
+    }
+    return tooLarge;
+}
+
+//! Object points some of which are extreme in the camera's frame (moderate.hpp).
+static void projectExtreme(const Camera& cam, const Matx33d& R, const Vec3d& t, int n, const double* x, const double* y, const double* z,
+                           double* u, double* v, uchar* status)
+{
+    double X[BLOCK], Y[BLOCK], Z[BLOCK];
+    std::copy(x, x + n, X); std::copy(y, y + n, Y); std::copy(z, z + n, Z);
+    pointKernels().transform(R.val, t.val, n, X, Y, Z);
+    takeEighths(R, t, n, x, y, z, X, Y, Z);
+    cam.project(n, X, Y, Z, NULL, u, v, status);
+}
+
 void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArray tvec,
                              const Ptr<RefractiveCamera>& camera, OutputArray imagePoints, OutputArray status)
 {
@@ -28,8 +60,13 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
         uchar st[BLOCK];
         in.load(begin, n, x, y, z, st);
         out.prepare(begin, n);
-        pointKernels().transform(R.val, t.val, n, x, y, z);
-        cam.project(n, x, y, z, NULL, u, v, st);
+        if (pointKernels().transform(R.val, t.val, n, x, y, z))
+            cam.projectModerate(n, x, y, z, NULL, u, v, st);
+        else
+        {
+            in.load(begin, n, x, y, z, st);
+            projectExtreme(cam, R, t, n, x, y, z, u, v, st);
+        }
         out.store(begin, n, u, v, NULL, st);
         outStatus.store(begin, n, st);
     });
@@ -90,10 +127,19 @@ void refractiveProjectPoints(InputArray objectPoints, InputArray rvec, InputArra
             const int n = std::min(SMALL, blockBegin + blockSize - begin);
             in.load(begin, n, x, y, z, st);
             std::copy(x, x + n, X); std::copy(y, y + n, Y); std::copy(z, z + n, Z);
-            pointKernels().transform(R.val, t.val, n, X, Y, Z);
+            std::vector<int> tooLarge;
+            if (!pointKernels().transform(R.val, t.val, n, X, Y, Z))
+                tooLarge = takeEighths(R, t, n, x, y, z, X, Y, Z);
             cam.projectJacobian(n, X, Y, Z, u, v, byPoint, columns.from(6), st);
+            for (int i : tooLarge)
+            {
+                x[i] *= EIGHTH; y[i] *= EIGHTH; z[i] *= EIGHTH;
+            }
             for (int k = 0; k < 3; k++)
                 pointKernels().chainLinear(dR[k].val, n, x, y, z, byPoint, columns.from(k));
+            for (int i : tooLarge)
+                for (int c = 0; c < 6; c++)
+                    byPoint.at(c/3, c % 3)[i] *= EIGHTH;
             if (!J.empty())
                 storeRows(columns, n, st, begin, J);
             out.store(begin, n, u, v, NULL, st);

@@ -94,11 +94,11 @@ inline void stepTowards(const Dome& dome, DomeSearch& search)
     }
     const Lanes bx = search.length - search.weight*search.along, by = -search.weight*search.across;
     const Lanes moment = search.weight*(1/dome.outer);
-    const Lanes miss = bx*dy - by*dx - moment*l, byAngle = (bx*dx + by*dy)*(1 + slope*dl) - moment*dl;
+    const Lanes ahead = bx*dx + by*dy, miss = bx*dy - by*dx - moment*l, byAngle = ahead*(1 + slope*dl) - moment*dl;
     search.step = -miss*roughInverse(byAngle);
     search.c = c - search.step*s;
     search.s = s + search.step*c;
-    search.good = byAngle > 0;
+    search.good = (byAngle > 0) & (ahead > 0);
 }
 
 bool solveInDome(const Dome& given, int n, const double* px, const double* py, const double* pz, const double* pw,
@@ -207,6 +207,27 @@ inline void followBack(const Dome& dome, const Columns& byWindow, At at, RaysBes
     put(column.normal + 2, byCenter[0].z, byCenter[1].z);
 }
 
+/** Rays from X, or where X is far compared with the dome from where they leave it: the way back from X would be a difference of large
+numbers. @param L of the ray */
+inline RaysBeside raysFrom(const Dome& dome, const Vector& X, const Vector& p, const Vector& L)
+{
+    const double FAR2 = 1e8, *S = dome.center, radius2 = square(dome.faces[dome.count - 1].radius), inverse2 = 1/square(dome.outer);
+    RaysBeside rays;
+    beginAt(X, p, dome.outer, rays);
+    const Vector b = { X.x - S[0], X.y - S[1], X.z - S[2] };
+    const Mask isFar = dot(b, b) > FAR2*radius2;
+    if (!any(isFar))
+        return rays;
+    const Vector foot = cross(p, L);        // times outer^2, of the line outside, from S
+    const Lanes ahead = sqrt(radius2 - dot(foot, foot)*(inverse2*inverse2))*(1/dome.outer);
+    const Vector r = plus({ foot.x*inverse2, foot.y*inverse2, foot.z*inverse2 }, ahead, p), P = plus(r, all(1), S);
+    const Lanes s = select(isFar, dot(p, plus(b, all(-1), r))*inverse2, all(0));
+    rays.Q = { select(isFar, P.x, X.x), select(isFar, P.y, X.y), select(isFar, P.z, X.z) };
+    for (int j = 0; j < 2; j++)
+        rays.dQ[j] = { -s*rays.dp[j].x, -s*rays.dp[j].y, -s*rays.dp[j].z };
+    return rays;
+}
+
 //! Rows D by the direction -> by the point and by the dome; two rows at least.
 void chainDome(const Dome& dome, int rows, int n, const double* px, const double* py, const double* pz,
                const double* pdx, const double* pdy, const double* pdz, const Columns& byDirection, const Columns& byPoint,
@@ -221,9 +242,8 @@ void chainDome(const Dome& dome, int rows, int n, const double* px, const double
         const Vector L = cross(p, { all(S[0]), all(S[1]), all(S[2]) }), across = cross(L, p);
         const Turning turn = turnBy(dome, dot(L, L));
         const Lanes c = turn.cosine*out*(1/dome.inner), s = turn.sine*out*(1/dome.inner);
-        RaysBeside rays;
-        beginAt({ load(px, at), load(py, at), load(pz, at) }, { c*p.x + s*across.x, c*p.y + s*across.y, c*p.z + s*across.z },
-                dome.outer, rays);
+        RaysBeside rays = raysFrom(dome, { load(px, at), load(py, at), load(pz, at) },
+                                   { c*p.x + s*across.x, c*p.y + s*across.y, c*p.z + s*across.z }, L);
         const Vector atPoint[2] = { rays.dp[0], rays.dp[1] };
         Vector dO[2];
         followBack(dome, byWindow, at, rays, dO);
