@@ -14,6 +14,7 @@ below what the noise does. */
 #include "adjust/minimize.hpp"
 #include "adjust/inner.hpp"
 #include "adjust/reduced_cost.hpp"
+#include "adjust/silence.hpp"
 #include "math/dense.hpp"
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -51,7 +52,10 @@ void TrustRegion::solve(ceres::Problem& problem)
     options.max_num_line_search_step_size_iterations = 3;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    {
+        const Silence silence;
+        ceres::Solve(options, &problem, &summary);
+    }
     iterations = std::max(1, (int)summary.iterations.size() - 1);
     const double COLLAPSED = 1e-20;                     // Ceres takes no start below 1e-32
     const bool isUsable = summary.IsSolutionUsable() && !summary.iterations.empty();
