@@ -270,6 +270,35 @@ TEST_CASE("Poses are as good as is stated, noise and an inexact camera included"
     CHECK(C.empty());
 }
 
+TEST_CASE("What is not wanted is left out, also a covariance", "[pnp]")
+{
+    Random random(255);
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::create(PLAIN_K, noArray(), paper::pane());
+    const std::vector<Point3d> object = board();
+    const Vec3d rvec(0.2, -0.1, 0.3), tvec(-60, -40, 600);
+    const std::vector<Point2d> pixels = seen(object, rvec, tvec, camera, random, 0.1);
+    Mat r, t, C, plain, error;
+    std::vector<Mat> rs, ts;
+    CHECK(refractiveSolvePnP(object, pixels, camera, plain, t));
+    CHECK(refractiveSolvePnP(object, pixels, camera, r, t, false, noArray(), noArray(), 0.1));
+    CHECK(norm(r, plain) == 0);
+    CHECK(refractiveSolvePnPGeneric(object, pixels, camera, rs, ts, false, noArray(), noArray(), noArray(), noArray(), 0.1) >= 1);
+    CHECK(norm(rs[0], plain) == 0);
+    CHECK(refractiveSolvePnPRansac(object, pixels, camera, r, t, false, 100, 8.f, 0.99, noArray(), noArray(), 0.1));
+    CHECK(norm(r, plain) < 1e-3);
+
+    const Matx33d R = Matx33d::eye();
+    std::vector<Point3d> cloud;
+    for (int i = 0; i < 40; i++)
+        cloud.push_back(Point3d(random.uniform(-150, 150), random.uniform(-120, 120), random.uniform(600, 900)));
+    const std::vector<Point2d> first = seen(cloud, Vec3d(), Vec3d(), camera, random, 0.1);
+    const std::vector<Point2d> second = seen(cloud, Vec3d(0, 0.1, 0), Vec3d(-80, 3, 5), camera, random, 0.1);
+    Mat R2, T2;
+    Vec2d interval;
+    CHECK(refractiveRecoverPose(first, second, camera, camera->clone(), R2, T2, 0.999, 1., noArray(), noArray(), interval) > 30);
+    CHECK(norm(R2, R) < 0.2);
+}
+
 TEST_CASE("Three points: all poses; a fourth tells the right one", "[pnp]")
 {
     Random random(260);

@@ -274,7 +274,8 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
     const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
     const MsacScorer scorer(seenBy, points, reprojectionError);
     const Consensus consensus = scorer.consensus(transformOf(readPose(rvec, tvec)));
-    Mat(poseCovariance(seenBy, select(points, withoutOutliers(consensus)), poseOf(consensus.motion), noise)).copyTo(covariance);
+    if (covariance.needed())
+        Mat(poseCovariance(seenBy, select(points, withoutOutliers(consensus)), poseOf(consensus.motion), noise)).copyTo(covariance);
     return true;
 }
 

@@ -605,7 +605,8 @@ int refractiveRecoverPose(InputArray points1, InputArray points2, const Ptr<Refr
     Estimate e;
     const int count = recoverPose(points1, points2, camera1, camera2, R, T, prob, threshold, mask, cameraCovariances, e);
     scaleInterval = count > 0 ? e.interval : Vec2d(NaN, NaN);
-    Mat(count > 0 ? e.covariance : Matx66d::all(NaN)).copyTo(covariance);
+    if (covariance.needed())
+        Mat(count > 0 ? e.covariance : Matx66d::all(NaN)).copyTo(covariance);
     return count;
 }
 

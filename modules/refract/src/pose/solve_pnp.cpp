@@ -69,6 +69,8 @@ static ImagePoints readPoints(InputArray objectPoints, InputArray imagePoints, b
 static void writeCovariances(const Camera& camera, const ImagePoints& points, const std::vector<PoseMinimum>& minima,
                              const PoseNoise& noise, OutputArrayOfArrays covariances)
 {
+    if (!covariances.needed())
+        return;
     std::vector<Mat> all;
     for (const PoseMinimum& minimum : minima)
         all.push_back(Mat(poseCovariance(camera, points, minimum.pose, noise), true));
@@ -156,7 +158,8 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
         return false;
     }
     const PoseNoise scaled = { noise.sigma*std::sqrt(variance), noise.camera };     // of the median pixel
-    Mat(poseCovariance(seenBy, points, readPose(rvec, tvec), scaled)).copyTo(covariance);
+    if (covariance.needed())
+        Mat(poseCovariance(seenBy, points, readPose(rvec, tvec), scaled)).copyTo(covariance);
     return true;
 }
 
