@@ -1370,7 +1370,7 @@ targets.
 empty as a whole.
 @param imagePointsRefracted per camera, per view: the points seen through the window. One coordinate NaN: half a pixel (here
 and in imagePointsDirect). Both NaN: the point was not seen. An empty array: there is no image. An empty list: the camera has
-none.
+none. A view of which no camera has an image counts for nothing; its pose becomes NaN.
 @param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
 @param windowOfCamera per camera: the index of its window. Cameras with equal numbers share one window; empty: each camera has
 its own. The initial value of a shared window is that of its first camera; for the others it follows from R and T.

@@ -192,7 +192,8 @@ void toNearestCenters(Rig& rig, RigFit& fit)
     }
 }
 
-FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
+//! Of a task all of whose views have points.
+static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
 {
     const TermCriteria criteria = checkedCriteria(given.criteria);
     RigTask task = given;
@@ -234,6 +235,65 @@ FitOutcome fitRig(Rig& rig, const RigTask& given, RigFit& fit)
     rig = problem.rig();
     toNearestCenters(rig, fit);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
+    return outcome;
+}
+
+RigTask onlySeen(const RigTask& task, std::vector<int>& seen)
+{
+    seen.clear();
+    for (int view = 0; view < task.views.count(); view++)
+        if (hasPoints(task.views, view))
+            seen.push_back(view);
+    if ((int)seen.size() == task.views.count())
+        return task;
+    RigTask some = task;
+    some.views = pick(task.views, seen);
+    some.knownPoses.clear();
+    some.posePriors.clear();
+    for (int view : seen)
+    {
+        if (!task.knownPoses.empty())
+            some.knownPoses.push_back(task.knownPoses[view]);
+        if (!task.posePriors.empty())
+            some.posePriors.push_back(task.posePriors[view]);
+    }
+    return some;
+}
+
+//! As if the other views had been there, without an image.
+static void spread(const std::vector<int>& seen, int count, RigFit& fit)
+{
+    const RigFit some = fit;
+    const int columns = some.perViewErrors.cols, first = some.jacobian.cols - 6*(int)seen.size();
+    fit.poses.assign(count, Pose());
+    fit.perViewErrors = Mat(count, columns, CV_64F, Scalar(NaN));
+    fit.imageStatus = Mat(count, columns, CV_8U, Scalar(GLASS_IMAGE_ABSENT));
+    fit.inliers.assign(count*columns, Mat());
+    if (!some.jacobian.empty())
+    {
+        fit.jacobian = Mat::zeros(some.jacobian.rows, first + 6*count, CV_64F);
+        some.jacobian.colRange(0, first).copyTo(fit.jacobian.colRange(0, first));
+    }
+    for (int i = 0; i < (int)seen.size(); i++)
+    {
+        const int view = seen[i];
+        fit.poses[view] = some.poses[i];
+        some.perViewErrors.row(i).copyTo(fit.perViewErrors.row(view));
+        some.imageStatus.row(i).copyTo(fit.imageStatus.row(view));
+        std::copy_n(some.inliers.begin() + i*columns, columns, fit.inliers.begin() + view*columns);
+        if (!some.jacobian.empty())
+            some.jacobian.colRange(first + 6*i, first + 6*i + 6).copyTo(fit.jacobian.colRange(first + 6*view, first + 6*view + 6));
+    }
+}
+
+FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit)
+{
+    std::vector<int> seen;
+    FitOutcome outcome = fitSeen(rig, onlySeen(task, seen), fit);
+    if (outcome.view >= 0)
+        outcome.view = seen[outcome.view];
+    if (outcome.converged() && (int)seen.size() < task.views.count())
+        spread(seen, task.views.count(), fit);
     return outcome;
 }
 

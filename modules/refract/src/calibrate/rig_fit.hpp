@@ -13,7 +13,7 @@ namespace cv { namespace refract {
 //! What the joint fit finds beside the cameras.
 struct RigFit
 {
-    std::vector<Pose> poses;        //!< object -> camera 1; NaN where a view has no point left
+    std::vector<Pose> poses;        //!< object -> camera 1; not found where a view has no point, or none left
     double rms;
     Mat covariance, stdDeviations;  //!< of the public parameters
     Mat perViewErrors;              //!< columns: direct, refracted of each camera
@@ -26,6 +26,9 @@ struct RigFit
 
 //! Both limits in force: what the caller left open is generous.
 TermCriteria checkedCriteria(TermCriteria criteria);
+
+//! The task without views that no image shows, of which nothing is known. seen: the others.
+RigTask onlySeen(const RigTask& task, std::vector<int>& seen);
 
 //! Starts of windows and poses. Robust: images without a pose are taken out of the task. minima: the second best of each window.
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima);

@@ -312,8 +312,12 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     const bool placesFollow = task.isIncremental() && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
-    LensSelection selection(rig, task, (flags & GLASS_ROBUST) != 0);
-    throwUnlessConverged(selection.run(), FitKind::CALIBRATION);
+    std::vector<int> seen;
+    LensSelection selection(rig, onlySeen(task, seen), (flags & GLASS_ROBUST) != 0);
+    FitOutcome outcome = selection.run();
+    if (outcome.view >= 0)
+        outcome.view = seen[outcome.view];
+    throwUnlessConverged(outcome, FitKind::CALIBRATION);
     const Candidate& chosen = selection.candidates()[selection.chosen()];
     setCameras(chosen.fitted.rig, cameras);
     writeMat(scoresOf(selection.candidates()), scores);

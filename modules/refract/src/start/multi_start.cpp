@@ -22,16 +22,6 @@ RigViews someViews(const RigViews& views, int atMost)
     return pick(views, some);
 }
 
-//! Whether every view of which something was seen has a pose.
-bool isPlaced(const RigViews& views, const std::vector<Pose>& poses)
-{
-    for (int view = 0; view < views.count(); view++)
-        for (const CameraViews& camera : views.cameras)
-            if (!poses[view].found && countSeen(camera.direct[view]) + countSeen(camera.refracted[view]) > 0)
-                return false;
-    return true;
-}
-
 Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     Minimum minimum;
@@ -43,7 +33,7 @@ Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria
         minimum.poses.assign(views.count(), Pose());
         addPosesThroughWindow(start.rig, views, minimum.poses);
     }
-    if (!isPlaced(views, minimum.poses))
+    if (!checkPoses(views, minimum.poses).converged())
         return minimum;
     Problem problem(start.rig, views, minimum.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
     const FitOutcome outcome = minimize(problem, criteria);

@@ -94,12 +94,18 @@ double meanRange(const std::vector<Pose>& poses)
     return sum/count;
 }
 
+bool hasPoints(const RigViews& views, int view)
+{
+    return std::any_of(views.cameras.begin(), views.cameras.end(), [=](const CameraViews& camera)
+                       { return countSeen(camera.direct[view]) + countSeen(camera.refracted[view]) > 0; });
+}
+
 FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses)
 {
     FitOutcome outcome;
     for (int view = 0; view < views.count() && outcome.converged(); view++)
     {
-        if (poses[view].found)
+        if (poses[view].found || !hasPoints(views, view))
             continue;
         outcome.status = FitOutcome::NO_POSE;
         outcome.view = view;

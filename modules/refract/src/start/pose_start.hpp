@@ -29,6 +29,9 @@ void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<P
 //! Mean distance of the targets; NaN if no pose was found.
 double meanRange(const std::vector<Pose>& poses);
 
+//! Some image of the view has a point.
+bool hasPoints(const RigViews& views, int view);
+
 //! NO_POSE if a view that has points has none.
 FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses);
 

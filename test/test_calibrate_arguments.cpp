@@ -1,0 +1,115 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Arguments of the calibrators that say little: views without an image, cameras without a window, flags that do not concern them.
+#include "bundle_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Catch::Matchers::Contains;
+
+namespace {
+
+//! The same with a view of nothing before one of them.
+template<typename T>
+void insertEmpty(std::vector<T>& of, int at) { of.insert(of.begin() + at, T()); }
+
+} // namespace
+
+TEST_CASE("A view without an image is as if it were not there", "[calibrate_arguments]")
+{
+    CAPTURE(seed());
+    Random random(3500);
+    const int EMPTY = 2;
+    for (bool isPaired : { true, false })
+        for (int flags : { 0, (int)GLASS_ROBUST })
+        {
+            CAPTURE(isPaired, flags);
+            const RigTruth truth = makeRig(2, { 0, 1 }, isPaired ? 1. : 1.333);
+            const RigScene scene = makeRigScene(truth, 6, random, 0.1);
+            RigCall without(truth, scene, isPaired), with(truth, scene, isPaired);
+            with.object.insert(with.object.begin() + EMPTY, board());
+            for (int c = 0; c < 2; c++)
+            {
+                insertEmpty(with.refracted[c], EMPTY);
+                if (isPaired)
+                    insertEmpty(with.direct[c], EMPTY);
+            }
+            // Not taken, or nothing of it seen.
+            with.refracted[1][EMPTY] = Mat((int)board().size(), 1, CV_64FC2, Scalar::all(NaN));
+            const double rms = without.run(flags | GLASS_FREE_EXTRINSICS);
+            CHECK(with.run(flags | GLASS_FREE_EXTRINSICS) == rms);
+            CHECK(largestDifference(with.covariance, without.covariance) == 0);
+            for (int c = 0; c < 2; c++)
+                CHECK(with.cameras[c]->window().normal == without.cameras[c]->window().normal);
+            CHECK(with.rvecs.size() == 7);
+            CHECK(std::isnan(with.rvecs[EMPTY].at<double>(0)));
+            CHECK(norm(with.tvecs[EMPTY + 1], without.tvecs[EMPTY]) == 0);
+            CHECK(with.perViewErrors.rows == 7);
+            CHECK(countNonZero(with.imageStatus.row(EMPTY) != GLASS_IMAGE_ABSENT) == 0);
+            CHECK(with.inliers.size() == 7*4);
+            CHECK(with.inliers[4*EMPTY + 1].empty());
+            CHECK(norm(with.inliers[4*(EMPTY + 1) + 1], without.inliers[4*EMPTY + 1]) == 0);
+            CHECK(with.perViewErrors.at<double>(EMPTY + 1, 1) == without.perViewErrors.at<double>(EMPTY, 1));
+
+            // Of one camera, with the derivatives; and what is wrong with another view has its number.
+            std::vector<Mat> rvecs, tvecs;
+            Mat deviations, covariance, errors, jacobian, fewer;
+            const std::vector<Mat> none;
+            RigCall again(truth, scene, isPaired);
+            calibrateGlass(with.object, isPaired ? with.direct[0] : none, with.refracted[0], again.cameras[0], rvecs, tvecs, deviations,
+                           covariance, errors, jacobian, flags);
+            RigCall last(truth, scene, isPaired);
+            calibrateGlass(without.object, isPaired ? without.direct[0] : none, without.refracted[0], last.cameras[0], rvecs, tvecs,
+                           deviations, covariance, errors, fewer, flags);
+            REQUIRE(jacobian.cols == fewer.cols + 6);
+            const int first = (int)again.cameras[0]->parameterNames().size();
+            CHECK(norm(jacobian.colRange(first + 6*EMPTY, first + 6*EMPTY + 6)) == 0);
+            CHECK(norm(jacobian.colRange(0, first + 6*EMPTY), fewer.colRange(0, first + 6*EMPTY)) == 0);
+            CHECK(norm(jacobian.colRange(first + 6*EMPTY + 6, jacobian.cols), fewer.colRange(first + 6*EMPTY, fewer.cols)) == 0);
+            if (flags != 0)
+                continue;
+            RigCall few(truth, scene, isPaired);
+            few.object.insert(few.object.begin() + EMPTY, board());
+            for (int c = 0; c < 2; c++)
+            {
+                insertEmpty(few.refracted[c], EMPTY);
+                if (isPaired)
+                    insertEmpty(few.direct[c], EMPTY);
+                for (int i = 3; i < few.refracted[c][4].rows; i++)
+                    few.refracted[c][4].at<Point2d>(i) = Point2d(NaN, NaN);
+                if (isPaired)
+                    few.direct[c][4] = Mat();
+            }
+            try
+            {
+                few.run(0);
+                CHECK(false);
+            }
+            catch (const CalibrationError& e)
+            {
+                CHECK(e.cause == CalibrationError::NO_POSE);
+                CHECK(e.view == 4);
+                CHECK_THAT(e.err, Contains("view 4"));
+            }
+        }
+}
+
+TEST_CASE("A view without an image counts for nothing in a bundle, too", "[calibrate_arguments][bundle]")
+{
+    CAPTURE(seed());
+    Random random(3510);
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
+    const BundleScene scene = makeMovingScene(truth, 4, 40, random, 0.1);
+    Random start1(3511), start2(3511);
+    BundleCall without(truth, scene, start1, 0.3), with(truth, scene, start2, 0.3);
+    for (int c = 0; c < 2; c++)
+        insertEmpty(with.images[c], 2);
+    with.rvecs.insert(with.rvecs.begin() + 2, Mat::zeros(3, 1, CV_64F));
+    with.tvecs.insert(with.tvecs.begin() + 2, Mat(Vec3d(0, 0, 600), true));
+    const double rms = without.run(0);
+    CHECK(with.run(0) == Approx(rms).epsilon(1e-9));
+    CHECK(norm(with.cameras[0]->window().normal - without.cameras[0]->window().normal) < 1e-9);
+    CHECK(std::isnan(with.perViewErrors.at<double>(2, 0)));
+}
