@@ -113,3 +113,23 @@ TEST_CASE("A view without an image counts for nothing in a bundle, too", "[calib
     CHECK(norm(with.cameras[0]->window().normal - without.cameras[0]->window().normal) < 1e-9);
     CHECK(std::isnan(with.perViewErrors.at<double>(2, 0)));
 }
+
+TEST_CASE("What flags free of windows a camera without one does not get", "[calibrate_arguments]")
+{
+    CAPTURE(seed());
+    Random random(3520);
+    RigTruth truth = makeRig(2, { 0, 1 }, 1.);
+    const RigScene scene = makeRigScene(truth, 5, random, 0.1);
+    for (int flags : { (int)GLASS_FREE_CURVATURE, (int)GLASS_FREE_WEDGE })
+    {
+        RigCall call(truth, scene, true);
+        call.cameras[1]->setWindow(GlassWindow());
+        call.refracted[1].assign(scene.object.size(), Mat());
+        const size_t count = call.cameras[1]->parameterNames().size();
+        call.run(flags);
+        CHECK(call.cameras[1]->window().shape == WINDOW_FLAT);
+        CHECK(call.cameras[1]->window().wedge.empty());
+        CHECK(call.cameras[1]->parameterNames().size() == count);
+        CHECK(call.cameras[0]->parameterNames().size() > count + 2);
+    }
+}

@@ -62,6 +62,8 @@ void addParameters(std::vector<Camera>& cameras, int flags)
 {
     for (Camera& camera : cameras)
     {
+        if (!camera.refracts())         // no window, nothing to free
+            continue;
         GlassWindow window = camera.window();
         const bool hasFaces = !hasCenter(window.shape);
         const bool addsWedge = (flags & GLASS_FREE_WEDGE) && window.wedge.empty(), addsBow = flags & GLASS_FREE_CURVATURE;
