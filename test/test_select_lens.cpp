@@ -245,6 +245,59 @@ TEST_CASE("With GLASS_ROBUST wrong points do not decide on the lens", "[select_l
     CHECK(camera->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.01));
 }
 
+TEST_CASE("With GLASS_ROBUST the richest lens tells outliers, whatever flags leave of the others", "[select_lens]")
+{
+    Random random(55);
+    Images images = imagesOf(LENSES[1].camera(), 15, random);
+    for (Mat& pixels : images.pixels)
+        for (int i = 0; i < pixels.rows; i += 23)
+            pixels.at<Point2d>(i) += Point2d(random.uniform(3, 6), -random.uniform(3, 6));
+    for (int flags : { 0, (int)GLASS_FIX_TANGENT_DIST, (int)GLASS_FIX_TANGENT_DIST | (int)GLASS_FIX_K3 })
+    {
+        // Four coefficients at most, of which flags leave k1 and k2: the first candidate to be fitted is the richest.
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(LENSES[1].start()->cameraMatrix(), Vec4d());
+        Mat_<double> scores;
+        const int chosen = selectLensCoefficients(images.object, { images.pixels }, {}, { camera }, {}, noArray(), noArray(),
+                                                  flags | GLASS_ROBUST, scores);
+        CAPTURE(flags, scores);
+        checkCount(scores, chosen, 2);
+        CHECK(scores(2, 2) < 2*SIGMA);
+        CHECK(camera->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.01));
+    }
+}
+
+TEST_CASE("selectLensCoefficients chooses lenses, and leaves windows and views of nothing alone", "[select_lens]")
+{
+    CAPTURE(seed());
+    Random random(57);
+    const GlassWindow truth(Vec3d(0.2, -0.1, 1), 20, 1.5437, 50, 1.333), given(Vec3d(0, 0, 1), 20, 1.5437, 80, 1.333);
+    const Images images = imagesOf(LENSES[1].camera(truth), 16, random);
+    const auto select = [&](const GlassWindow& window, const Images& seen, int flags, Mat& scores)
+    {
+        const Ptr<RefractiveCamera> camera = LENSES[1].start(window);
+        selectLensCoefficients(seen.object, {}, { seen.pixels }, { camera }, {}, noArray(), noArray(), flags, scores);
+        return camera;
+    };
+    Mat scores, same;
+    const Ptr<RefractiveCamera> camera = select(given, images, GLASS_FREE_DISTANCE, scores);
+    CHECK(camera->window().normal == given.normal);
+    CHECK(camera->window().distance == given.distance);
+    CHECK(camera->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.02));
+
+    Images more = images;
+    more.object.insert(more.object.begin() + 3, more.object[0]);
+    more.pixels.insert(more.pixels.begin() + 3, Mat());
+    const Ptr<RefractiveCamera> other = select(given, more, GLASS_FREE_DISTANCE, same);
+    REQUIRE(scores.rows == same.rows);
+    for (int i = 0; i < scores.rows; i++)       // NaN: not fitted
+        CHECK(format("%.17g", scores.at<double>(i, 2)) == format("%.17g", same.at<double>(i, 2)));
+    CHECK(norm(camera->lensParameters(), other->lensParameters()) == 0);
+
+    // As calibrateGlassRig: a window that is where it is.
+    const Ptr<RefractiveCamera> fixed = select(truth, images, GLASS_FIX_NORMAL, scores);
+    CHECK(fixed->distCoeffs().at<double>(0) == Approx(-0.28).margin(0.02));
+}
+
 TEST_CASE("selectLensCoefficients says what is missing, and leaves the cameras as they were", "[select_lens]")
 {
     Random random(60);

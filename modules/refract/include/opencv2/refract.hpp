@@ -1500,12 +1500,13 @@ view seen by one camera. Then no window is fitted. Otherwise give the images thr
 @param imagePointsDirect as calibrateGlassRig.
 @param imagePointsRefracted as calibrateGlassRig, or empty as a whole.
 @param cameras initial value: lenses with as many coefficients as there may be (usually 8; of a fisheye lens 4), and windows.
-Result: the lens that is chosen; its other coefficients are 0.
+Result: the lens that is chosen; its other coefficients are 0. The windows stay as they are.
 @param windowOfCamera as calibrateGlassRig.
 @param Rs as calibrateGlassRig, initial value; may be empty as there.
 @param Ts as Rs.
-@param flags as calibrateGlassRig; GLASS_FREE_INTRINSICS is always set. With GLASS_ROBUST points are left out that are more
-than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge are not used.
+@param flags as calibrateGlassRig, without GLASS_USE_POSES; GLASS_FREE_INTRINSICS is always set. With GLASS_ROBUST points are
+left out that are more than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge are
+not used.
 @param scores Nx4 CV_64F, one row per candidate: its flags (GLASS_FIX_...), its number of coefficients, its held-out RMS error
 in pixels, and the standard error of the difference of this error from the best; NaN: it did not converge.
 @return the flags (GLASS_FIX_...) of the chosen candidate, to be added to those of the calibration. Throws as calibrateGlassRig

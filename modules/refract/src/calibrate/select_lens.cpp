@@ -39,6 +39,7 @@ struct Candidate
     bool isFitted;
     RigStart fitted;
     std::vector<HeldOutPart> parts;
+    std::vector<std::vector<double> > errors;   //!< of each image's points
     double squares;                     //!< of all parts
     double excess, excessSigma;         //!< over the best one's
 };
@@ -61,7 +62,7 @@ std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
     {
         const int count = countFreeCoefficients(rig, flags | fixed);
         if (candidates.empty() || count > candidates.back().coefficients)
-            candidates.push_back({ fixed, count, false, RigStart(), std::vector<HeldOutPart>(), 0, 0, 0 });
+            candidates.push_back({ fixed, count, false, RigStart(), {}, {}, 0, 0, 0 });
     }
     return candidates;
 }
@@ -204,24 +205,26 @@ private:
         for (const HeldOutPart& part : candidate.parts)
             candidate.squares += part.squares;
         candidate.isFitted = std::isfinite(candidate.squares);
-        errors_.clear();
+        candidate.errors.clear();
         for (const Image& image : problem.images())
-            errors_.push_back(problem.pixelErrors(image));
+            candidate.errors.push_back(problem.pixelErrors(image));
         return outcome;
     }
 
-    //! Of the richest lens that was fitted, which is the last of all fits that has errors. False: there are no more.
+    //! Of the richest lens that was fitted. False: there are no more.
     bool leaveOutliersOut()
     {
+        const auto richest = std::find_if(candidates_.rbegin(), candidates_.rend(), [](const Candidate& c) { return c.isFitted; });
+        const std::vector<std::vector<double> >& errors = richest->errors;
         std::vector<double> all;
-        for (const std::vector<double>& image : errors_)
+        for (const std::vector<double>& image : errors)
             for (double error : image)
                 if (std::isfinite(error))
                     all.push_back(error);
         std::nth_element(all.begin(), all.begin() + all.size()/2, all.end());
         const double median = all[all.size()/2], sigma = median/std::sqrt(2*std::log(2.));
         std::vector<std::vector<double> > weights;
-        for (const std::vector<double>& image : errors_)
+        for (const std::vector<double>& image : errors)
         {
             weights.push_back(std::vector<double>());
             for (double error : image)
@@ -259,7 +262,7 @@ private:
     RigTask task_;
     const bool isRobust_;
     std::vector<Candidate> candidates_;
-    std::vector<std::vector<double> > weights_, errors_;
+    std::vector<std::vector<double> > weights_;
 };
 
 Mat scoresOf(const std::vector<Candidate>& candidates)
@@ -290,7 +293,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS);
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL);
     const int count = (int)cameras.size();
     std::vector<String> names, refractedNames;
     for (int c = 0; c < count; c++)
@@ -319,7 +322,8 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
         outcome.view = seen[outcome.view];
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
     const Candidate& chosen = selection.candidates()[selection.chosen()];
-    setCameras(chosen.fitted.rig, cameras);
+    for (int c = 0; c < count; c++)         // the windows stay as they were given
+        cameraOf(cameras[c]).setLensParameters(chosen.fitted.rig.cameras[c].lensParameters());
     writeMat(scoresOf(selection.candidates()), scores);
     return chosen.flags;
 }
