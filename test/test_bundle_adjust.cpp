@@ -479,13 +479,15 @@ TEST_CASE("What is no covariance of the rig is refused by name", "[bundle][prior
     using Catch::Contains;
     CHECK_THAT(fault(Mat::eye(P + 1, P + 1, CV_64F), 0), Contains("it must be 38x38"));
     Mat bad = Mat::eye(P, P, CV_64F);
-    bad.at<double>(3, 3) = NaN;
-    CHECK_THAT(fault(bad, 0), Contains("rigCovariance has numbers that are not finite"));
+    bad.at<double>(3, 3) = INF;
+    CHECK_THAT(fault(bad, 0), Contains("rigCovariance has inf in row 3, column 3"));
     bad.at<double>(3, 3) = -1;
     CHECK_THAT(fault(bad, 0), Contains("the variance -1 in row 3"));
     bad.at<double>(3, 3) = 1;
     bad.at<double>(3, 4) = bad.at<double>(4, 3) = 2;
-    CHECK_THAT(fault(bad, 0), Contains("rigCovariance is no covariance"));
+    CHECK_THAT(fault(bad, 0), Contains("rigCovariance is not positive semidefinite"));
+    bad.at<double>(4, 3) = 0.5;
+    CHECK_THAT(fault(bad, 0), Contains("rigCovariance is not symmetric: it has 2 in row 3, column 4, but 0.5 in row 4, column 3"));
     CHECK_THAT(fault(Mat(), -1), Contains("lengthScaleStd is -1"));
     Random start(26);
     BundleCall both(truth, scene, start, 0.5);

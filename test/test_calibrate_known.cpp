@@ -97,7 +97,7 @@ TEST_CASE("A covariance of the wrong size or sign is refused by name", "[known]"
     CHECK_THROWS_WITH(k.call(0, -ofFocalLengths(1), 0), Catch::Contains("negative"));
     Mat indefinite = ofFocalLengths(1);
     indefinite.at<double>(0, 1) = indefinite.at<double>(1, 0) = 2;
-    CHECK_THROWS_WITH(k.call(0, indefinite, 0), Catch::Contains("not positive definite"));
+    CHECK_THROWS_WITH(k.call(0, indefinite, 0), Catch::Contains("cameraCovariances[0] is not positive semidefinite"));
 }
 
 TEST_CASE("A thickness known with a tolerance is estimated within it", "[known]")

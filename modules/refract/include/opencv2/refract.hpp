@@ -52,6 +52,12 @@ without a window.
   is an argument, or estimated), so that 1, 0, 1 is a usual pixel. N x 4 or Nx1 with 4 channels (2x2 row by row; NumPy: N x 2 x
   2), or N x 3 or Nx1 with 3 channels (uu, uv, vv); float32 or float64. Of a half pixel only the variance of the known
   coordinate is read; of one that was not seen, nothing. Empty: all pixels are usual ones.
+- **Covariances of what is known** (`cameraCovariances`, `rigCovariance`, `poseCovariances`, `targetCovariance`; those that are
+  propagated, `calibrationCovariance` and `cameraCovariance`, too) obey one rule. They are symmetric and positive semidefinite,
+  except for the rounding of printed numbers, and are refused with their name and numbers otherwise. They may be singular: then
+  a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
+  rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
+  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too.
 
 ### The model
 
@@ -1393,17 +1399,17 @@ If the root is below about 3, the data do not distinguish both minima: add a pai
 found. The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and
 radius.
 @param flags see GlassCalibrationFlags.
-@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is
-exact; noArray(): all are exact.
+@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one
+for a pose that is exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop.
-@param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance of its
-L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A parameter with a variance is
-estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0 is exact, with any flags. With
-NaN the flags decide, also for window parameters without a variance. Rows of a normal are not used; those of a
-center, and of a tube's axis, are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the camera's
-parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with this
-prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a straight
-sheet of light the images determine the plane, three of the six.
+@param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance (see
+the conventions) of its L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A
+parameter with a variance is estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0
+is exact, with any flags. With NaN the flags decide, also for window parameters without a variance. Rows of a normal are not
+used; those of a center, and of a tube's axis, are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the
+camera's parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with
+this prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a
+straight sheet of light the images determine the plane, three of the six.
 @param pixelCovariancesDirect per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the
 pixels' variance, in units of which they are, is estimated). An empty array, list or whole: usual pixels.
 @param pixelCovariancesRefracted as pixelCovariancesDirect.
@@ -1445,12 +1451,13 @@ With systematic errors of the targets.
 @param imageStatus as above.
 @param inliers as above.
 @param otherMinima as above.
-@param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance: relative
-error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the rigid motion by which
-all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame of camera 1. (A
-rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no such error.
-These errors are estimated within the prior, so that all uncertainties contain them: in air a common motion of the targets
-resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance have seven more rows at their end.
+@param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance (see the
+conventions): relative error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the
+rigid motion by which all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame
+of camera 1. (A rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no
+such error; NaN: it may be of any size. These errors are estimated within the prior, so that all uncertainties contain them: in
+air a common motion of the targets resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance
+have seven more rows at their end.
 @param targetErrors 7x1 CV_64F: the estimates; NaN without targetCovariance.
 @param flags as above.
 @param poseCovariances as above.
@@ -1527,10 +1534,10 @@ through a static scene. Everything is one maximum-likelihood fit with equal isot
 points are eliminated (Schur complement), as in @cite Triggs2000.
 
 The scene's frame is that of the first view, whose pose is fixed; with one view and without rvecs, tvecs it is the frame of
-camera 1. The scale comes from lengths, from R and T of several cameras if these are not free, or from the poses with
-GLASS_USE_POSES. Without any of them this throws, because refraction alone hardly determines the scale (doc/uncertainty.md has
-numbers, also for the normal, the distance and the thickness without a target). A parameter that is hardly determined is not
-refused: it has a large value in stdDeviations.
+camera 1. The scale comes from lengths, from R and T of several cameras if these are not free or have a covariance, or from the
+poses with GLASS_USE_POSES. Without any of them this throws, because refraction alone hardly determines the scale
+(doc/uncertainty.md has numbers, also for the normal, the distance and the thickness without a target). A parameter that is
+hardly determined is not refused: it has a large value in stdDeviations.
 
 @param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64. One coordinate NaN: half a pixel.
 Both NaN: not seen in that image. An empty array: there is no image.
@@ -1545,7 +1552,7 @@ Initial value and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
 triangulated from its rays. The result is NaN for a point of which fewer than three coordinates were observed (with
 GLASS_ROBUST: by inliers), or whose rays do not meet.
 @param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
-deviation > 0; noArray(): none.
+deviation > 0 (NaN: not known, so that it tells nothing); noArray(): none.
 @param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
 @param covariance PxP in the same order; poses and points unknown; the pixels' variance is that of the residuals.
 @param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, including the uncertainty of cameras and
@@ -1555,18 +1562,18 @@ poses; NaN where the point is NaN.
 @param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. With GLASS_FIX_NORMAL alone only poses and
 points are estimated, with cameras as given, also without windows. With GLASS_ROBUST outliers are rejected: a fit with Cauchy's
 loss, then a decision for each observation; the probability to reject an inlier is 1e-4.
-@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance of (rvec, tvec) per view, an empty one for a pose that is exact;
-noArray(): all are exact.
+@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one
+for a pose that is exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
 @param cameraCovariances prior knowledge of each camera, as for calibrateGlassRig, also of its rvec and T; noArray(): none.
 @param pixelCovariances per camera, per view, as imagePoints: the covariance of each pixel, as for calibrateGlassRig.
-@param rigCovariance prior knowledge of all cameras together, in place of cameraCovariances: PxP, in the order of stdDeviations,
-the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration, as readRig returns it. What
-has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a window that cameras share,
-the rows of its first camera count. noArray(): nothing is known.
+@param rigCovariance prior knowledge of all cameras together, in place of cameraCovariances: PxP (see the conventions), in the
+order of stdDeviations, the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration, as
+readRig returns it. What has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a
+window that cameras share, the rows of its first camera count. noArray(): nothing is known.
 @param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
 times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
-independent.
+independent. NaN: not known, so that lengths tell proportions, but no scale.
 @return RMS reprojection error in pixels over all points that were used.
 
 Throws if the data do not determine a free parameter, with its name; throws Error::StsNotImplemented in a build without Ceres.

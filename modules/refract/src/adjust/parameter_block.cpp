@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/parameter_block.hpp"
+#include "adjust/rig_prior.hpp"
 #include "math/dense.hpp"
 #include "window/place.hpp"
 #include <ceres/line_manifold.h>
@@ -41,13 +42,13 @@ Eigen::MatrixXd ParameterBlock::tangentBasis(bool withHeld) const
 }
 
 //! By the root of the correlations of what is uncertain, as the parameters' sizes differ by orders.
-bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
+void ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
 {
     const int size = (int)values.size();
     Eigen::MatrixXd known = Eigen::MatrixXd::Zero(size, size);
     for (int i = 0; i < size; i++)
     {
-        if (covariance(i, i) > 0)
+        if (covariance(i, i) > 0 || (kind == TARGETS && std::isnan(covariance(i, i))))
             isFree[i] = true;
         else if ((kind == LENS || kind == EXTRINSICS) && covariance(i, i) == 0)
             isFree[i] = false;
@@ -56,7 +57,7 @@ bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
                 known(i, j) = covariance(i, j);
     }
     if (known.isZero(0))
-        return true;
+        return;
     if (isOnManifold())
         isFree.assign(size, true);
     const Eigen::MatrixXd tangents = tangentBasis(true);
@@ -66,11 +67,7 @@ bool ParameterBlock::setPrior(const Eigen::MatrixXd& covariance)
     for (int i = 0, k = 0; i < variances.size(); i++)
         if (variances[i] > 0)
             directions.col(k++) = tangents.col(i)/std::sqrt(variances[i]);
-    const LLT root(product(transposeTimes(directions, known), directions));
-    if (!root.isPositiveDefinite())
-        return false;
-    sqrtInformation = root.solveL(directions.transpose());
-    return true;
+    sqrtInformation = whiten(product(transposeTimes(directions, known), directions), directions.transpose());
 }
 
 std::vector<bool> freeLens(const Camera& camera, int flags)

@@ -39,10 +39,9 @@ struct ParameterBlock
     //! What a coordinate of MEDIA is.
     WindowParameter windowParameter(int coordinate) const { return kindOf(at, at.media + coordinate); }
 
-    /** Takes the part of a covariance that belongs to this block as its prior. What has a variance is free from now on; a lens
-    parameter with none is fixed; NaN: nothing is known.
-    @return false if it is not positive definite where it is not 0 */
-    bool setPrior(const Eigen::MatrixXd& covariance);
+    /** Takes the part of a covariance (math/covariance_matrix.hpp) that belongs to this block as its prior. What has a variance is
+    free from now on; a lens parameter with none is fixed; NaN: nothing is known, so that what all targets share is free. */
+    void setPrior(const Eigen::MatrixXd& covariance);
 };
 
 //! GlassCalibrationFlags -> which lens parameters are free.

@@ -30,7 +30,10 @@ struct PosePrior
 {
     enum Kind { NONE, EXACT, UNCERTAIN };
     Kind kind = NONE;
-    Matrix6 sqrtInformation;            //!< W, W^T W = inverse of the covariance; UNCERTAIN only
+    Eigen::MatrixXd sqrtInformation;    //!< W, W^T W = inverse of the covariance of what is known; UNCERTAIN only
+
+    //! Not of the rotation only.
+    bool tellsTranslation() const { return kind == EXACT || (kind == UNCERTAIN && !sqrtInformation.rightCols(3).isZero(0)); }
 };
 
 /** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window, or these and
@@ -84,8 +87,8 @@ class Problem
 public:
     /** Known targets. The start of what is known is the known value.
     @param posePriors one per view, or empty
-    @param cameraPriors one per camera, or empty; throws if one is not positive definite
-    @param targetCovariance of SharedTargetErrors; a variance of 0: there is no such error; empty: there is none. Throws as above */
+    @param cameraPriors one per camera, or empty
+    @param targetCovariance of SharedTargetErrors; a variance of 0: there is no such error; empty: there is none */
     Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
             const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd());
     /** A scene.
@@ -95,7 +98,7 @@ public:
     @param variance as RigViews'
     @param rigCovariance of the public parameters, which start where they are known: what has a variance is estimated within it,
     for the rest the flags decide; empty: nothing is known
-    @param lengthScaleSigma of a relative error that all lengths share; 0: there is none */
+    @param lengthScaleSigma of a relative error that all lengths share; 0: there is none; NaN: nothing is known of it */
     Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
             const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
             const std::vector<CameraPrior>& cameraPriors = std::vector<CameraPrior>(),

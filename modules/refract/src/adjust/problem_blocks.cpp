@@ -31,12 +31,6 @@ RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount, con
     return views;
 }
 
-void setCameraPrior(ParameterBlock& block, int c, const Eigen::MatrixXd& covariance)
-{
-    if (!block.setPrior(covariance))
-        CV_Error_(Error::StsBadArg, ("cameraCovariances[%d] is not positive definite where it is not 0", c));
-}
-
 } // namespace
 
 Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
@@ -55,7 +49,7 @@ Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int poin
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
 {
     Eigen::MatrixXd sharedErrors;           // lengths that are too small by a part are points that are too near by it
-    if (lengthScaleSigma > 0)
+    if (lengthScaleSigma != 0)
     {
         sharedErrors = Eigen::MatrixXd::Zero(SharedTargetErrors::COUNT, SharedTargetErrors::COUNT);
         sharedErrors(0, 0) = lengthScaleSigma*lengthScaleSigma;
@@ -83,7 +77,7 @@ void Problem::addBlocks(const std::vector<Pose>& poses, const std::vector<PosePr
                                          std::vector<bool>(6, (flags & GLASS_FREE_EXTRINSICS) != 0));
         const int first = rig_.cameras[c].parameterCount();
         if (!cameraPriors.empty() && cameraPriors[c].covariance.cols() == first + 6)
-            setCameraPrior(block, c, cameraPriors[c].covariance.block(first, first, 6, 6));
+            block.setPrior(cameraPriors[c].covariance.block(first, first, 6, 6));
     }
     targetBlock_ = -1;
     if (targetCovariance.size() > 0)
@@ -108,8 +102,7 @@ void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
     targetBlock_ = (int)blocks_.size();
     ParameterBlock& block = addBlock(ParameterBlock::TARGETS, 0, std::vector<double>(count, 0.),
                                      { scale, motion, motion, motion, motion, motion, motion }, std::vector<bool>(count, false));
-    if (!block.setPrior(covariance))
-        CV_Error(Error::StsBadArg, "targetCovariance is not positive definite where it is not 0");
+    block.setPrior(covariance);
 }
 
 //! Of a window the rows of its owner count; the others follow from them.
@@ -169,7 +162,7 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
         ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
                                          std::vector<String>(names.begin() + first, names.begin() + first + size), free);
         if (mayHavePrior && first + size <= prior.covariance.cols())
-            setCameraPrior(block, c, prior.covariance.block(first, first, size, size));
+            block.setPrior(prior.covariance.block(first, first, size, size));
     };
     const int lens = camera.lensCount();
     add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);

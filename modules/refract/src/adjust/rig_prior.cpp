@@ -7,12 +7,29 @@ by orders, the correlations do not. */
 
 #include "adjust/rig_prior.hpp"
 #include "math/dense.hpp"
-#include <opencv2/core.hpp>
 
 namespace cv { namespace refract {
 
 // A file has the covariance with finite digits: of the correlations' eigenvalues, what is below this part of 1 is rounding.
 static const double ROUNDING = 1e-10;
+
+//! L^-1/2 U^T of correlations U L U^T.
+static Eigen::MatrixXd inverseRoot(const Eigen::MatrixXd& correlations)
+{
+    const SymmetricEigen eigen(correlations);
+    const double most = eigen.values.maxCoeff();
+    const Eigen::VectorXd roots = eigen.values.cwiseMax(ROUNDING*most).cwiseSqrt().cwiseInverse();
+    return roots.asDiagonal()*eigen.vectors.transpose();
+}
+
+Eigen::MatrixXd whiten(const Eigen::MatrixXd& C, const Eigen::MatrixXd& B)
+{
+    const LLT root(C);
+    const Eigen::VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
+    if (root.isPositiveDefinite() && root.L().diagonal().cwiseProduct(inverse).minCoeff() > std::sqrt(ROUNDING))
+        return root.solveL(B);
+    return product(inverseRoot(inverse.asDiagonal()*C*inverse.asDiagonal())*inverse.asDiagonal(), B);
+}
 
 RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& directions, const Eigen::MatrixXd& covariance)
 {
@@ -23,13 +40,8 @@ RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& direct
         return prior;
     const Eigen::VectorXd inverse = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd symmetric = 0.5*(covariance + covariance.transpose());
-    const SymmetricEigen eigen(inverse.asDiagonal()*symmetric*inverse.asDiagonal());
-    const double most = eigen.values.maxCoeff();
-    if (!(eigen.values[0] > -std::sqrt(ROUNDING)*most))
-        CV_Error_(Error::StsBadArg, ("rigCovariance is no covariance: a combination of its parameters has a variance below 0 (%g of "
-                                     "the largest)", eigen.values[0]/most));
-    const Eigen::VectorXd roots = eigen.values.cwiseMax(ROUNDING*most).cwiseSqrt().cwiseInverse();
-    prior.sqrtInformation = timesTranspose(roots.asDiagonal()*eigen.vectors.transpose()*inverse.asDiagonal(), directions);
+    const Eigen::MatrixXd root = inverseRoot(inverse.asDiagonal()*symmetric*inverse.asDiagonal());
+    prior.sqrtInformation = timesTranspose(root*inverse.asDiagonal(), directions);
     return prior;
 }
 

@@ -19,9 +19,12 @@ struct RigPrior
     int count() const { return (int)sqrtInformation.rows(); }
 };
 
+/** W B with W^T W = C^-1: B = 1 whitens what is known with the covariance C, of positive variances. A combination that C knows far
+better than its correlations tell is taken to be known as well as these. */
+Eigen::MatrixXd whiten(const Eigen::MatrixXd& C, const Eigen::MatrixXd& B);
+
 /** @param directions N x K, orthonormal: those that are known (of a normal its two tangents)
-@param covariance K x K along them, with positive variances; a combination that it knows far better than their correlations tell
-is taken to be known as well as these. Throws if it is no covariance */
+@param covariance K x K along them, as whiten() takes it */
 RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& directions, const Eigen::MatrixXd& covariance);
 
 }} // namespace

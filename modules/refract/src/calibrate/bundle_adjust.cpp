@@ -6,8 +6,10 @@
 
 #include "calibrate/bundle_fit.hpp"
 #include "calibrate/calibrate_rig.hpp"
+#include "calibrate/calibration_error.hpp"
 #include "calibrate/failure.hpp"
 #include "arrays/arrays.hpp"
+#include "math/covariance_matrix.hpp"
 
 namespace cv { namespace refract {
 
@@ -65,7 +67,8 @@ std::vector<KnownLength> readLengths(InputArray lengths, int pointCount)
     Mat_<double> rows;
     given.clone().reshape(1, isList ? (int)given.total() : given.rows).convertTo(rows, CV_64F);
     for (int i = 0; i < rows.rows; i++)
-        known.push_back(checkedLength(rows[i], i, pointCount));
+        if (!std::isnan(rows(i, 3)))            // else nothing is known of it
+            known.push_back(checkedLength(rows[i], i, pointCount));
     return known;
 }
 
@@ -76,22 +79,12 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
     const bool isGiven = count > 1 || !rvecs.empty() || !tvecs.empty();
     task.poses = isGiven ? readPoses(rvecs, tvecs, count) : std::vector<Pose>(1);
     if (task.flags & GLASS_USE_POSES)
-    {
-        task.posePriors = readPosePriors(covariances, count);
-        return;
-    }
-    task.posePriors.resize(count);
-    task.posePriors[0].kind = PosePrior::EXACT;
-}
-
-//! What tells the scale.
-void checkScale(BundleTask& task)
-{
-    task.isRigKnown = task.pixels.size() > 1 && !(task.flags & GLASS_FREE_EXTRINSICS);
-    task.arePosesKnown = task.poses.size() > 1 && (task.flags & GLASS_USE_POSES);
-    if (task.lengths.empty() && !task.isRigKnown && !task.arePosesKnown)
-        CV_Error(Error::StsBadArg, "nothing tells the scale: give a length between two points (lengths), or R and T of several "
-                                   "cameras without GLASS_FREE_EXTRINSICS, or the poses of several views (GLASS_USE_POSES)");
+        task.posePriors = readPosePriors(covariances, task.poses);
+    else
+        task.posePriors.resize(count);
+    const auto isKnown = [](const PosePrior& prior) { return prior.kind != PosePrior::NONE; };
+    if (std::none_of(task.posePriors.begin(), task.posePriors.end(), isKnown))
+        task.posePriors[0].kind = PosePrior::EXACT;         // the scene's frame
 }
 
 //! PxP, in the order of stdDeviations; or nothing.
@@ -108,12 +101,47 @@ Eigen::MatrixXd readRigCovariance(InputArray covariance, const std::vector<Camer
                                       "and T of each but the first), or empty", given.rows, given.cols, given.channels(), count, count));
     Mat_<double> numbers;
     given.convertTo(numbers, CV_64F);
-    if (!checkRange(numbers))
-        CV_Error(Error::StsBadArg, "rigCovariance has numbers that are not finite");
+    Mat_<double> known = knownCovariance(numbers, "rigCovariance");
     for (int i = 0; i < count; i++)
-        if (numbers(i, i) < 0)
-            CV_Error_(Error::StsBadArg, ("rigCovariance has the variance %g in row %d; it must not be negative", numbers(i, i), i));
-    return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
+        if (std::isnan(known(i, i)))
+            known(i, i) = 0;            // the flags decide
+    return Eigen::Map<const RowMajorMatrix>(known.ptr<double>(), count, count);
+}
+
+//! Whether something is known of where a camera of the rig is: by its prior, else as the flags have it.
+bool isPlaceKnown(const Rig& rig, const BundleTask& task, int c)
+{
+    const int T = rig.cameras[c].parameterCount() + 3;
+    if (!task.cameraPriors.empty() && task.cameraPriors[c].covariance.cols() == T + 3)
+    {
+        const Eigen::VectorXd variances = task.cameraPriors[c].covariance.diagonal().tail(3);
+        if ((variances.array() == variances.array()).any())     // not NaN
+            return true;
+    }
+    if (task.rigCovariance.size() > 0)
+    {
+        int row = 6*(c - 1) + 3;
+        for (const Camera& camera : rig.cameras)
+            row += camera.parameterCount();
+        if ((task.rigCovariance.diagonal().segment(row, 3).array() > 0).any())
+            return true;
+    }
+    return !(task.flags & GLASS_FREE_EXTRINSICS);
+}
+
+//! What tells the scale.
+void checkScale(const Rig& rig, BundleTask& task)
+{
+    for (int c = 1; c < rig.count(); c++)
+        task.isRigKnown = task.isRigKnown || isPlaceKnown(rig, task, c);
+    const auto isPlaced = [](const PosePrior& prior) { return prior.tellsTranslation(); };
+    task.arePosesKnown = std::count_if(task.posePriors.begin(), task.posePriors.end(), isPlaced) > 1;
+    if ((!task.lengths.empty() && !std::isnan(task.lengthScaleSigma)) || task.isRigKnown || task.arePosesKnown)
+        return;
+    const String reason = "nothing tells the scale";
+    raise(CalibrationError(CalibrationError::NO_SCALE, reason + ": give a length between two points (lengths, and a lengthScaleStd that "
+                           "is a number), R and T of several cameras without GLASS_FREE_EXTRINSICS or with their covariance, or the "
+                           "poses of several views (GLASS_USE_POSES)", reason));
 }
 
 //! What is known beside the pixels: from earlier calibrations, of the ruler of the lengths, of the detector.
@@ -185,7 +213,6 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     task.points.resize(checkedPointCount(pixels, task.points.size()), Point3d(NaN, NaN, NaN));
     task.lengths = readLengths(lengths, (int)task.points.size());
     readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
-    checkScale(task);
     readCovariances(known.pixelCovariances, task);
 
     Rig rig;
@@ -196,10 +223,12 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     if (!known.rigCovariance.empty() && !known.cameraCovariances.empty())
         CV_Error(Error::StsBadArg, "cameraCovariances and rigCovariance are both given; give one: rigCovariance is of all cameras");
     task.rigCovariance = readRigCovariance(known.rigCovariance, rig.cameras);
-    if (!(known.lengthScaleStd >= 0 && std::isfinite(known.lengthScaleStd)))
-        CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative", known.lengthScaleStd));
+    if (known.lengthScaleStd < 0 || std::isinf(known.lengthScaleStd))
+        CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative, or NaN: not known",
+                                     known.lengthScaleStd));
     task.lengthScaleSigma = task.lengths.empty() ? 0 : known.lengthScaleStd;
     task.cameraPriors = readCameraPriors(known.cameraCovariances, rig.cameras);
+    checkScale(rig, task);
     RigViews views;
     views.object.resize(pixels[0].size());
     for (const PixelViews& ofCamera : pixels)

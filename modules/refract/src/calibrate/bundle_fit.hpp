@@ -21,10 +21,10 @@ struct BundleTask
     double variance = 1;                        //!< in units of which they are: RigViews'
     std::vector<KnownLength> lengths;
     Eigen::MatrixXd rigCovariance;              //!< of the public parameters, from an earlier calibration; empty: nothing is known
-    double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none
+    double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none; NaN: not known
     int flags;
     TermCriteria criteria;
-    bool isRigKnown, arePosesKnown;             //!< R and T of several cameras, poses of several views: they tell the scale
+    bool isRigKnown = false, arePosesKnown = false;     //!< R and T of several cameras, poses of several views: they tell the scale
     bool wantsPointDeviations;
 };
 

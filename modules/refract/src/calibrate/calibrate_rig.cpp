@@ -7,9 +7,9 @@
 #include "calibrate/calibrate_rig.hpp"
 #include "calibrate/calibration_error.hpp"
 #include "start/rig_task.hpp"
+#include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
 #include "window/place.hpp"
-#include <Eigen/Cholesky>
 
 namespace cv { namespace refract {
 
@@ -223,20 +223,42 @@ static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const cha
     return vectors;
 }
 
-static PosePrior readPosePrior(InputArray covariance, const String& name)
+//! What is exact beside what is not: far below what images tell, so that it is a prior as the rest.
+static const double EXACTLY = 1e-8;     // radians, and of the distance
+
+static PosePrior readPosePrior(InputArray covariance, const Pose& pose, const String& name)
 {
     PosePrior prior;
     prior.kind = PosePrior::EXACT;
-    const std::vector<double> c = readNumbers(covariance, name.c_str());
-    if (c.empty())
+    Mat numbers;
+    covariance.getMat().convertTo(numbers, CV_64F);
+    const int values = (int)numbers.total()*numbers.channels();
+    if (values == 0)
         return prior;
-    if (c.size() != 36)
-        CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 6x6, or empty", name.c_str(), (int)c.size()));
-    const Eigen::LLT<Matrix6> root(Eigen::Map<const Matrix6>(c.data()));
-    if (root.info() != Eigen::Success)
-        CV_Error_(Error::StsBadArg, ("%s is not positive definite", name.c_str()));
-    prior.kind = PosePrior::UNCERTAIN;
-    prior.sqrtInformation = root.matrixL().solve(Matrix6::Identity());
+    if (values != 36)
+        CV_Error_(Error::StsBadSize, ("%s has %d values; it must be 6x6, or empty", name.c_str(), values));
+    const Mat_<double> all = knownCovariance(numbers.reshape(1, 6), name);
+    if (countNonZero(all) == 0)
+        return prior;
+    std::vector<int> known;
+    for (int i = 0; i < 6; i++)
+        if (!std::isnan(all(i, i)))
+            known.push_back(i);
+    prior.kind = known.empty() ? PosePrior::NONE : PosePrior::UNCERTAIN;
+    if (known.empty())
+        return prior;
+    const double distance = norm(pose.tvec), exact[] = { EXACTLY, EXACTLY*(distance > 0 ? distance : 1) };
+    const int count = (int)known.size();
+    Eigen::MatrixXd C(count, count), rows = Eigen::MatrixXd::Zero(count, 6);
+    for (int i = 0; i < count; i++)
+    {
+        for (int j = 0; j < count; j++)
+            C(i, j) = all(known[i], known[j]);
+        if (C(i, i) == 0)
+            C(i, i) = std::pow(exact[known[i]/3], 2);
+        rows(i, known[i]) = 1;
+    }
+    prior.sqrtInformation = whiten(C, rows);
     return prior;
 }
 
@@ -253,8 +275,9 @@ std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, 
     return poses;
 }
 
-std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count)
+std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses)
 {
+    const int count = (int)poses.size();
     std::vector<Mat> all;
     if (!covariances.empty())
         covariances.getMatVector(all);              // of a std::vector<Matx66d>, too
@@ -263,7 +286,7 @@ std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count)
     all.resize(count);
     std::vector<PosePrior> priors;
     for (int view = 0; view < count; view++)
-        priors.push_back(readPosePrior(all[view], numbered("poseCovariances", view)));
+        priors.push_back(readPosePrior(all[view], poses[view], numbered("poseCovariances", view)));
     return priors;
 }
 
@@ -287,12 +310,11 @@ std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const 
         CameraPrior prior;
         Mat_<double> numbers;
         all[c].convertTo(numbers, CV_64F);
-        if (!numbers.empty())
-            prior.covariance = Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), side, side);
-        for (int i = 0; i < prior.covariance.rows(); i++)
-            if (prior.covariance(i, i) < 0)
-                CV_Error_(Error::StsBadArg, ("%s has the variance %g in row %d; it must not be negative", name.c_str(),
-                                             prior.covariance(i, i), i));
+        const Mat_<double> known = knownCovariance(numbers, name);
+        if (!known.empty())
+            prior.covariance = Eigen::Map<const RowMajorMatrix>(known.ptr<double>(), side, side);
+        if (prior.covariance.diagonal().array().isNaN().all())      // nothing is known
+            prior.covariance.resize(0, 0);
         priors.push_back(prior);
     }
     return priors;
@@ -322,11 +344,8 @@ static Eigen::MatrixXd readTargetCovariance(InputArray covariance)
                                       "rotation vector, translation), or empty", given.rows, given.cols, given.channels()));
     Mat_<double> numbers;
     given.convertTo(numbers, CV_64F);
-    for (int i = 0; i < count; i++)
-        if (!(numbers(i, i) >= 0 && std::isfinite(numbers(i, i))))
-            CV_Error_(Error::StsBadArg, ("targetCovariance has the variance %g in row %d; it must be finite and not negative",
-                                         numbers(i, i), i));
-    return Eigen::Map<const RowMajorMatrix>(numbers.ptr<double>(), count, count);
+    const Mat_<double> known = knownCovariance(numbers, "targetCovariance");
+    return Eigen::Map<const RowMajorMatrix>(known.ptr<double>(), count, count);
 }
 
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
@@ -376,7 +395,9 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     if (flags & GLASS_USE_POSES)
     {
         task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
-        task.posePriors = readPosePriors(poseCovariances, task.views.count());
+        task.posePriors = readPosePriors(poseCovariances, task.knownPoses);
+        for (int view = 0; view < task.views.count(); view++)
+            task.knownPoses[view].found = task.posePriors[view].kind != PosePrior::NONE;
     }
     task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
     task.targetCovariance = readTargetCovariance(targetCovariance);

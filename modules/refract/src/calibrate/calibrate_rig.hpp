@@ -51,8 +51,8 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
 std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
-//! Poses that are known: exactly, or with a covariance.
-std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, int count);
+//! Poses that are known: exactly, or with a covariance, in part or not at all.
+std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses);
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);
 
 }} // namespace

@@ -13,7 +13,7 @@ namespace cv { namespace refract {
 struct RigTask
 {
     RigViews views;
-    std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, else empty
+    std::vector<Pose> knownPoses;               //!< GLASS_USE_POSES: one per view, not found where it is not known; else empty
     std::vector<PosePrior> posePriors;          //!< of the same
     std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
     Eigen::MatrixXd targetCovariance;           //!< of SharedTargetErrors, or empty

@@ -85,7 +85,7 @@ RigViews viewsWithPose(const RigViews& views, const std::vector<Pose>& poses)
 
 bool RigTask::isSealed() const
 {
-    bool tellsMore = !knownPoses.empty();
+    bool tellsMore = std::any_of(knownPoses.begin(), knownPoses.end(), [](const Pose& pose) { return pose.found; });
     for (const CameraPrior& prior : cameraPriors)
         tellsMore = tellsMore || prior.covariance.size() > 0;
     for (const CameraViews& camera : views.cameras)
