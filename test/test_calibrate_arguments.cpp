@@ -133,3 +133,53 @@ TEST_CASE("What flags free of windows a camera without one does not get", "[cali
         CHECK(call.cameras[0]->parameterNames().size() > count + 2);
     }
 }
+
+TEST_CASE("Where the optimum touches the window, that is said, and not to iterate more", "[calibrate_arguments]")
+{
+    // Boards close behind a wall that is given as too thick and too far: where they fit best, they are in it.
+    CAPTURE(seed());
+    Random random(3530);
+    int touching = 0;
+    for (int trial = 0; trial < 60; trial++)
+    {
+        const GlassWindow wall(Vec3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1), 20, 1.5, 100, 1.333);
+        const Ptr<RefractiveCamera> truth = RefractiveCamera::create(Matx33d(900, 0, 640, 0, 900, 480, 0, 0, 1), noArray(), wall);
+        ObjectViews object;
+        std::vector<Mat> pixels, rvecs, tvecs;
+        while (object.size() < 6)
+        {
+            const std::vector<Point3d> target = board(7, 5, 12);
+            const Vec3d tvec(random.uniform(-41, -31), random.uniform(-29, -19), random.uniform(138, 150));
+            std::vector<Point2d> image;
+            std::vector<uchar> status;
+            refractiveProjectPoints(target, random.vector(0.3), tvec, truth, image, status);
+            if (countNonZero(status) > 0)
+                continue;
+            for (Point2d& p : image)
+                p += Point2d(random.normal(0.05), random.normal(0.05));
+            object.push_back(target);
+            pixels.push_back(Mat(image, true));
+        }
+        GlassWindow given = wall;
+        given.thickness[0] = random.uniform(20, 28);
+        given.distance = random.uniform(100, 112);
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(truth->cameraMatrix(), noArray(), given);
+        try
+        {
+            calibrateGlass(object, noArray(), pixels, camera, rvecs, tvecs, 0);
+        }
+        catch (const CalibrationError& e)
+        {
+            CAPTURE(trial, e.err);
+            const bool hasNoStart = e.cause == CalibrationError::NO_POSE || e.cause == CalibrationError::NO_IMAGE;
+            CHECK((hasNoStart || e.cause == CalibrationError::NOT_CONVERGED));
+            if (e.cause != CalibrationError::NOT_CONVERGED)
+                continue;
+            touching++;
+            CHECK_THAT(e.err, Contains("touches the window of camera 1") && !Contains("maxCount"));
+            CHECK((e.view >= 0 && e.view < 6 && e.point >= 0 && e.point < 35 && e.camera == 0));
+        }
+    }
+    std::cout << "[numbers] optimum that touches the window: in " << touching << " of 60 calibrations" << std::endl;
+    CHECK(touching > 0);
+}

@@ -16,7 +16,7 @@ std::string textOf(const CalibrationError& e, const RigData& data, const std::ve
     switch (e.cause)
     {
     case CalibrationError::NOT_CONVERGED:
-        return e.reason;
+        return (view ? "view '" + view->stem + "': " : std::string()) + e.reason;
     case CalibrationError::NO_POSE:
         return "view '" + view->stem + "': " + e.reason;
     case CalibrationError::NO_IMAGE:

@@ -195,7 +195,9 @@ class CV_EXPORTS CalibrationError : public Exception
 public:
     //! Why there is no answer.
     enum Cause {
-        NOT_CONVERGED = 0,      //!< the iterations of criteria were not enough: give more, or fix what is hardly determined
+        /** the iterations of criteria were not enough: give more, or fix what is hardly determined; or `point` of `view`
+        touches the window of `camera` where the error is least: check the window, the target's size, the units */
+        NOT_CONVERGED = 0,
         UNDETERMINED = 1,       //!< the data do not determine a free parameter: fix it, or take other views
         POSE_UNDETERMINED = 2,  //!< the scene's points do not determine the pose of `view`: leave it out, or add points
         TOO_FEW_INLIERS = 3,    //!< fewer than half of the points fit, or too few to go on

@@ -16,7 +16,7 @@ struct FitOutcome
     enum Status
     {
         CONVERGED,
-        MAX_ITERATIONS,         //!< count: so many
+        MAX_ITERATIONS,         //!< count: so many; isStuck; point and view: one that touches the window of the camera
         NO_IMAGE,               //!< the point of the view has none in the camera at the start
         LOOKS_AWAY,             //!< the camera does not see the shared window's outside; point: its normal
         BEYOND_WINDOW,          //!< the camera lies behind the shared window; distance
@@ -42,6 +42,7 @@ struct FitOutcome
     uchar imageStatus = REFRACT_OK;         //!< RefractiveStatus
     int count = 0, expected = 0;
     std::vector<Parameter> parameters;
+    bool isStuck = false;                   //!< more iterations would not help
     double varianceFactor = 1;              //!< of a robust fit's variance: what the cut at its outliers takes away
     double opticalThickness = 0;            //!< of thickness and index that only show together; 0: they are no such
     int dimension = 0;                      //!< of what is undetermined

@@ -210,8 +210,12 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
             region.change *= STRICTER;
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
-    FitOutcome outcome(stopsByChange ? FitOutcome::MAX_ITERATIONS : FitOutcome::CONVERGED);
-    outcome.count = criteria.maxCount;
+    if (!stopsByChange)
+        return FitOutcome();
+    FitOutcome outcome = problem_.findPointAtWindow();
+    outcome.status = FitOutcome::MAX_ITERATIONS;
+    outcome.isStuck = left > 0;
+    outcome.count = criteria.maxCount - std::max(left, 0);
     return outcome;
 }
 

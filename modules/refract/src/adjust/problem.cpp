@@ -216,6 +216,34 @@ FitOutcome Problem::findPointWithoutImage() const
     return FitOutcome();
 }
 
+FitOutcome Problem::findPointAtWindow() const
+{
+    const double NEARER = 1e-3;         // of the distance
+    for (const Image& image : images_)
+    {
+        const RigCamera& camera = cameras_[image.camera];
+        if (!image.refracted || !camera.camera(true))
+            continue;
+        const Pose direct = pose(image.view);
+        const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, true);
+        for (int row = 0; row < (int)image.points.object.size(); row++)
+        {
+            const Vec3d X = (1 - NEARER)*camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
+            Point2d pixel;
+            uchar status = REFRACT_OK;
+            camera.camera(true)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+            if (image.rootWeights[row] == 0 || status != REFRACT_BEHIND_WINDOW)
+                continue;
+            FitOutcome outcome;
+            outcome.view = image.view;
+            outcome.camera = image.camera;
+            outcome.pointIndex = image.points.index[row];
+            return outcome;
+        }
+    }
+    return FitOutcome();
+}
+
 bool Problem::evaluate(const Image& image, const std::vector<double>& rootWeights, Wanted wanted, Derivatives& result) const
 {
     const ImageResidual residual(cameras_[image.camera], image.points, rootWeights,

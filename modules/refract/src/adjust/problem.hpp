@@ -124,6 +124,8 @@ public:
     double squaredDistances(const Image& image) const;      //!< weighted; in pixels whatever their covariances
     //! The first point with a weight that has no image; or which window no camera can look through so.
     FitOutcome findPointWithoutImage() const;
+    //! The first point with a weight that all but touches the window of its camera: nearer, it has no image.
+    FitOutcome findPointAtWindow() const;
 
     // Parameters
     const std::vector<ParameterBlock>& blocks() const { return blocks_; }

@@ -46,6 +46,22 @@ Failure describeUndetermined(const FitOutcome& outcome)
              ". Fix what is known otherwise, or add views: pairs without and with the window, more tilt, more depth" };
 }
 
+//! Iterations help where there were too few of them.
+Failure describeUnconverged(const FitOutcome& o, const char* fit, const char* otherwise)
+{
+    if (o.pointIndex >= 0)
+        return { CalibrationError::NOT_CONVERGED, format("view %d: ", o.view),
+                 format("%s did not converge; where it errs least, point %d touches the window of camera %d", fit, o.pointIndex,
+                        o.camera + 1),
+                 "; check the window's distance and thickness, the size of the target, and the units" };
+    if (o.isStuck)
+        return { CalibrationError::NOT_CONVERGED, "",
+                 format("%s did not converge: after %d iterations no step makes it better", fit, o.count),
+                 "; fix what is hardly determined, or give a better start" };
+    return { CalibrationError::NOT_CONVERGED, "", format("%s did not converge in %d iterations", fit, o.count),
+             String("; raise criteria.maxCount, ") + otherwise };
+}
+
 //! What any fit may come to.
 Failure describe(const FitOutcome& o)
 {
@@ -79,8 +95,7 @@ Failure describe(const FitOutcome& o)
                  format("the points do not determine the poses, that of view %d least", o.view),
                  "; leave it out, or add points that it shares with others" };
     case FitOutcome::MAX_ITERATIONS:
-        return { CalibrationError::NOT_CONVERGED, "", format("the calibration did not converge in %d iterations", o.count),
-                 "; raise criteria.maxCount, or fix what the views hardly determine" };
+        return describeUnconverged(o, "the calibration", "or fix what the views hardly determine");
     case FitOutcome::TOO_FEW_EQUATIONS:
         return { CalibrationError::TOO_FEW_POINTS, "",
                  format("the observed points give %d equations for %d unknowns", o.count, o.expected - 1), "; take more views" };
@@ -99,8 +114,7 @@ Failure describeBundle(const FitOutcome& o)
     switch (o.status)
     {
     case FitOutcome::MAX_ITERATIONS:
-        return { CalibrationError::NOT_CONVERGED, "", format("the bundle adjustment did not converge in %d iterations", o.count),
-                 "; raise criteria.maxCount, give a better start, or fix what the images hardly determine" };
+        return describeUnconverged(o, "the bundle adjustment", "give a better start, or fix what the images hardly determine");
     case FitOutcome::TOO_FEW_EQUATIONS:
         return { CalibrationError::TOO_FEW_POINTS, "",
                  format("points that are seen in two images or more give %d equations, with lengths and poses; %d fewer than are "
