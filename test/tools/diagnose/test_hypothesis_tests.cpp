@@ -83,6 +83,50 @@ TEST_CASE("Of values given, the one that is wrong is named", "[hypothesis_tests]
           == Approx(1.333).margin(1e-3));
 }
 
+TEST_CASE("A contradiction says by how much the fit is better, and of a lens, where it errs", "[hypothesis_tests]")
+{
+    // The lens of a file; its focal length is right, so that fx would be as before, with many standard deviations beside it.
+    RigCalibration c = calibrated(RIGHT, 0, true);
+    Mat lens = c.start.cameras[0]->lensParameters();
+    const int K1 = 4;
+    const double right = lens.at<double>(K1), wrong = right + 0.01;
+    lens.at<double>(K1) = wrong;
+    c.start.cameras[0]->setLensParameters(lens);
+    c.options.known[0] = c.start.cameras[0]->clone();
+    c.fit = fitImages(c.data, c.start, c.fit.views, c.options.flags);
+    const std::string text = contradicted(c), beginning = "the images contradict --camera: set free, the lens would have k1 = ";
+    CAPTURE(text);
+    REQUIRE(text.find(beginning) != std::string::npos);
+    CHECK(numberAfter(beginning, text.substr(text.find(beginning))) == Approx(right).margin(0.005));
+    CHECK(text.find(format("in place of %.5g, a better fit by ", wrong)) != std::string::npos);
+    CHECK(text.find(" sigma") != std::string::npos);
+    CHECK(text.find("standard deviations away") == std::string::npos);
+}
+
+TEST_CASE("Of a lens that errs as a whole, no parameter is named", "[hypothesis_tests]")
+{
+    // One image of a flat board by a tele lens: each of its parameters, and the pose, does nearly what another does.
+    scenes::Random random(3110);
+    const GlassWindow port(Vec3d(0.05, -0.08, 1), 4, 1.49, 700, 1.333);
+    const Matx33d K(8500, 0, 1151.5, 0, 8500, 859.5, 0, 0, 1);
+    RigCalibration c;
+    c.data.cameraCount = 1;
+    c.data.imageSize[0] = Size(2304, 1720);
+    RigModel rig;
+    rig.add(RefractiveCamera::create(K, Vec4d(-0.1, 0, 0, 0), port), {});
+    c.data.views.push_back(observe(rig, board(20, 15, 10), Vec3d(0.1, 0.2, 0), Vec3d(2, 3, 850), false, 0.1, random));
+    c.fit.views = {0};
+    c.options.window = port;
+    c.start = rig;
+    c.start.cameras[0] = RefractiveCamera::create(K, Vec4d(), port);
+    c.options.known[0] = c.start.cameras[0]->clone();
+    c.fit = fitImages(c.data, c.start, c.fit.views, c.options.flags);
+    const std::string text = contradicted(c);
+    CAPTURE(text);
+    CHECK(text.find("the images contradict --camera: set free, the lens would differ as a whole, though in no parameter alone, "
+                    "a better fit by ") != std::string::npos);
+}
+
 TEST_CASE("Layers given wrong are contradicted by their sum", "[hypothesis_tests]")
 {
     GlassWindow layers = RIGHT;         // the same pane, in two

@@ -61,9 +61,10 @@ std::string ofWindow(const FittedRig& rig, int camera)
     return countWindows(rig.fit.rig) == 1 ? "" : format(" of camera %d's window", camera + 1);
 }
 
-std::string howFar(double deviations)
+//! By the ratio of likelihoods, of all that is freed: no distance from the given value in units of the freed one's +-.
+std::string howSure(double deviations)
 {
-    return format(", %.*f standard deviations away", deviations < 10. ? 1 : 0, deviations);
+    return format(", a better fit by %.*f sigma", deviations < 10. ? 1 : 0, deviations);
 }
 
 //! The standard deviation of a sum of numbers of the rig.
@@ -159,12 +160,12 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
         const std::string estimate = plusMinus(sumOf(found, numbers), stdOfSum(found, numbers));
         if (count > 1)
             return format("the images contradict %s: set free, the sum over the layers%s would be ", given.option, where.c_str())
-                + estimate + format(" and not %.5g", given.sum()) + howFar(deviations);
+                + estimate + format(" and not %.5g", given.sum()) + howSure(deviations);
         return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, value.c_str(),
                       given.std() > 0. ? format(" +- %.2g", given.std()).c_str() : "", given.word, where.c_str())
             + estimate + unitHint(sumOf(found, numbers)/given.sum())
             + (given.flag == GLASS_FREE_RADIUS ? outerRadiusHint(given.sum(), sumOf(found, numbers), glass) : std::string())
-            + howFar(deviations); }};
+            + howSure(deviations); }};
 }
 
 //! All windows together, as one option gives them; and each alone.
@@ -195,7 +196,7 @@ void addWedges(const FittedRig& rig, std::vector<Cause>& causes)
             const VectorXd values = toVector(found.glass);
             const auto angle = [&](int i) { return plusMinus(values[i]/ARC_MINUTE, stdOfSum(found, {i})/ARC_MINUTE); };
             return format("the images contradict --wedge-std=%.3g: set free, the wedge%s would be (", known/ARC_MINUTE, where.c_str())
-                + angle(at.wedge) + ", " + angle(at.wedge + 1) + ") arc minutes" + howFar(deviations); }});
+                + angle(at.wedge) + ", " + angle(at.wedge + 1) + ") arc minutes" + howSure(deviations); }});
     }
 }
 
@@ -212,7 +213,7 @@ void addBows(const FittedRig& rig, std::vector<Cause>& causes)
         causes.push_back({format("bow %d", c), {{{{at.curvature, 1.}}}}, [=](const Relaxed& found, double deviations) {
             return format("the images contradict --bow-std=%.2g: set free, the bow%s would be ", known, where.c_str())
                 + plusMinus(sag*toVector(found.glass)[at.curvature], sag*stdOfSum(found, {at.curvature})) + " mm per metre"
-                + howFar(deviations); }});
+                + howSure(deviations); }});
     }
 }
 
@@ -264,7 +265,7 @@ void addMotion(const FittedRig& rig, std::vector<Cause>& causes)
             }
             return format("the images contradict --placement-std=%.2g: between direct and glass images all boards (or the cameras' mount) "
                           "moved by (", known) + text + ")" + (turns ? format(", turned by %.3f degrees", norm(turned)) : std::string())
-                + howFar(deviations); }});
+                + howSure(deviations); }});
 }
 
 //! fx and fy together.
@@ -277,6 +278,7 @@ Shift focusOf(const FittedRig& rig, int camera, bool glassOnly)
 
 void addLenses(const FittedRig& rig, std::vector<Cause>& causes)
 {
+    const double TELLING = 3.;          // standard deviations of a parameter alone
     for (int c = 0; c < rig.data.cameraCount; c++)
     {
         const std::string where = ofCamera(rig, c), suffix = cameraSuffix(c);
@@ -289,19 +291,31 @@ void addLenses(const FittedRig& rig, std::vector<Cause>& causes)
         if (rig.hasBothStates(c))
             causes.push_back({format("focus %d", c), {focusOf(rig, c, true)}, [=](const Relaxed& found, double deviations) {
                 return "the focus or zoom" + where + " changed: through the window the focal length is " + factor(found)
-                    + " times that of the direct images" + howFar(deviations); }});
+                    + " times that of the direct images" + howSure(deviations); }});
         if (!rig.options.known[c] || rig.options.knownCovariance[c].empty() == ((rig.options.flags & GLASS_FREE_INTRINSICS) != 0))
             continue;           // it is free
         causes.push_back({format("lens focus %d", c), {focusOf(rig, c, false)}, [=](const Relaxed& found, double deviations) {
             return "the images contradict --camera" + suffix + ": set free, the focal length would be " + factor(found) + " times that of "
-                "the file" + howFar(deviations); }});
+                "the file" + howSure(deviations); }});
         std::vector<Shift> lens;
         for (int i = 0; i < at.lensCount; i++)
             lens.push_back({{{at.lens + i, 1.}}});
+        const VectorXd given = toVector(rig.fit.rig);
+        const bool isExact = rig.options.knownCovariance[c].empty();
+        const std::vector<String> names = rig.fit.rig.cameras[c]->parameterNames();
         causes.push_back({format("lens focus %d", c), lens, [=](const Relaxed& found, double deviations) {
             const VectorXd values = toVector(found.glass);
-            return "the images contradict --camera" + suffix + ": set free, fx would be "
-                + plusMinus(values[at.lens], stdOfSum(found, {at.lens})) + howFar(deviations); }});
+            const auto moved = [&](int i) {
+                return std::abs(values[at.lens + i] - given[at.lens + i])/stdOfSum(found, {at.lens + i}); };
+            int most = 0;               // what the file errs in: the others change as they are tied to it
+            for (int i = 1; i < at.lensCount; i++)
+                most = moved(i) > moved(most) ? i : most;
+            const std::string contradicted = "the images contradict --camera" + suffix + ": set free, the lens would ";
+            if (!(moved(most) > TELLING))
+                return contradicted + "differ as a whole, though in no parameter alone" + howSure(deviations);
+            return contradicted + "have " + names[most] + " = "
+                + plusMinus(values[at.lens + most], stdOfSum(found, {at.lens + most}))
+                + (isExact ? format(" in place of %.5g", given[at.lens + most]) : std::string()) + howSure(deviations); }});
     }
 }
 
@@ -350,7 +364,7 @@ void addPlaces(const FittedRig& rig, std::vector<Cause>& causes)
                 const double turned = DEGREES*norm(rotationVector(after.R*before.R.t()));
                 const double moved = norm(after.R.t()*after.T - before.R.t()*before.T);
                 return format("camera %d moved in the rig between direct and glass images: it turned by %.3g degrees and moved by %.2g",
-                              c + 1, turned, moved) + howFar(deviations); }});
+                              c + 1, turned, moved) + howSure(deviations); }});
 }
 
 //! The side of a board's square, as it is given; 0: there is no board.
@@ -370,7 +384,7 @@ void addTarget(const FittedRig& rig, std::vector<Cause>& causes)
         const double factor = found.glass.targetScale, std = stdOfSum(found, {scale});
         return (square > 0. ? format("the images contradict --square=%.5g: set free, it would be ", square)
                 + plusMinus(square*factor, square*std) : "the images contradict the size of the target: set free, it would be "
-                + plusMinus(factor, std) + " times as large") + unitHint(factor) + howFar(deviations); }});
+                + plusMinus(factor, std) + " times as large") + unitHint(factor) + howSure(deviations); }});
 }
 
 void addPoses(const FittedRig& rig, std::vector<Cause>& causes)
