@@ -144,6 +144,7 @@ void printBundles()
     run("a wand at 500 moments", 1, 1000, 500);
     run("moving through a scene", 20, 500, 1);
     run("moving through a scene", 100, 500, 1);
+    run("moving through a scene", 200, 500, 1);
     run("500 new points at 100 moments, 100 lengths", 1, 50000, 100);
 }
 

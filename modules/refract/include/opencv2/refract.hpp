@@ -1533,7 +1533,9 @@ scale of known lengths.
 One view: the rig does not move, as in motion capture and particle tracking. Each point is one observed position of an object:
 a wand of known length at M/2 times gives M points, and M/2 lengths between them. Several views: the rig (or one camera) moves
 through a static scene. Everything is one maximum-likelihood fit with equal isotropic pixel noise, which is estimated. The
-points are eliminated (Schur complement), as in @cite Triggs2000.
+points are eliminated (Schur complement), as in @cite Triggs2000. The poses of all views remain, as one dense system: the cost
+of an iteration grows with the cube of the number of views, the memory with its square. Some hundreds of views are the limit; of
+a film, take keyframes (doc/performance.md has times).
 
 The scene's frame is that of the first view, whose pose is fixed; with one view and without rvecs, tvecs it is the frame of
 camera 1. The scale comes from lengths, from R and T of several cameras if these are not free or have a covariance, or from the
