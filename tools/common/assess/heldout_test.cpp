@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/heldout_test.hpp"
-#include "assess/thin_svd.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/view_observations.hpp"
 #include "math/dense.hpp"
@@ -62,14 +61,15 @@ HeldOutTest testHeldOut(const RigModel& rig, const Mat& covariance, double sigma
         r.conservativeResize(rows + part.rows());
         r.tail(part.rows()) = project(observed.pixels - derivatives.predicted);
     }
-    const ThinSvd svd(AH);
+    const SingularValues svd(AH);
+    const VectorXd rAlong = transposeTimesVector(AH, r);        // U^T r of A H = U S V^T is S^-1 V^T (A H)^T r
     HeldOutTest test;
     test.squares = r.squaredNorm();
     test.expectedSquares = sigma*sigma*(double)r.size() + svd.values.squaredNorm();
     for (int i = 0; i < svd.values.size() && svd.values[i] > sigma; i++)
     {
         const double variance = sigma*sigma + std::pow(svd.values[i], 2);
-        test.chiSquare += std::pow(svd.U.col(i).dot(r), 2)/variance;
+        test.chiSquare += std::pow(svd.V.col(i).dot(rAlong)/svd.values[i], 2)/variance;
         test.directions++;
     }
     return test;
