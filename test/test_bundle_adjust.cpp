@@ -151,6 +151,31 @@ TEST_CASE("Known R and T are a scale, as are known poses", "[bundle]")
     CHECK(largestPointError(uncertain, scene) < 1e-4);
 }
 
+TEST_CASE("Rotations that are known, as of an IMU, need no pose, and poses without them no rotation", "[bundle]")
+{
+    CAPTURE(seed());
+    Random random(7);
+    const RigTruth one = oneCamera();
+    const BundleScene scene = makeMovingScene(one, 6, 50, random, 0);
+    for (int known : { 0, 3 })
+    {
+        CAPTURE(known);
+        BundleCall call(one, scene, random, 0.5);
+        Mat covariance = Mat::eye(6, 6, CV_64F)*NaN;
+        for (int i = 0; i < 3; i++)
+            covariance.at<double>(known + i, known + i) = known == 0 ? 1e-10 : 1e-6;
+        for (size_t view = 0; view < scene.rvecs.size(); view++)
+        {
+            (known == 0 ? call.rvecs : call.tvecs)[view] = Mat(known == 0 ? scene.rvecs[view] : scene.tvecs[view], true);
+            call.poseCovariances.push_back(covariance);
+        }
+        CHECK(call.run(GLASS_USE_POSES) < 1e-6);
+        CHECK(normalError(call, one, 0) < 1e-5);
+        CHECK(largestPointError(call, scene) < 1e-3);
+        CHECK(call.deviations.at<double>(8) > 0);
+    }
+}
+
 TEST_CASE("With GLASS_FIX_NORMAL cameras stay as they are, also without windows", "[bundle]")
 {
     Random random(6);

@@ -172,6 +172,54 @@ TEST_CASE("A pose may be exact in a part, and not known in another", "[known][pr
     const RigCall part = scenes.posed(covariance(NaN, 0.01)), vague = scenes.posed(covariance(1e2, 0.01));
     for (int i = 8; i < 11; i++)
         CHECK(part.deviations.at<double>(i) == Approx(vague.deviations.at<double>(i)).epsilon(0.05).margin(1e-12));
+    // What is given where nothing is known has no effect, be it no number. As of an IMU, which tells rotations alone.
+    for (bool isPaired : { false, true })
+        for (int unknown : { 0, 3 })
+        {
+            CAPTURE(isPaired, unknown);
+            const Mat C = unknown == 0 ? covariance(NaN, 0.01) : covariance(1e-8, NaN);
+            const auto posed = [&](const Vec3d* value)
+            {
+                RigCall call(scenes.truth, scenes.scene, isPaired);
+                call.rvecs = vectorsOf(scenes.scene.rvecs);
+                call.tvecs = vectorsOf(scenes.scene.tvecs);
+                call.poseCovariances.assign(scenes.scene.object.size(), C);
+                for (Mat& vector : unknown == 0 ? call.rvecs : call.tvecs)
+                    vector = value ? Mat(*value, true) : vector;
+                call.run(GLASS_USE_POSES);
+                return call;
+            };
+            const Vec3d elsewhere = unknown == 0 ? Vec3d(2, 1, -2) : Vec3d(100, -300, -50), nan = Vec3d::all(NaN);
+            const RigCall given = posed(nullptr);
+            compare(posed(&elsewhere), given, 1e-4);
+            compare(posed(&nan), given, 1e-4);
+        }
+}
+
+TEST_CASE("Poses that a calibration returns are taken by the next one", "[known][prior][bundle]")
+{
+    CAPTURE(seed());
+    const Scenes scenes;
+    RigCall first(scenes.truth, scenes.scene, false);
+    first.object.insert(first.object.begin(), board());
+    first.refracted[0].insert(first.refracted[0].begin(), Mat());
+    first.run(0);
+    REQUIRE(std::isnan(first.tvecs[0].at<double>(0)));
+    RigCall second = first;
+    second.poseCovariances.assign(second.object.size(), Mat::eye(6, 6, CV_64F)*1e-8);
+    CHECK(second.run(GLASS_USE_POSES) > 0);
+    CHECK(std::isnan(second.tvecs[0].at<double>(0)));
+    second.rvecs[1].at<double>(2) = NaN;        // of a view that has an image
+    CHECK_THROWS_WITH(second.run(GLASS_USE_POSES), Contains("rvecs[1][2] is nan; it must be finite"));
+
+    Random random(3410), start(3411);
+    const BundleScene scene = makeMovingScene(scenes.pair, 4, 40, random, 0.1);
+    BundleCall bundle(scenes.pair, scene, start, 0.3);
+    for (std::vector<Mat>& images : bundle.images)
+        images[2] = Mat();
+    const double rms = bundle.run(0);
+    REQUIRE(std::isnan(bundle.tvecs[2].at<double>(0)));
+    CHECK(bundle.run(0) == Approx(rms).epsilon(1e-6));
 }
 
 TEST_CASE("NaN says that nothing is known, of cameras, targets, the rig and lengths", "[known][prior]")

@@ -299,7 +299,8 @@ public:
     CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
     CV_PROP_RW Vec3d normal;                   //!< flat, bent: unit, camera coordinates, normal[2] > 0
     CV_PROP_RW double distance;                //!< flat, bent: from the camera to the first surface, along the normal
-    CV_PROP_RW Vec3d center;                   //!< dome: of the spheres; tube: a point of the axis; camera coordinates
+    /** dome: of the spheres; tube: a point of the axis, after a calibration the one nearest to the camera; camera coordinates */
+    CV_PROP_RW Vec3d center;
     CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
     CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
     /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is

@@ -32,8 +32,11 @@ struct PosePrior
     Kind kind = NONE;
     Eigen::MatrixXd sqrtInformation;    //!< W, W^T W = inverse of the covariance of what is known; UNCERTAIN only
 
-    //! Not of the rotation only.
-    bool tellsTranslation() const { return kind == EXACT || (kind == UNCERTAIN && !sqrtInformation.rightCols(3).isZero(0)); }
+    //! Something of one of the six coordinates.
+    bool tells(int coordinate) const { return kind == EXACT || (kind == UNCERTAIN && !sqrtInformation.col(coordinate).isZero(0)); }
+    bool tellsRotation() const { return tells(0) || tells(1) || tells(2); }
+    bool tellsTranslation() const { return tells(3) || tells(4) || tells(5); }
+    bool tellsAll() const { return tells(0) && tells(1) && tells(2) && tells(3) && tells(4) && tells(5); }
 };
 
 /** What an earlier step knows of a camera's parameters, in the order of Camera::parameters(): lens, or lens and window, or these and

@@ -72,6 +72,26 @@ std::vector<KnownLength> readLengths(InputArray lengths, int pointCount)
     return known;
 }
 
+bool isSeen(const BundleTask& task, int view)
+{
+    return std::any_of(task.pixels.begin(), task.pixels.end(), [=](const PixelViews& camera)
+                       { return countSeen(camera[view]) > 0; });
+}
+
+//! The scene's frame is that of the first view, in what is known of no pose.
+void holdFrame(int first, BundleTask& task)
+{
+    const auto isTold = [&](bool (PosePrior::*tells)() const)
+    {
+        return std::any_of(task.posePriors.begin(), task.posePriors.end(), [=](const PosePrior& prior) { return (prior.*tells)(); });
+    };
+    const bool isTurned = isTold(&PosePrior::tellsRotation), isPlaced = isTold(&PosePrior::tellsTranslation);
+    if (!isTurned && !isPlaced)
+        task.posePriors[first].kind = PosePrior::EXACT;
+    else if (!isTurned || !isPlaced)
+        holdExactly(isTurned ? 3 : 0, norm(task.poses[first].tvec), task.posePriors[first]);
+}
+
 //! One view stands where it is; more need a start.
 void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArrayOfArrays covariances, int count,
                    BundleTask& task)
@@ -82,9 +102,21 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
         task.posePriors = readPosePriors(covariances, task.poses);
     else
         task.posePriors.resize(count);
-    const auto isKnown = [](const PosePrior& prior) { return prior.kind != PosePrior::NONE; };
-    if (std::none_of(task.posePriors.begin(), task.posePriors.end(), isKnown))
-        task.posePriors[0].kind = PosePrior::EXACT;         // the scene's frame
+    int first = -1;                     // of the views with an image
+    for (int view = 0; view < count; view++)
+    {
+        if (!isSeen(task, view))
+        {
+            task.posePriors[view] = PosePrior();
+            task.poses[view] = Pose();
+            continue;
+        }
+        PosePrior all;                  // each view needs a start
+        all.kind = PosePrior::EXACT;
+        checkKnown(task.poses[view], view, all);
+        first = first < 0 ? view : first;
+    }
+    holdFrame(std::max(first, 0), task);
 }
 
 //! PxP, in the order of stdDeviations; or nothing.

@@ -6,6 +6,7 @@
 
 #include "calibrate/calibrate_rig.hpp"
 #include "calibrate/calibration_error.hpp"
+#include "start/pose_start.hpp"
 #include "start/rig_task.hpp"
 #include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
@@ -207,16 +208,23 @@ void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutpu
     writeExtrinsics(extrinsics, Rs, Ts);
 }
 
-//! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors.
+//! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors. They may be NaN.
 static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name)
 {
     std::vector<Vec3d> vectors;
     if (a.isMatVector() || a.kind() == _InputArray::STD_VECTOR_VECTOR)
         for (int i = 0; i < (int)a.total(); i++)
-            vectors.push_back(readVec3(a.getMat(i), numbered(name, i).c_str()));
+        {
+            Mat numbers;
+            a.getMat(i).convertTo(numbers, CV_64F);
+            if (numbers.total()*numbers.channels() != 3)
+                CV_Error_(Error::StsBadSize, ("%s has %d values; it must be a vector of 3", numbered(name, i).c_str(),
+                                              (int)numbers.total()*numbers.channels()));
+            vectors.push_back(Vec3d(numbers.ptr<double>()));
+        }
     else
         for (const Point3d& p : readPoints3(a, name))
-            vectors.push_back(readVec3(Mat(Vec3d(p)), name));
+            vectors.push_back(Vec3d(p));
     if ((int)vectors.size() != count)
         CV_Error_(Error::StsUnmatchedSizes, ("%s has %d vectors, but there are %d views, whose poses must be given", name,
                                              (int)vectors.size(), count));
@@ -224,7 +232,21 @@ static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const cha
 }
 
 //! What is exact beside what is not: far below what images tell, so that it is a prior as the rest.
-static const double EXACTLY = 1e-8;     // radians, and of the distance
+static double exactly(int coordinate, double distance)
+{
+    const double EXACTLY = 1e-8;        // radians, and of the distance
+    return coordinate < 3 || !(distance > 0) ? EXACTLY : EXACTLY*distance;
+}
+
+void holdExactly(int first, double distance, PosePrior& prior)
+{
+    const int rows = (int)prior.sqrtInformation.rows();
+    prior.kind = PosePrior::UNCERTAIN;
+    prior.sqrtInformation.conservativeResize(rows + 3, 6);
+    prior.sqrtInformation.bottomRows(3).setZero();
+    for (int i = 0; i < 3; i++)
+        prior.sqrtInformation(rows + i, first + i) = 1/exactly(first + i, distance);
+}
 
 static PosePrior readPosePrior(InputArray covariance, const Pose& pose, const String& name)
 {
@@ -247,7 +269,7 @@ static PosePrior readPosePrior(InputArray covariance, const Pose& pose, const St
     prior.kind = known.empty() ? PosePrior::NONE : PosePrior::UNCERTAIN;
     if (known.empty())
         return prior;
-    const double distance = norm(pose.tvec), exact[] = { EXACTLY, EXACTLY*(distance > 0 ? distance : 1) };
+    const double distance = norm(pose.tvec);
     const int count = (int)known.size();
     Eigen::MatrixXd C(count, count), rows = Eigen::MatrixXd::Zero(count, 6);
     for (int i = 0; i < count; i++)
@@ -255,7 +277,7 @@ static PosePrior readPosePrior(InputArray covariance, const Pose& pose, const St
         for (int j = 0; j < count; j++)
             C(i, j) = all(known[i], known[j]);
         if (C(i, i) == 0)
-            C(i, i) = std::pow(exact[known[i]/3], 2);
+            C(i, i) = std::pow(exactly(known[i], distance), 2);
         rows(i, known[i]) = 1;
     }
     prior.sqrtInformation = whiten(C, rows);
@@ -270,9 +292,20 @@ std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, 
     {
         poses[view].rvec = r[view];
         poses[view].tvec = t[view];
-        poses[view].found = true;
+        poses[view].found = std::isfinite(norm(r[view])) && std::isfinite(norm(t[view]));
     }
     return poses;
+}
+
+void checkKnown(const Pose& pose, int view, const PosePrior& prior)
+{
+    for (int i = 0; i < 6; i++)
+    {
+        const double value = i < 3 ? pose.rvec[i] : pose.tvec[i - 3];
+        if (prior.tells(i) && !std::isfinite(value))
+            CV_Error_(Error::StsBadArg, ("%s[%d] is %g; it must be finite", numbered(i < 3 ? "rvecs" : "tvecs", view).c_str(), i % 3,
+                                         value));
+    }
 }
 
 std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses)
@@ -397,7 +430,11 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
         task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
         task.posePriors = readPosePriors(poseCovariances, task.knownPoses);
         for (int view = 0; view < task.views.count(); view++)
-            task.knownPoses[view].found = task.posePriors[view].kind != PosePrior::NONE;
+        {
+            if (hasPoints(task.views, view))
+                checkKnown(task.knownPoses[view], view, task.posePriors[view]);
+            task.knownPoses[view].found = task.posePriors[view].tellsAll();
+        }
     }
     task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
     task.targetCovariance = readTargetCovariance(targetCovariance);

@@ -50,7 +50,12 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
 
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
+//! What is not finite is not found.
 std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
+//! Adds that three coordinates are exact, from the first on. distance: the translation's length.
+void holdExactly(int first, double distance, PosePrior& prior);
+//! Throws where something is known of a coordinate that is not finite.
+void checkKnown(const Pose& pose, int view, const PosePrior& prior);
 //! Poses that are known: exactly, or with a covariance, in part or not at all.
 std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses);
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);

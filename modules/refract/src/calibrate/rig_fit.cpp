@@ -192,6 +192,16 @@ void toNearestCenters(Rig& rig, RigFit& fit)
     }
 }
 
+//! Of a pose that is known in part the rest is that of the start, and the prior's mean is where the fit begins.
+static void keepKnown(const RigTask& task, std::vector<Pose>& poses)
+{
+    for (size_t view = 0; view < task.posePriors.size(); view++)
+        for (int i = 0; i < 6; i++)
+            if (task.posePriors[view].tells(i))
+                (i < 3 ? poses[view].rvec[i] : poses[view].tvec[i - 3]) = i < 3 ? task.knownPoses[view].rvec[i]
+                                                                                : task.knownPoses[view].tvec[i - 3];
+}
+
 //! Of a task all of whose views have points.
 static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
 {
@@ -203,6 +213,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     if (!outcome.converged())
         return outcome;
     fit.otherMinima = toMat(minima);
+    keepKnown(task, start.poses);
     Problem problem(start.rig, task.views, start.poses, task.posePriors, task.cameraPriors, task.flags,
                     task.targetCovariance);
     TargetOutliers outliers(problem);
