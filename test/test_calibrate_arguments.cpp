@@ -102,16 +102,20 @@ TEST_CASE("A view without an image counts for nothing in a bundle, too", "[calib
     Random random(3510);
     const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
     const BundleScene scene = makeMovingScene(truth, 4, 40, random, 0.1);
-    Random start1(3511), start2(3511);
-    BundleCall without(truth, scene, start1, 0.3), with(truth, scene, start2, 0.3);
-    for (int c = 0; c < 2; c++)
-        insertEmpty(with.images[c], 2);
-    with.rvecs.insert(with.rvecs.begin() + 2, Mat::zeros(3, 1, CV_64F));
-    with.tvecs.insert(with.tvecs.begin() + 2, Mat(Vec3d(0, 0, 600), true));
-    const double rms = without.run(0);
-    CHECK(with.run(0) == Approx(rms).epsilon(1e-9));
-    CHECK(norm(with.cameras[0]->window().normal - without.cameras[0]->window().normal) < 1e-9);
-    CHECK(std::isnan(with.perViewErrors.at<double>(2, 0)));
+    for (int empty : { 0, 2, 4 })
+    {
+        CAPTURE(empty);
+        Random start1(3511), start2(3511);
+        BundleCall without(truth, scene, start1, 0.3), with(truth, scene, start2, 0.3);
+        for (int c = 0; c < 2; c++)
+            insertEmpty(with.images[c], empty);
+        with.rvecs.insert(with.rvecs.begin() + empty, Mat::zeros(3, 1, CV_64F));
+        with.tvecs.insert(with.tvecs.begin() + empty, Mat(Vec3d(0, 0, 600), true));
+        const double rms = without.run(0);
+        CHECK(with.run(0) == Approx(rms).epsilon(1e-9));
+        CHECK(norm(with.cameras[0]->window().normal - without.cameras[0]->window().normal) < 1e-9);
+        CHECK(std::isnan(with.perViewErrors.at<double>(empty, 0)));
+    }
 }
 
 TEST_CASE("What flags free of windows a camera without one does not get", "[calibrate_arguments]")
@@ -163,22 +167,31 @@ TEST_CASE("Where the optimum touches the window, that is said, and not to iterat
         GlassWindow given = wall;
         given.thickness[0] = random.uniform(20, 28);
         given.distance = random.uniform(100, 112);
-        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(truth->cameraMatrix(), noArray(), given);
-        try
+        const auto refusal = [&](int maxCount)
         {
-            calibrateGlass(object, noArray(), pixels, camera, rvecs, tvecs, 0);
-        }
-        catch (const CalibrationError& e)
-        {
-            CAPTURE(trial, e.err);
-            const bool hasNoStart = e.cause == CalibrationError::NO_POSE || e.cause == CalibrationError::NO_IMAGE;
-            CHECK((hasNoStart || e.cause == CalibrationError::NOT_CONVERGED));
-            if (e.cause != CalibrationError::NOT_CONVERGED)
-                continue;
-            touching++;
-            CHECK_THAT(e.err, Contains("touches the window of camera 1") && !Contains("maxCount"));
-            CHECK((e.view >= 0 && e.view < 6 && e.point >= 0 && e.point < 35 && e.camera == 0));
-        }
+            const Ptr<RefractiveCamera> camera = RefractiveCamera::create(truth->cameraMatrix(), noArray(), given);
+            try
+            {
+                calibrateGlass(object, noArray(), pixels, camera, rvecs, tvecs, 0, TermCriteria(3, maxCount, 1e-12));
+            }
+            catch (const CalibrationError& e)
+            {
+                return e;
+            }
+            return CalibrationError(CalibrationError::NO_POSE, "", "");
+        };
+        const CalibrationError e = refusal(1000);
+        if (e.err.empty())
+            continue;
+        CAPTURE(trial, e.err);
+        const bool hasNoStart = e.cause == CalibrationError::NO_POSE || e.cause == CalibrationError::NO_IMAGE;
+        CHECK((hasNoStart || e.cause == CalibrationError::NOT_CONVERGED));
+        if (e.cause != CalibrationError::NOT_CONVERGED)
+            continue;
+        touching++;
+        CHECK_THAT(e.err, Contains("touches the window of camera 1") && !Contains("maxCount"));
+        CHECK((e.view >= 0 && e.view < 6 && e.point >= 0 && e.point < 35 && e.camera == 0));
+        CHECK_THAT(refusal(3).err, Contains("raise criteria.maxCount"));
     }
     std::cout << "[numbers] optimum that touches the window: in " << touching << " of 60 calibrations" << std::endl;
     CHECK(touching > 0);

@@ -31,6 +31,25 @@ TEST_CASE("Two cameras in one tube are calibrated together", "[tube][calibrate]"
     }
 }
 
+TEST_CASE("The jacobian of a calibrated tube is that of the point of its axis that is returned", "[tube][calibrate]")
+{
+    CAPTURE(seed());
+    Random random(6705);
+    const RigTruth truth = roundRig(tubeAt, 1, false, 1.333, { 5, -4, 9 }, random);
+    RigCall call = callFromCentre(truth, makeRigScene(truth, 4, random, SIGMA), true);
+    GlassWindow window = call.cameras[0]->window();
+    window.center += 50*window.axis;
+    call.cameras[0]->setWindow(window);
+    std::vector<Vec3d> rvecs, tvecs;
+    Mat deviations, covariance, errors, jacobian, byProjection;
+    calibrateGlass(call.object, call.direct[0], call.refracted[0], call.cameras[0], rvecs, tvecs, deviations, covariance, errors, jacobian, 0);
+    const int n = (int)call.object[0].size();
+    REQUIRE(jacobian.rows == 4*n*(int)call.object.size());
+    refractiveProjectPoints(call.object[1], rvecs[1], tvecs[1], call.cameras[0], noArray(), noArray(), byProjection);
+    const Mat rows = jacobian.rowRange(6*n, 8*n);           // view 1 through the window
+    CHECK(largestDifference(rows.colRange(CENTER, AXIS + 3), byProjection.colRange(6 + CENTER, 6 + AXIS + 3)) < 1e-7);
+}
+
 TEST_CASE("A tube's center is where its axis is nearest to the camera, and its covariance is of that point", "[tube][calibrate]")
 {
     const int TRIALS = trials(8);

@@ -57,7 +57,10 @@ without a window.
   except for the rounding of printed numbers, and are refused with their name and numbers otherwise. They may be singular: then
   a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
   rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
-  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too.
+  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of the
+  lens, of the center and axis of a dome or tube, of media, and of R and T are read, not the correlations between these:
+  `rigCovariance` has them all.
+- **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is not written, in no thread.
 
 ### The model
 

@@ -45,13 +45,18 @@ private:
     std::vector<uchar> status_;
 };
 
+//! What tells the scale of a scene: lengths, R and T of several cameras, poses of several views.
+struct ScaleSources
+{
+    bool areLengthsKnown = false, isRigKnown = false, arePosesKnown = false;
+    bool any() const { return areLengthsKnown || isRigKnown || arePosesKnown; }
+};
+
 //! Of a scene: points without enough inliers are not in use.
 class SceneOutliers : public Outliers
 {
 public:
-    /** @param isRigKnown, arePosesKnown R and T of several cameras, poses of several views: they tell the scale, as do lengths */
-    SceneOutliers(Problem& problem, bool isRigKnown, bool arePosesKnown)
-        : problem_(problem), isRigKnown_(isRigKnown), arePosesKnown_(arePosesKnown) {}
+    SceneOutliers(Problem& problem, const ScaleSources& scale) : problem_(problem), scale_(scale) {}
     double rootWeight(double ratio) const override;
     FitOutcome setInliers(Masks& inliers) override;
     bool bringBack(Masks& inliers, double scale) override;
@@ -63,7 +68,7 @@ public:
 private:
     bool tellsScale() const;
     Problem& problem_;
-    const bool isRigKnown_, arePosesKnown_;
+    const ScaleSources scale_;
 };
 
 }} // namespace

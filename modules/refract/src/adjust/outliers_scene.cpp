@@ -59,7 +59,8 @@ bool SceneOutliers::tellsScale() const
             cameras.insert(image.camera);
             views.insert(image.view);
         }
-    return problem_.scene().lengthCount() > 0 || (isRigKnown_ && cameras.size() > 1) || (arePosesKnown_ && views.size() > 1);
+    return (scale_.areLengthsKnown && problem_.scene().lengthCount() > 0) || (scale_.isRigKnown && cameras.size() > 1) ||
+           (scale_.arePosesKnown && views.size() > 1);
 }
 
 FitOutcome SceneOutliers::checkWhatIsLeft() const

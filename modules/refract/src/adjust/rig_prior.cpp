@@ -10,15 +10,16 @@ by orders, the correlations do not. */
 
 namespace cv { namespace refract {
 
-// A file has the covariance with finite digits: of the correlations' eigenvalues, what is below this part of 1 is rounding.
+/* A file has the covariance with finite digits: of the correlations' eigenvalues, what is below this part of 1 is rounding; so is
+what is as large as the lowest is negative. */
 static const double ROUNDING = 1e-10;
 
 //! L^-1/2 U^T of correlations U L U^T.
 static Eigen::MatrixXd inverseRoot(const Eigen::MatrixXd& correlations)
 {
     const SymmetricEigen eigen(correlations);
-    const double most = eigen.values.maxCoeff();
-    const Eigen::VectorXd roots = eigen.values.cwiseMax(ROUNDING*most).cwiseSqrt().cwiseInverse();
+    const double rounding = std::max(ROUNDING*eigen.values.maxCoeff(), -eigen.values.minCoeff());
+    const Eigen::VectorXd roots = eigen.values.cwiseMax(rounding).cwiseSqrt().cwiseInverse();
     return roots.asDiagonal()*eigen.vectors.transpose();
 }
 

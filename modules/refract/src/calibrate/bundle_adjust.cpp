@@ -165,10 +165,11 @@ bool isPlaceKnown(const Rig& rig, const BundleTask& task, int c)
 void checkScale(const Rig& rig, BundleTask& task)
 {
     for (int c = 1; c < rig.count(); c++)
-        task.isRigKnown = task.isRigKnown || isPlaceKnown(rig, task, c);
+        task.scale.isRigKnown = task.scale.isRigKnown || isPlaceKnown(rig, task, c);
     const auto isPlaced = [](const PosePrior& prior) { return prior.tellsTranslation(); };
-    task.arePosesKnown = std::count_if(task.posePriors.begin(), task.posePriors.end(), isPlaced) > 1;
-    if ((!task.lengths.empty() && !std::isnan(task.lengthScaleSigma)) || task.isRigKnown || task.arePosesKnown)
+    task.scale.arePosesKnown = std::count_if(task.posePriors.begin(), task.posePriors.end(), isPlaced) > 1;
+    task.scale.areLengthsKnown = !task.lengths.empty() && !std::isnan(task.lengthScaleSigma);
+    if (task.scale.any())
         return;
     const String reason = "nothing tells the scale";
     raise(CalibrationError(CalibrationError::NO_SCALE, reason + ": give a length between two points (lengths, and a lengthScaleStd that "

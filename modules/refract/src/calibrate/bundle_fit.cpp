@@ -37,7 +37,7 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
 {
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
     const TermCriteria criteria = checkedCriteria(task.criteria);
-    SceneOutliers outliers(problem, task.isRigKnown, task.arePosesKnown);
+    SceneOutliers outliers(problem, task.scale);
     const double NaN = std::numeric_limits<double>::quiet_NaN();
     problem.setPoints(std::vector<Point3d>(task.points.size(), Point3d(NaN, NaN, NaN)), Masks());
     FitOutcome outcome = problem.findPointWithoutImage();       // of none: a shared window that a camera cannot look through

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_BUNDLE_FIT_HPP
 #define OPENCV_REFRACT_BUNDLE_FIT_HPP
 
+#include "adjust/outliers.hpp"
 #include "calibrate/rig_fit.hpp"
 
 namespace cv { namespace refract {
@@ -24,7 +25,7 @@ struct BundleTask
     double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none; NaN: not known
     int flags;
     TermCriteria criteria;
-    bool isRigKnown = false, arePosesKnown = false;     //!< R and T of several cameras, poses of several views: they tell the scale
+    ScaleSources scale;
     bool wantsPointDeviations;
 };
 

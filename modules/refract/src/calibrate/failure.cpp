@@ -49,11 +49,13 @@ Failure describeUndetermined(const FitOutcome& outcome)
 //! Iterations help where there were too few of them.
 Failure describeUnconverged(const FitOutcome& o, const char* fit, const char* otherwise)
 {
+    const int PLENTY = 1000;        // criteria.maxCount of those who do not name it
     if (o.pointIndex >= 0)
         return { CalibrationError::NOT_CONVERGED, format("view %d: ", o.view),
                  format("%s did not converge; where it errs least, point %d touches the window of camera %d", fit, o.pointIndex,
                         o.camera + 1),
-                 "; check the window's distance and thickness, the size of the target, and the units" };
+                 String("; check the window's distance and thickness, the size of the target, and the units") +
+                     (o.isStuck || o.count >= PLENTY ? "" : "; or raise criteria.maxCount") };
     if (o.isStuck)
         return { CalibrationError::NOT_CONVERGED, "",
                  format("%s did not converge: after %d iterations no step makes it better", fit, o.count),

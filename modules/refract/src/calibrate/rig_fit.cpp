@@ -87,6 +87,8 @@ void dropUnusable(const RigViews& inliers, const std::vector<Pose>& poses, RigTa
         }
 }
 
+Vec3d nearestOfAxis(const GlassWindow& tube) { return tube.center - tube.axis.dot(tube.center)*tube.axis; }
+
 Mat toMat(const std::vector<OtherMinimum>& minima)
 {
     Mat_<double> rows((int)minima.size(), 5, NaN);
@@ -94,7 +96,10 @@ Mat toMat(const std::vector<OtherMinimum>& minima)
     {
         if (std::isnan(minima[c].excess))
             continue;
-        const std::vector<double> window = windowParameters(minima[c].window);
+        GlassWindow other = minima[c].window;
+        if (other.shape == WINDOW_TUBE)
+            other.center = nearestOfAxis(other);
+        const std::vector<double> window = windowParameters(other);
         const WindowLayout at = windowLayout(minima[c].window);
         std::copy_n(window.begin() + at.normal, 3, rows[c]);
         rows(c, 3) = minima[c].excess;
@@ -187,7 +192,7 @@ void toNearestCenters(Rig& rig, RigFit& fit)
         fit.covariance = change*fit.covariance*change.t();
         if (!fit.jacobian.empty())
             fit.jacobian.colRange(axis) += along*fit.jacobian.colRange(center);
-        window.center = c - along*a;
+        window.center = nearestOfAxis(window);
         camera.setWindow(window);
     }
 }
