@@ -42,7 +42,8 @@ TEST_CASE("The jacobian of a calibrated tube is that of the point of its axis th
     call.cameras[0]->setWindow(window);
     std::vector<Vec3d> rvecs, tvecs;
     Mat deviations, covariance, errors, jacobian, byProjection;
-    calibrateGlass(call.object, call.direct[0], call.refracted[0], call.cameras[0], rvecs, tvecs, deviations, covariance, errors, jacobian, 0);
+    calibrateGlass(call.object, call.direct[0], call.refracted[0], call.cameras[0], rvecs, tvecs, deviations, covariance, errors,
+                   jacobian, 0);
     const int n = (int)call.object[0].size();
     REQUIRE(jacobian.rows == 4*n*(int)call.object.size());
     refractiveProjectPoints(call.object[1], rvecs[1], tvecs[1], call.cameras[0], noArray(), noArray(), byProjection);

@@ -470,7 +470,7 @@ int refract_calib_main(int argc, char** argv)
         const Options options = parseOptions(command);
         checkOutputs(options, command.settings());
         const RigCalibration calibration = calibrate(options, command.quiet());
-        const Assessment assessment = assess(calibration, command.quiet());
+        const Assessment assessment = assess(calibration);
         const Findings findings = findingsOf(calibration, assessment);
         if (!options.pinholeOut.empty())
             writePinhole(options.pinholeOut, calibration, command.line());

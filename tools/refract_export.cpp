@@ -50,7 +50,8 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
     parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap)");
     parser.add("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
-               "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; a splined lens stays one with --to=mrcal)");
+               "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; --to=mrcal leaves the lens of a camera without a "
+               "window as it is)");
     parser.add("--max-error", options.maxError, "px: exit code 2 if a camera is further off").check(moreThanZero());
 }
 
@@ -92,8 +93,10 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
         throw Failure(format("--coefficients=%d: %s has no such lens model", options.coefficients, options.target.c_str()));
     if (options.coefficients >= 0)
         return fitCentralCamera(camera, range, options.coefficients, name);
-    if (options.target == "mrcal" && camera->lensModel().find("LENSMODEL_SPLINED") == 0)
-        return fitCentralSplined(camera, range, name);
+    const cv::refract::GlassWindow window = camera->window();
+    const bool isMrcals = camera->lensModel().find("LENSMODEL_") == 0;
+    if (options.target == "mrcal" && isMrcals && window.thickness.empty() && window.innerIndex == window.outerIndex)
+        return centralCamera(camera, range);
     if (camera->lensModel() == "fisheye" && isKnown(0))
         return fitCentralCamera(camera, range, 0, name);
     const double NEARLY = 1.1;

@@ -49,7 +49,6 @@ RIG.yml (cv::FileStorage, lengths in one unit of your choice):
     - { shape: plane, point: [0., 0., 1000.], normal: [0., 0., 1.] }      # endless; a rectangle with
                          # right: [1., 0., 0.], half_size: [200., 100.]
     - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] }     # red, green, blue, 0 ... 1
-    - { shape: mesh, file: part.ply, rvec: [0., 0., 0.], tvec: [0., 0., 600.], scale: 1. }    # or .obj; beside RIG.yml
   texture: { size: 60., contrast: 0.8, octaves: 8 }      # of the scene: size of its coarsest grains, each octave halves
                          # it; the finest should be a pixel where the scene is nearest
   emitters:              # lines and fringes of light, by name: a camera that sends light, refracted at its own window
@@ -282,9 +281,7 @@ void refuseOverwriting(const std::vector<std::string>& files, const Scene& scene
         if (job.hasDepth())
             outputs.push_back({"--out-dir", folder + "/" + job.depthPath, OUTPUT_IN_FOLDER});
     }
-    std::vector<std::string> inputs = scene.meshes;
-    inputs.insert(inputs.end(), files.begin(), files.end());
-    checkOutputs(outputs, inputs);
+    checkOutputs(outputs, files);
 }
 
 } // namespace

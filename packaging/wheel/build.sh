@@ -57,7 +57,7 @@ opencv_archive=$(PYTHONPATH=python "$work/python/bin/python" -B -c "import openc
 folder = pathlib.Path(sys.argv[1])
 print(next(folder.glob(f'*-{source.VERSION}.tar.gz'), None) or source.download(folder))" "$work")
 . packaging/wheel/dependencies.sh
-for dependency in headers zlib libpng pixman cairo gnuplot assimp ceres mbedtls opencv; do
+for dependency in headers zlib libpng pixman cairo gnuplot ceres mbedtls opencv; do
   what=""
   [ $dependency != opencv ] || what=$(basename "$opencv_archive")
   once $dependency "$what"

@@ -103,10 +103,6 @@ zlib() {
   CC=$zig_cc AR=$zig_ar RANLIB=$zig_ranlib CFLAGS="-O2 -fPIC -fvisibility=hidden" ./configure --static --prefix="$prefix"
   make -j"$(nproc)" install
   cp README "$licences/zlib"
-  static_library minizip contrib/minizip/unzip.c contrib/minizip/ioapi.c      # assimp looks into archives
-  mkdir -p "$prefix/include/minizip"
-  cp contrib/minizip/*.h "$prefix/include/minizip"
-  pkg_config_file minizip "-I$prefix/include/minizip" "-lminizip -lz"
 }
 
 libpng() {
@@ -151,15 +147,6 @@ gnuplot() {     # draws SVG; a program of its own
   strip -o "$prefix/bin/gnuplot" src/gnuplot
   # Its licence asks for the changes to the released source beside the program.
   cat Copyright debian/patches/*.patch debian/patches/*.diff >"$licences/gnuplot" 2>/dev/null || cp Copyright "$licences/gnuplot"
-}
-
-assimp() {
-  debian_source assimp
-  (cd source && patch -R -p1 <debian/patches/use-system-libdraco.patch)     # a format that no tool reads
-  build_cmake source -DASSIMP_BUILD_TESTS=OFF -DASSIMP_BUILD_ASSIMP_TOOLS=OFF -DASSIMP_NO_EXPORT=ON \
-    -DASSIMP_BUILD_ALL_IMPORTERS_BY_DEFAULT=OFF -DASSIMP_BUILD_OBJ_IMPORTER=ON -DASSIMP_BUILD_PLY_IMPORTER=ON \
-    -DASSIMP_WARNINGS_AS_ERRORS=OFF -DASSIMP_BUILD_ZLIB=OFF -DCMAKE_CXX_FLAGS="-isystem $prefix/include"
-  cp source/LICENSE "$licences/assimp"
 }
 
 ceres() {       # with Eigen alone: what it could do faster with SuiteSparse is not asked of it

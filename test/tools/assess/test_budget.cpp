@@ -3,7 +3,6 @@
 
 // The uncertainty budget: its rows against what each source does by itself.
 #include "assess/budget.hpp"
-#include "assess/tolerance.hpp"
 #include "fitted_rig.hpp"
 
 using namespace cv;
@@ -59,16 +58,4 @@ TEST_CASE("The budget of a point adds up, and each source is worth what it does 
           == Approx(rowOf(ofExact, "noise of the point's own pixels").effect).epsilon(0.1));
     CHECK(rowOf(rows, "thickness, camera 1").effect > 0.);
     CHECK(ofExact.size() == 3);
-}
-
-TEST_CASE("A wrong thickness is tried, though the index beside it is known to a standard deviation", "[budget][tolerance]")
-{
-    GivenStd std;
-    std.index = {1e-4};
-    for (const RigCalibration& c : {calibrated(GivenStd()), calibrated(std)})
-    {
-        const std::vector<Tolerance> tolerances = analyseTolerances(c, 1., true);
-        CHECK_THAT(tolerances[0].what, Catch::Contains("thickness wrong by 0.1 mm, camera 1"));
-        CHECK(tolerances[0].rms > 0.005);
-    }
 }

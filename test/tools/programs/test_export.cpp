@@ -152,7 +152,7 @@ TEST_CASE("refract_export writes mrcal's models", "[tools][export]")
 #endif
 }
 
-TEST_CASE("refract_export leaves a splined lens splined for mrcal", "[tools][export]")
+TEST_CASE("refract_export leaves the splined lens of a camera without a window splined for mrcal", "[tools][export]")
 {
     const TemporaryFolder folder;
     std::vector<double> intrinsics(4 + 2*12*10, 0.);
@@ -160,8 +160,7 @@ TEST_CASE("refract_export leaves a splined lens splined for mrcal", "[tools][exp
     for (size_t k = 4; k < intrinsics.size(); k++)
         intrinsics[k] = 0.01*std::sin(0.7*(double)k);
     const Ptr<RefractiveCamera> camera = RefractiveCamera::createMrcal(
-        "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_fov_x_deg=110", intrinsics,
-        GlassWindow(Vec3d(0.05, 0.02, 1), 10, 1.5, 30, 1.333));
+        "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=12_Ny=10_fov_x_deg=110", intrinsics);
     camera->setImageSize(Size(1280, 1024));
     camera->save(folder / "calib.yml");
     const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + " --to=mrcal" + RANGE + " --out-dir=" + (folder / "m"));

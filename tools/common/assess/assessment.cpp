@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/assessment.hpp"
-#include "calibrate/units.hpp"
 
 using namespace cv;
 
 namespace tools {
 
-Assessment assess(const RigCalibration& c, bool quiet)
+Assessment assess(const RigCalibration& c)
 {
     Calibration calibration = calibrationOf(c.fit.rig);
     calibration.covariance = c.fit.covariance;
@@ -19,7 +18,6 @@ Assessment assess(const RigCalibration& c, bool quiet)
     for (const ErrorLimit& limit : c.limits.errors)
         result.limits.push_back(mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS));
     result.budget = uncertaintyBudget(c);
-    result.tolerances = analyseTolerances(c, 1./millimetresIn(c.unit), quiet);
     result.advice = adviseImages(c);
     result.contradictions = testGivenValues(c.data, c.options, c.fit);
     return result;

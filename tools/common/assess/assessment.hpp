@@ -8,9 +8,8 @@
 #include "assess/budget.hpp"
 #include "diagnose/hypothesis_tests.hpp"
 #include "measure/point_error.hpp"
-#include "assess/tolerance.hpp"
 
-/* The quality of a calibration: the errors of measured points, its sensitivity to wrong given values, the gain of the next images. */
+/* The quality of a calibration: the errors of measured points, what they are made of, the gain of the next images. */
 namespace tools {
 
 struct Assessment
@@ -18,12 +17,11 @@ struct Assessment
     std::vector<ErrorMap> errors;           //!< from half the nearest to twice the farthest board
     std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
     std::vector<BudgetRow> budget;
-    std::vector<Tolerance> tolerances;
     Advice advice;
     std::vector<Contradiction> contradictions;
 };
 
-Assessment assess(const RigCalibration& calibration, bool quiet);
+Assessment assess(const RigCalibration& calibration);
 
 } // namespace tools
 

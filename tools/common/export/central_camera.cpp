@@ -66,6 +66,8 @@ Ptr<RefractiveCamera> startOf(const Ptr<RefractiveCamera>& camera, int coefficie
     return start;
 }
 
+SeenPoints testPoints(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range) { return seenPoints(camera, range, 40, 30, 12); }
+
 void fit(const SeenPoints& sample, CentralCamera& central, const std::string& name)
 {
     Vec3d rvec, tvec;
@@ -96,7 +98,14 @@ CentralCamera fitCentralCamera(const Ptr<RefractiveCamera>& camera, const cv::Ve
     CentralCamera central;
     central.camera = startOf(camera, coefficients);
     fit(fitted, central, name);
-    central.error = errorOf(seenPoints(camera, range, 40, 30, 12), central);       // elsewhere, too
+    central.error = errorOf(testPoints(camera, range), central);        // elsewhere, too
+    return central;
+}
+
+CentralCamera centralCamera(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range)
+{
+    CentralCamera central = { camera->clone(), RigidTransform(), CentralError() };
+    central.error = errorOf(testPoints(camera, range), central);
     return central;
 }
 

@@ -36,9 +36,8 @@ struct CentralCamera
 CentralCamera fitCentralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int coefficients,
                                const std::string& name);
 
-/** The same with a splined lens of mrcal, of as many control points as the camera's own, over the field that it has behind its window.
-@param camera with its image size and a lens LENSMODEL_SPLINED_STEREOGRAPHIC_... */
-CentralCamera fitCentralSplined(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, const std::string& name);
+//! A camera without a window is its own central camera. @param camera with its image size
+CentralCamera centralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range);
 
 } // namespace tools
 

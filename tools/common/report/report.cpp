@@ -384,7 +384,6 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     setTable(page, "held_out", heldOutRows(c));
     setTable(page, "point_errors", pointErrorRows(c, assessment));
     setTable(page, "budget", budgetRows(assessment));
-    setTable(page, "tolerances", toleranceRows(assessment));
     setTable(page, "advice", assessment.advice.pairs.empty() ? std::vector<SummaryRow>() : adviceRows(assessment.advice));
     page.set("point_error_note", pointErrorNote(c, assessment));
     page.set("unit", c.unit);

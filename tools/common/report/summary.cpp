@@ -290,43 +290,11 @@ std::string pointErrorNote(const RigCalibration& c, const Assessment& a)
     return note;
 }
 
-//! Two digits, as much as such an estimate is worth; far below the largest of its column less is said.
-static std::string roughly(double value, double largest)
-{
-    const double TOLD = 1e-3;
-    if (!std::isfinite(value))
-        return "-";
-    if (!(largest > 0))
-        return "0";
-    if (value >= TOLD*largest)
-        return format("%.*f", std::max(0, 1 - (int)std::floor(std::log10(value))), value);
-    const double power = std::pow(10., std::floor(std::log10(TOLD*largest)));
-    return format("< %g", std::ceil(TOLD*largest/power)*power);
-}
-
 std::vector<SummaryRow> budgetRows(const Assessment& a)
 {
     std::vector<SummaryRow> rows;
     for (const BudgetRow& row : a.budget)
         rows.push_back({row.source, {row.given, format("%.2g", row.effect), format("%.3g", 100.*row.share)}});
-    return rows;
-}
-
-std::vector<SummaryRow> toleranceRows(const Assessment& a)
-{
-    double rms = 0., worst = 0., lengths = 0.;
-    for (const Tolerance& t : a.tolerances)
-        if (t.done)
-        {
-            rms = std::fmax(rms, t.rms);
-            worst = std::fmax(worst, t.worst);
-            lengths = std::fmax(lengths, t.lengths);
-        }
-    std::vector<SummaryRow> rows;
-    for (const Tolerance& t : a.tolerances)
-        rows.push_back({t.what, t.done ? std::vector<std::string>{roughly(t.rms, rms), roughly(t.worst, worst),
-                                                                  roughly(1000.*t.lengths, 1000.*lengths)}
-                                       : std::vector<std::string>{"no fit", "-", "-"}});
     return rows;
 }
 
@@ -376,8 +344,6 @@ void printSummary(std::ostream& out, const RigCalibration& c, const Assessment& 
     out << pointErrorNote(c, assessment) << '\n';
     printRows(out, "What the +- of a point of the working volume is made of, " + c.unit + " (the rows add up in squares):",
               {"", "known to", "effect", "share, %"}, budgetRows(assessment));
-    printRows(out, "What a wrong value would do to points of the working volume, " + c.unit + ":",
-              {"", "RMS", "worst", "lengths, 1/1000"}, toleranceRows(assessment));
     if (!assessment.advice.pairs.empty())
         printRows(out, "What the next images would bring:",
                   {"", placeHeading(c), "worst point, " + c.unit, "calibration's part, " + c.unit},

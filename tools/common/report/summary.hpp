@@ -33,7 +33,6 @@ std::string pointErrorNote(const RigCalibration& calibration, const Assessment& 
 std::vector<SummaryRow> budgetRows(const Assessment& assessment);
 
 //! Cells: points RMS, worst point, lengths in parts of a thousand.
-std::vector<SummaryRow> toleranceRows(const Assessment& assessment);
 
 //! Cells: std of the normals, worst point, the calibration's part.
 std::vector<SummaryRow> adviceRows(const Advice& advice);

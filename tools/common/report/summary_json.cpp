@@ -214,18 +214,15 @@ Json givenJson(const RigCalibration& c)
 void addAssessment(Json& json, const RigCalibration& c, const Assessment& a)
 {
     const std::string placeKey = isRound(c.fit.rig.cameras[0]->window()) ? "center_std" : "normal_std_deg";
-    Json errors = Json::array(), tolerances = Json::array(), budget = Json::array();
+    Json errors = Json::array(), budget = Json::array();
     for (const ErrorMap& map : a.errors)
         errors.append({{"z", map.range}, {"typical", map.median()}, {"below_95_percent", map.percentile95()}, {"worst", map.worst()},
                        {"share_seen", map.seenShare()},
                        {"worst_of_pixel_noise", map.worstPixelNoise()}});
     for (const BudgetRow& row : a.budget)
         budget.append({{"source", row.source}, {"known_to", row.given}, {"effect", row.effect}, {"share", row.share}});
-    for (const Tolerance& t : a.tolerances)
-        tolerances.append({{"what", t.what}, {"point_rms", t.rms}, {"point_worst", t.worst}, {"lengths_relative", t.lengths}});
     json.set("point_error", errors);
     json.set("budget", budget);
-    json.set("tolerances", tolerances);
     json.set("next_images", {{"now", qualityJson(a.advice.now, placeKey)},
                              {"pairs", shotsJson(a.advice.pairs, placeKey)},
                              {"instead_of_the_first", shotsJson(a.advice.instead, placeKey)}});

@@ -269,7 +269,7 @@ Scene readScene(const std::string& filename)
             camerasInColours(c.camera, scene.wavelengths, filename);        // refuses a window of unknown materials
     }
     if (!fs["scene"].empty())
-        scene.surfaces = readSurfaces(fs["scene"], fs["texture"], filename, scene.meshes);
+        scene.surfaces = readSurfaces(fs["scene"], fs["texture"], filename);
     scene.surfaces.seed = scene.seed;
     scene.sources = readLightSources(fs["emitters"], filename);
     const PosesByName poses = readTarget(fs, scene, filename);

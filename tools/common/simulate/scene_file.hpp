@@ -60,7 +60,6 @@ struct Scene
 {
     TargetOptions target;           //!< given() or not
     TexturedScene surfaces;         //!< none, if the file has no scene
-    std::vector<std::string> meshes;    //!< files that were read
     Calibration cameras;
     Exposure exposure;
     uint64_t seed = 1;

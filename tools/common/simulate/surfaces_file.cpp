@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/surfaces_file.hpp"
-#include "calibrate/rigid_transform.hpp"
 #include "console/failure.hpp"
 #include "console/keys.hpp"
-#include "simulate/mesh_file.hpp"
 
-#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace tools {
 
@@ -66,34 +63,14 @@ SurfacePtr readSphere(const Keys& keys)
     return make_shared<Sphere>(keys.vector("center"), keys.number("radius", SMALLEST, LARGEST), readColor(keys));
 }
 
-SurfacePtr readMesh(const Keys& keys, const std::string& filename, std::vector<std::string>& meshes)
-{
-    keys.allowOnly({"shape", "color", "file", "rvec", "tvec", "scale"});
-    const Vec3d color = readColor(keys), tvec = keys.vector("tvec", Vec3d());
-    cv::Matx33d toScene = rotationMatrix(keys.vector("rvec", Vec3d()));
-    toScene *= keys.number("scale", SMALLEST, LARGEST, 1.);
-    const std::string file = keys.text("file", "");
-    if (file.empty())
-        throw Failure(keys.name() + ": 'file' must name a mesh, .ply or .obj");
-    const std::string path = (std::filesystem::path(filename).parent_path()/file).string();
-    std::vector<Triangle> triangles = readTriangles(path, keys.name() + ": 'file'");
-    for (Triangle& triangle : triangles)
-        for (Vec3d& corner : triangle)
-            corner = toScene*corner + tvec;
-    meshes.push_back(path);
-    return make_shared<Mesh>(triangles, color);
-}
-
-SurfacePtr readSurface(const Keys& keys, const std::string& filename, std::vector<std::string>& meshes)
+SurfacePtr readSurface(const Keys& keys)
 {
     const std::string shape = keys.text("shape", "");
     if (shape == "plane")
         return readPlane(keys);
     if (shape == "sphere")
         return readSphere(keys);
-    if (shape == "mesh")
-        return readMesh(keys, filename, meshes);
-    throw Failure(keys.name() + ": 'shape' must be plane, sphere or mesh");
+    throw Failure(keys.name() + ": 'shape' must be plane or sphere");
 }
 
 TextureOptions readTexture(const FileNode& node, const std::string& filename)
@@ -109,8 +86,7 @@ TextureOptions readTexture(const FileNode& node, const std::string& filename)
 
 } // namespace
 
-TexturedScene readSurfaces(const FileNode& scene, const FileNode& texture, const std::string& filename,
-                           std::vector<std::string>& meshes)
+TexturedScene readSurfaces(const FileNode& scene, const FileNode& texture, const std::string& filename)
 {
     TexturedScene result;
     if (!scene.isSeq() || scene.size() == 0)
@@ -120,7 +96,7 @@ TexturedScene readSurfaces(const FileNode& scene, const FileNode& texture, const
     result.texture = readTexture(texture, filename);
     for (const FileNode& node : scene)
         result.surfaces.push_back(readSurface(Keys(node, "'" + filename + "': scene, shape "
-                                                         + std::to_string(result.surfaces.size() + 1)), filename, meshes));
+                                                         + std::to_string(result.surfaces.size() + 1))));
     return result;
 }
 

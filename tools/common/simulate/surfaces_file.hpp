@@ -14,14 +14,11 @@
     scene:
       - { shape: plane, point: [0., 0., 1000.], normal: [0., 0., 1.] }                # endless, or with
                               # right: [1., 0., 0.], half_size: [200., 100.]           a rectangle
-      - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] }
-      - { shape: mesh, file: part.ply, rvec: [0., 0., 0.], tvec: [0., 0., 600.], scale: 1. } */
+      - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] } */
 namespace tools {
 
-/** @param meshes the mesh files it reads, by their path from here
-Throws Failure that names the file and the key. */
-TexturedScene readSurfaces(const cv::FileNode& scene, const cv::FileNode& texture, const std::string& filename,
-                           std::vector<std::string>& meshes);
+//! Throws Failure that names the file and the key.
+TexturedScene readSurfaces(const cv::FileNode& scene, const cv::FileNode& texture, const std::string& filename);
 
 } // namespace tools
 

@@ -57,10 +57,10 @@ without a window.
   except for the rounding of printed numbers, and are refused with their name and numbers otherwise. They may be singular: then
   a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
   rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
-  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of the
-  lens, of the center and axis of a dome or tube, of media, and of R and T are read, not the correlations between these:
+  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
+  the lens, of the center and axis of a dome or tube, of media, and of R and T are read, not the correlations between these:
   `rigCovariance` has them all.
-- **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is not written, in no thread.
+- **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is muted, in all threads.
 
 ### The model
 
@@ -302,7 +302,7 @@ public:
     CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
     CV_PROP_RW Vec3d normal;                   //!< flat, bent: unit, camera coordinates, normal[2] > 0
     CV_PROP_RW double distance;                //!< flat, bent: from the camera to the first surface, along the normal
-    /** dome: of the spheres; tube: a point of the axis, after a calibration the one nearest to the camera; camera coordinates */
+    /** dome: of the spheres; tube: a point of the axis, after a calibration the one nearest to the camera; camera frame */
     CV_PROP_RW Vec3d center;
     CV_PROP_RW Vec3d axis;                     //!< tube: unit direction of the axis, camera coordinates
     CV_PROP_RW double radius;                  //!< dome, tube: of the inner face; layers add to it
