@@ -31,7 +31,13 @@ lane=$!
 
 run "style: shell, Python, white space, links" tools/lint.sh
 build build/release
-suite "all tests" build/release
+suite "all tests but the slow ones" build/release -LE slow
+# Those that take a minute each: a third of them, by turns.
+thirds=$(turn_of 3)
+[ "$scope" = --all ] || thirds="1 2 3"
+for third in $thirds; do
+  suite "slow tests, $third of 3" build/release -L slow -I "$third,,3"
+done
 # A kernel's rounding, and what it accepts, differ from one instruction set to the next.
 kernels='^(kernels|lens|camera|project|undistort(_map)?|plane|triangulate(_rig)?|epilines|epipolar|stereo_rectify|pnp|dome)$'
 for disabled in AVX512-SKX AVX512-SKX,AVX2; do
