@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What belongs together: points of files by their coordinates, images by their names, cameras by what they see in common.
+#include "calibrate/poses_file.hpp"
 #include "calibrate/rig_data.hpp"
 #include "target/points_csv.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
+#include <opencv2/calib3d.hpp>
 #include <fstream>
 
 using namespace cv;
@@ -143,4 +145,36 @@ TEST_CASE("Cameras are placed one beside another, and one that shares nothing is
     CHECK(cameraLinks(groupIntoViews(nullptr, sets, false), true) == chain);
     sets.glass[3] = setOf({imageOf("e", CUBE, 1)});
     CHECK_THROWS_WITH(cameraLinks(groupIntoViews(nullptr, sets, false), true), Catch::Contains("camera 4"));
+}
+
+TEST_CASE("Points in survey coordinates are moved near their origin, and known poses with them", "[rig_data][far_origin]")
+{
+    const Vec3d far(900000, 10000000, 200);
+    std::vector<Point3d> object = CUBE;
+    for (Point3d& p : object)
+        p += Point3d(far);
+    RigImages sets;
+    sets.glass[0] = setOf({imageOf("a", object, 100), imageOf("b", object, 100)});
+    RigData data = groupIntoViews(nullptr, sets, false);
+    CHECK(data.origin.origin() == far);
+    for (const View& view : data.views)
+        CHECK(view.objectPoints == CUBE);
+
+    // Of the points as they were given; a small turn about their far origin is a large way.
+    const TemporaryFolder folder;
+    const Vec3d rvec(0.4, -1.1, 0.8), place(1, 2, 30);
+    Matx33d R;
+    Rodrigues(rvec, R);
+    const Vec3d tvec = place - R*far;
+    std::ofstream(folder / "poses.csv") << "view,rx_rad,ry_rad,rz_rad,tx,ty,tz,sigma_deg,sigma\n"
+        << format("a,0.4,-1.1,0.8,%.17g,%.17g,%.17g,0,0\nb,0.4,-1.1,0.8,%.17g,%.17g,%.17g,0.001,0.5\n", tvec[0], tvec[1], tvec[2], tvec[0],
+                  tvec[1], tvec[2]);
+    readPoses(folder / "poses.csv", "mm", data);
+    for (const View& view : data.views)
+    {
+        CHECK(view.pose->rvec == rvec);
+        CHECK(norm(view.pose->tvec - place) < 1e-7);
+    }
+    const Mat C = data.views[1].pose->covariance(Rect(3, 3, 3, 3));
+    CHECK(trace(C)[0] == Approx(2*std::pow(0.001*CV_PI/180*norm(far), 2) + 3*0.25).epsilon(1e-6));
 }

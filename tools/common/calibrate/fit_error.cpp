@@ -21,7 +21,7 @@ std::string textOf(const CalibrationError& e, const RigData& data, const std::ve
         return "view '" + view->stem + "': " + e.reason;
     case CalibrationError::NO_IMAGE:
     {
-        const Point3d X = view->objectPoints.at(e.point);
+        const Point3d X = view->objectPoints.at(e.point) + Point3d(data.origin.origin());
         return cv::format("view '%s' of camera %d, point (%g, %g, %g): ", view->stem.c_str(), e.camera + 1, X.x, X.y, X.z) + e.reason +
             "; check --distance, --thickness, the lens, the units, and --poses if given";
     }

@@ -6,6 +6,7 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/csv.hpp"
+#include "pose/poses.hpp"
 #include <opencv2/calib3d.hpp>
 #include <cmath>
 #include <map>
@@ -125,6 +126,19 @@ private:
     std::vector<LengthColumn> lengths_;
 };
 
+//! Of the points of the views.
+KnownPose moved(const KnownPose& given, const refract::NearOrigin& origin)
+{
+    refract::Pose pose;
+    pose.rvec = given.rvec;
+    pose.tvec = given.tvec;
+    pose = origin.toNear(pose);
+    if (!origin.isMoved() || given.covariance.empty())
+        return {pose.rvec, pose.tvec, given.covariance};
+    const Mat derivatives(origin.nearByFar(pose));
+    return {pose.rvec, pose.tvec, Mat(derivatives*given.covariance*derivatives.t())};
+}
+
 } // namespace
 
 void readPoses(const std::string& path, const std::string& unit, RigData& data)
@@ -137,7 +151,7 @@ void readPoses(const std::string& path, const std::string& unit, RigData& data)
         if (found == poses.end())
             missing.push_back(view.stem);
         else
-            view.pose = found->second;
+            view.pose = moved(found->second, data.origin);
     }
     if (!missing.empty())
         throw Failure("'" + path + "' has no pose of view " + listed(missing) + ": with --poses every view needs one; leave the "

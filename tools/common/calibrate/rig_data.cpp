@@ -196,6 +196,16 @@ std::vector<Point2d> matched(const DetectedImage& image, View& view)
     return pixels;
 }
 
+void moveNear(RigData& data)
+{
+    std::vector<Point3d> all;
+    for (const View& view : data.views)
+        all.insert(all.end(), view.objectPoints.begin(), view.objectPoints.end());
+    data.origin = cv::refract::NearOrigin(all);
+    for (View& view : data.views)
+        data.origin.move(view.objectPoints);
+}
+
 } // namespace
 
 RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaired, int fewest)
@@ -236,6 +246,7 @@ RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaire
             pixels->resize(entry.second.objectPoints.size(), Point2d(NAN, NAN));
         data.views.push_back(entry.second);
     }
+    moveNear(data);
     return data;
 }
 

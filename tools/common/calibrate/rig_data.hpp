@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_RIG_DATA_HPP
 #define REFRACT_TOOLS_RIG_DATA_HPP
 
+#include "pose/near_origin.hpp"
 #include "target/detected_images.hpp"
 #include <array>
 #include <optional>
@@ -78,6 +79,7 @@ struct RigData
 {
     int cameraCount = 1;
     std::vector<View> views;
+    cv::refract::NearOrigin origin;             //!< of points.csv, if that is far from its points: those of the views are moved
     PerCamera<cv::Size> imageSize;
 
     int countPairs(int camera) const;

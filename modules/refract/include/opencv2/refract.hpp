@@ -43,6 +43,7 @@ without a window.
   as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth unless the caller fixed
   the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
   Matx33d, or rotation vectors.
+- **Object coordinates** may have any origin: survey coordinates lose no more than their own rounding.
 - **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
 - **Half pixels**: triangulateRefractive for any number of cameras, refractiveSolvePnP, refractiveSolvePnPGeneric,
   calibrateGlassRig and refractiveBundleAdjust take pixels of which one coordinate is NaN: observations of the other one. So a

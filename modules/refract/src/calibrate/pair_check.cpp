@@ -20,6 +20,7 @@ a grossly wrong thickness or index is the caller's to see in the residuals. */
 #include "calibrate/pair_check.hpp"
 #include "calibrate/calibration_error.hpp"
 #include "calibrate/failure.hpp"
+#include "calibrate/near_task.hpp"
 #include "arrays/views.hpp"
 #include <numeric>
 
@@ -250,8 +251,10 @@ void explainRefusal(const Rig& start, RigTask task)
 
 } // namespace
 
-RigFit fitCheckingPairs(Rig& rig, const RigTask& task)
+RigFit fitCheckingPairs(Rig& rig, const RigTask& given)
 {
+    const NearTask moved(given);
+    const RigTask& task = moved.task();
     const Rig start = rig;
     RigFit fit;
     const FitOutcome outcome = fitRig(rig, task, fit);
@@ -259,6 +262,7 @@ RigFit fitCheckingPairs(Rig& rig, const RigTask& task)
         explainRefusal(start, task);
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
     checkPairs(start, rig, task, fit);
+    moved.moveBack(fit);
     return fit;
 }
 

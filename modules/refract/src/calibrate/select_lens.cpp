@@ -14,6 +14,7 @@ percent allow (as pruning by Breiman et al., Classification and Regression Trees
 #include "arrays/arrays.hpp"
 #include "calibrate/calibrate_rig.hpp"
 #include "calibrate/failure.hpp"
+#include "calibrate/near_task.hpp"
 #include "calibrate/rig_fit.hpp"
 
 namespace cv { namespace refract {
@@ -316,7 +317,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     std::vector<int> seen;
-    LensSelection selection(rig, onlySeen(task, seen), (flags & GLASS_ROBUST) != 0);
+    LensSelection selection(rig, onlySeen(NearTask(task).task(), seen), (flags & GLASS_ROBUST) != 0);
     FitOutcome outcome = selection.run();
     if (outcome.view >= 0)
         outcome.view = seen[outcome.view];

@@ -237,17 +237,17 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
     if (!(confidence > 0 && confidence < 1))
         CV_Error_(Error::StsOutOfRange, ("confidence is %g; it must lie between 0 and 1", confidence));
     const Camera& seenBy = cameraOf(camera);
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    const NearOrigin origin = moveNear(points);
     std::vector<int> inliers;
     const Effort effort = { iterationsCount, confidence };
-    const Pose guess = useExtrinsicGuess ? readPose(rvec, tvec) : Pose();
+    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
     const Pose pose = solveRobustly(seenBy, points, reprojectionError, effort, guess, inliers);
     if (inliers_.needed())
         Mat(inliers, true).copyTo(inliers_);
     if (!pose.found)
         return false;
-    Mat(pose.rvec).copyTo(rvec);
-    Mat(pose.tvec).copyTo(tvec);
+    writePose(origin.toFar(pose), rvec, tvec);
     return true;
 }
 
@@ -271,11 +271,13 @@ bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, c
         return false;
     }
     // Those of the points that the pose was fitted to.
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    ImagePoints points = readPosePoints(objectPoints, imagePoints, 4);
+    const NearOrigin origin = moveNear(points);
     const MsacScorer scorer(seenBy, points, reprojectionError);
-    const Consensus consensus = scorer.consensus(transformOf(readPose(rvec, tvec)));
+    const Pose pose = origin.toNear(readPose(rvec, tvec));
+    const ImagePoints fitted = select(points, withoutOutliers(scorer.consensus(transformOf(pose))));
     if (covariance.needed())
-        Mat(poseCovariance(seenBy, select(points, withoutOutliers(consensus)), poseOf(consensus.motion), noise)).copyTo(covariance);
+        Mat(poseCovariance(seenBy, fitted, origin, pose, noise)).copyTo(covariance);
     return true;
 }
 

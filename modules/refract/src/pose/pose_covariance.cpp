@@ -73,4 +73,14 @@ Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const Po
     return covariance;
 }
 
+Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const NearOrigin& origin, const Pose& pose,
+                       const PoseNoise& noise)
+{
+    const Matx66d covariance = poseCovariance(camera, points, pose, noise);
+    if (!origin.isMoved())
+        return covariance;
+    const Matx66d derivatives = origin.farByNear(pose);
+    return derivatives*covariance*derivatives.t();
+}
+
 }} // namespace

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_POSE_COVARIANCE_HPP
 #define OPENCV_REFRACT_POSE_COVARIANCE_HPP
 
+#include "pose/near_origin.hpp"
 #include "pose/poses.hpp"
 
 /* What noise and an inexact camera do to a pose. With whitened errors e, J their derivatives by the pose, K those by the
@@ -29,6 +30,9 @@ PoseNoise readPoseNoise(double sigma, InputArray cameraCovariance, const Camera&
 
 //! Of (rvec, tvec); NaN where the points do not tell it, or sigma.
 Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const Pose& pose, const PoseNoise& noise);
+//! Of the pose of points that were moved near, for those that were given.
+Matx66d poseCovariance(const Camera& camera, const ImagePoints& points, const NearOrigin& origin, const Pose& pose,
+                       const PoseNoise& noise);
 
 }} // namespace
 

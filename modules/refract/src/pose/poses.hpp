@@ -11,6 +11,8 @@
 
 namespace cv { namespace refract {
 
+class NearOrigin;
+
 //! Object -> camera.
 struct Pose
 {
@@ -61,7 +63,9 @@ ImagePoints readPosePoints(InputArray objectPoints, InputArray imagePoints, int 
 ImagePoints readWeightedPosePoints(InputArray objectPoints, InputArray imagePoints, InputArray pixelCovariances, int least,
                                    double& variance);
 Pose readPose(InputArray rvec, InputArray tvec);
-void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
+void writePose(const Pose& pose, OutputArray rvec, OutputArray tvec);
+void writePoses(const std::vector<PoseMinimum>& minima, const NearOrigin& origin, OutputArrayOfArrays rvecs,
+                OutputArrayOfArrays tvecs);
 
 //! The part of an image's points that must agree with one pose, else the image is of no use.
 const double LEAST_INLIER_RATIO = 1./3;

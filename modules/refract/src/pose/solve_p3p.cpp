@@ -4,6 +4,7 @@
 
 /* The public call for three points, or four of which the last tells which pose is right. */
 
+#include "pose/near_origin.hpp"
 #include "pose/poses.hpp"
 #include "pose/three_rays.hpp"
 #include "arrays/arrays.hpp"
@@ -31,7 +32,8 @@ int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints, const Pt
     CV_INSTRUMENT_REGION();
 
     const Camera& seenBy = cameraOf(camera);
-    const ImagePoints points = readPosePoints(objectPoints, imagePoints, 3, 4);
+    ImagePoints points = readPosePoints(objectPoints, imagePoints, 3, 4);
+    const NearOrigin origin = moveNear(points);
     const PointRays rays(seenBy, points);
     std::vector<PoseMinimum> poses;
     if (rays.point.size() >= 3 && rays.point[2] == 2 && points.index[2] == 2)
@@ -42,7 +44,7 @@ int refractiveSolveP3P(InputArray objectPoints, InputArray imagePoints, const Pt
     }
     if (points.pixel.size() > 3)
         sortByError(poses);
-    writePoses(poses, rvecs, tvecs);
+    writePoses(poses, origin, rvecs, tvecs);
     return (int)poses.size();
 }
 

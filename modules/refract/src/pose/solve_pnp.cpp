@@ -66,14 +66,14 @@ static ImagePoints readPoints(InputArray objectPoints, InputArray imagePoints, b
     return readWeightedPosePoints(objectPoints, imagePoints, noArray(), useExtrinsicGuess ? 3 : 4, variance);
 }
 
-static void writeCovariances(const Camera& camera, const ImagePoints& points, const std::vector<PoseMinimum>& minima,
-                             const PoseNoise& noise, OutputArrayOfArrays covariances)
+static void writeCovariances(const Camera& camera, const ImagePoints& points, const NearOrigin& origin,
+                             const std::vector<PoseMinimum>& minima, const PoseNoise& noise, OutputArrayOfArrays covariances)
 {
     if (!covariances.needed())
         return;
     std::vector<Mat> all;
     for (const PoseMinimum& minimum : minima)
-        all.push_back(Mat(poseCovariance(camera, points, minimum.pose, noise), true));
+        all.push_back(Mat(poseCovariance(camera, points, origin, minimum.pose, noise), true));
     covariances.create((int)all.size(), 1, CV_64F);
     for (int i = 0; i < (int)all.size(); i++)
     {
@@ -94,26 +94,33 @@ static void writeErrors(const Camera& camera, const ImagePoints& points, const s
     errors.copyTo(reprojectionError);
 }
 
+void writePose(const Pose& pose, OutputArray rvec, OutputArray tvec)
+{
+    Mat(pose.rvec).copyTo(rvec);
+    Mat(pose.tvec).copyTo(tvec);
+}
+
 //! The pose of the least error, if there is one.
-static bool writeBest(const Camera& camera, const ImagePoints& points, std::vector<PoseMinimum> minima, OutputArray rvec,
-                      OutputArray tvec, OutputArray reprojectionError)
+static bool writeBest(const Camera& camera, const ImagePoints& points, const NearOrigin& origin, std::vector<PoseMinimum> minima,
+                      OutputArray rvec, OutputArray tvec, OutputArray reprojectionError)
 {
     minima.resize(std::min<size_t>(minima.size(), 1));
     writeErrors(camera, points, minima, reprojectionError);
     if (minima.empty())
         return false;
-    Mat(minima[0].pose.rvec).copyTo(rvec);
-    Mat(minima[0].pose.tvec).copyTo(tvec);
+    writePose(origin.toFar(minima[0].pose), rvec, tvec);
     return true;
 }
 
-void writePoses(const std::vector<PoseMinimum>& minima, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
+void writePoses(const std::vector<PoseMinimum>& minima, const NearOrigin& origin, OutputArrayOfArrays rvecs,
+                OutputArrayOfArrays tvecs)
 {
     std::vector<Vec3d> r, t;
     for (const PoseMinimum& minimum : minima)
     {
-        r.push_back(minimum.pose.rvec);
-        t.push_back(minimum.pose.tvec);
+        const Pose pose = origin.toFar(minimum.pose);
+        r.push_back(pose.rvec);
+        t.push_back(pose.tvec);
     }
     writeVectors(r, rvecs);
     writeVectors(t, tvecs);
@@ -136,9 +143,10 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
     CV_INSTRUMENT_REGION();
 
     const Camera& seenBy = cameraOf(camera);
-    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
-    return writeBest(seenBy, points, findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose()), rvec, tvec,
-                     reprojectionError);
+    ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
+    const NearOrigin origin = moveNear(points);
+    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
+    return writeBest(seenBy, points, origin, findMinima(seenBy, points, guess), rvec, tvec, reprojectionError);
 }
 
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera, OutputArray rvec,
@@ -150,16 +158,18 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
     const Camera& seenBy = cameraOf(camera);
     const PoseNoise noise = readPoseNoise(sigma, cameraCovariance, seenBy);
     double variance;
-    const ImagePoints points = readWeightedPosePoints(objectPoints, imagePoints, pixelCovariances, useExtrinsicGuess ? 3 : 4, variance);
-    const Pose guess = useExtrinsicGuess ? readPose(rvec, tvec) : Pose();
-    if (!writeBest(seenBy, points, findMinima(seenBy, points, guess), rvec, tvec, reprojectionError))
+    ImagePoints points = readWeightedPosePoints(objectPoints, imagePoints, pixelCovariances, useExtrinsicGuess ? 3 : 4, variance);
+    const NearOrigin origin = moveNear(points);
+    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
+    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
+    if (!writeBest(seenBy, points, origin, minima, rvec, tvec, reprojectionError))
     {
         covariance.release();
         return false;
     }
     const PoseNoise scaled = { noise.sigma*std::sqrt(variance), noise.camera };     // of the median pixel
     if (covariance.needed())
-        Mat(poseCovariance(seenBy, points, readPose(rvec, tvec), scaled)).copyTo(covariance);
+        Mat(poseCovariance(seenBy, points, origin, minima[0].pose, scaled)).copyTo(covariance);
     return true;
 }
 
@@ -172,11 +182,13 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
 
     const Camera& seenBy = cameraOf(camera);
     const PoseNoise noise = readPoseNoise(sigma, cameraCovariance, seenBy);
-    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
-    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
-    writePoses(minima, rvecs, tvecs);
+    ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
+    const NearOrigin origin = moveNear(points);
+    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
+    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
+    writePoses(minima, origin, rvecs, tvecs);
     writeErrors(seenBy, points, minima, reprojectionError);
-    writeCovariances(seenBy, points, minima, noise, covariances);
+    writeCovariances(seenBy, points, origin, minima, noise, covariances);
     return (int)minima.size();
 }
 
@@ -187,9 +199,11 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
     CV_INSTRUMENT_REGION();
 
     const Camera& seenBy = cameraOf(camera);
-    const ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
-    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, useExtrinsicGuess ? readPose(rvec, tvec) : Pose());
-    writePoses(minima, rvecs, tvecs);
+    ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
+    const NearOrigin origin = moveNear(points);
+    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
+    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
+    writePoses(minima, origin, rvecs, tvecs);
     writeErrors(seenBy, points, minima, reprojectionError);
     return (int)minima.size();
 }
