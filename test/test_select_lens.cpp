@@ -317,3 +317,42 @@ TEST_CASE("selectLensCoefficients says what is missing, and leaves the cameras a
     CHECK(select({ few }, 0) != "");
     CHECK(norm(before, camera->lensParameters()) == 0);
 }
+
+TEST_CASE("Boards parallel to the image do not determine a focal length, and that is said", "[select_lens]")
+{
+    CAPTURE(seed());
+    const TrueLens& lens = LENSES[1];
+    for (double tiltDeg : { 0., 0.2, 20. })
+        for (int trial = 0; trial < 3; trial++)
+        {
+            Random random(7350 + trial);
+            CAPTURE(tiltDeg, trial);
+            const double tilt = tiltDeg*CV_PI/180;
+            Images images;
+            while (images.object.size() < 16)
+            {
+                images.object.push_back(board(9, 7, 20));
+                std::vector<Point2d> pixels;
+                const Vec3d rvec(random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), random.uniform(-0.02, 0.02));
+                const Vec3d tvec(random.uniform(-250, 90), random.uniform(-200, 70), random.uniform(598, 602));
+                refractiveProjectPoints(images.object.back(), rvec, tvec, lens.camera(), pixels);
+                for (Point2d& p : pixels)
+                    p += Point2d(random.normal(0.02), random.normal(0.02));
+                images.pixels.push_back(Mat(pixels, true));
+            }
+            const Ptr<RefractiveCamera> camera = lens.start();
+            const Mat before = camera->lensParameters();
+            const auto select = [&]
+            {
+                selectLensCoefficients(images.object, { images.pixels }, {}, { camera }, {}, noArray(), noArray(), 0);
+            };
+            if (tiltDeg > 10)
+            {
+                select();
+                CHECK(std::abs(camera->cameraMatrix().at<double>(0, 0) - lens.f) < 0.01*lens.f);
+                continue;
+            }
+            CHECK_THROWS_WITH(select(), Catch::Contains("the views do not determine fx") && Catch::Contains("more tilt"));
+            CHECK(norm(camera->lensParameters(), before) == 0);
+        }
+}

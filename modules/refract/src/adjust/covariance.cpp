@@ -59,10 +59,13 @@ int requirementOf(ParameterBlock::Kind kind)
 double largestSigma(const ParameterBlock& block, int i, double range)
 {
     const double MAX_ANGLE_SIGMA = CV_PI/4;
+    // Boards parallel to the image tell a focal length by their tilt's perspective alone, to which noise adds: of a relative deviation
+    // e the estimate is too long by some e^2, and a +- of the linearised problem is one as long as that is a tenth of it.
+    const double MAX_FOCAL_SIGMA = 0.1;
     if (block.kind == ParameterBlock::EXTRINSICS)
         return i < 3 ? MAX_ANGLE_SIGMA : range;
     if (block.kind == ParameterBlock::LENS)
-        return i < 2 ? block.values[i] : std::numeric_limits<double>::infinity();
+        return i < 2 ? MAX_FOCAL_SIGMA*block.values[i] : std::numeric_limits<double>::infinity();
     switch (kindOf(block.at, (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media) + i))
     {
     case WindowParameter::NORMAL: case WindowParameter::AXIS: return MAX_ANGLE_SIGMA;

@@ -9,6 +9,7 @@ they are fitted to; held out they are worse from the number on that the data do 
 The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard error and a few
 percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984). */
 
+#include "adjust/covariance.hpp"
 #include "adjust/held_out.hpp"
 #include "adjust/minimize.hpp"
 #include "arrays/arrays.hpp"
@@ -43,6 +44,7 @@ struct Candidate
     std::vector<std::vector<double> > errors;   //!< of each image's points
     double squares;                     //!< of all parts
     double excess, excessSigma;         //!< over the best one's
+    FitOutcome determined;              //!< or which parameters are not
 };
 
 int countFreeCoefficients(const Rig& rig, int flags)
@@ -63,7 +65,7 @@ std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
     {
         const int count = countFreeCoefficients(rig, flags | fixed);
         if (candidates.empty() || count > candidates.back().coefficients)
-            candidates.push_back({ fixed, count, false, RigStart(), {}, {}, 0, 0, 0 });
+            candidates.push_back({ fixed, count, false, RigStart(), {}, {}, 0, 0, 0, FitOutcome() });
     }
     return candidates;
 }
@@ -104,9 +106,10 @@ public:
         for (int round = 0; round < ROUNDS && isRobust_ && outcome.converged(); round++)
             if (leaveOutliersOut())
                 outcome = fitAll(RigStart(candidates_[first].fitted), first);
-        if (outcome.converged())
-            compare();
-        return outcome;
+        if (!outcome.converged())
+            return outcome;
+        compare();
+        return candidates_[chosen()].determined;
     }
     const std::vector<Candidate>& candidates() const { return candidates_; }
     //! Index of the choice.
@@ -206,6 +209,8 @@ private:
         for (const HeldOutPart& part : candidate.parts)
             candidate.squares += part.squares;
         candidate.isFitted = std::isfinite(candidate.squares);
+        if (!hasWindow())               // else what is known of the window has a say, in the calibration
+            candidate.determined = Covariance().compute(problem, problem.squaredError()/problem.freedom(), GLASS_REQUIRE_INTRINSICS);
         candidate.errors.clear();
         for (const Image& image : problem.images())
             candidate.errors.push_back(problem.pixelErrors(image));
