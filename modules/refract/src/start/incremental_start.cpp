@@ -180,13 +180,14 @@ std::vector<RigStart> assembledStarts(const Rig& given, const std::vector<Camera
     return starts;
 }
 
-//! Another camera that looks through the same window; -1: there is none.
-int otherBehind(const Rig& given, int camera)
+//! Of the other cameras that look through the same window the one that tells most of it; -1: there is none.
+int otherBehind(const Rig& given, const std::vector<CameraMinima>& alone, int camera)
 {
+    int best = -1;
     for (int c = 0; c < given.count(); c++)
-        if (c != camera && given.owner[c] == given.owner[camera])
-            return c;
-    return -1;
+        if (c != camera && given.owner[c] == given.owner[camera] && (best < 0 || alone[c].distanceSigma < alone[best].distanceSigma))
+            best = c;
+    return best;
 }
 
 //! The rig with one camera after the other in its other minima.
@@ -201,7 +202,7 @@ std::vector<RigStart> swapped(const Minimum& best, const Rig& given, const std::
             std::vector<CameraHypothesis> others = cameras;
             others[c] = alone[c].minima[i];
             std::vector<int> windowFrom = given.owner;
-            const int other = otherBehind(given, c);
+            const int other = otherBehind(given, alone, c);
             if (other >= 0)
             {
                 others[c] = fitPairBehindWindow(given, others, other, c, views, flags);

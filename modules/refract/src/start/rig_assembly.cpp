@@ -82,27 +82,88 @@ Pose placeOf(const CameraHypothesis& hypothesis, const std::vector<Pose>& places
     return best;
 }
 
-//! Places the cameras one after the other, by views in common with those before; those without stay where they are.
-void placeCameras(const std::vector<CameraHypothesis>& cameras, const RigViews& views, RigStart& start)
+//! How many points the camera saw of targets that have a place.
+int countPlaced(const CameraHypothesis& hypothesis, const std::vector<Pose>& places, const CameraViews& seen)
 {
-    std::vector<bool> isPlaced(cameras.size(), false);
-    start.poses = cameras[0].poses;
-    isPlaced[0] = true;
-    for (bool changed = true; changed; )
+    int count = 0;
+    for (size_t view = 0; view < places.size(); view++)
+        if (places[view].found && hypothesis.poses[view].found)
+            count += countWhole(seen.refracted[view]);
+    return count;
+}
+
+//! The cameras' order is no matter of the caller's: the next is the one that saw most of what has a place; -1: none did.
+int nextCamera(const std::vector<CameraHypothesis>& cameras, const std::vector<bool>& isPlaced, const std::vector<Pose>& places,
+               const RigViews& views)
+{
+    int next = -1, most = 0;
+    for (size_t c = 0; c < cameras.size(); c++)
     {
-        changed = false;
-        for (size_t c = 1; c < cameras.size(); c++)
+        const int count = isPlaced[c] ? 0 : countPlaced(cameras[c], places, views.cameras[c]);
+        if (count <= most)
+            continue;
+        most = count;
+        next = (int)c;
+    }
+    return next;
+}
+
+//! Places the cameras one after the other, by views in common with those before; those without stay where they are.
+struct Placement
+{
+    Placement(const std::vector<CameraHypothesis>& cameras, const RigViews& views, int root)
+        : places(cameras.size()), isPlaced(cameras.size(), false), poses(cameras[root].poses)
+    {
+        isPlaced[root] = true;
+        for (int c = nextCamera(cameras, isPlaced, poses, views); c >= 0; c = nextCamera(cameras, isPlaced, poses, views))
         {
-            const Pose place = isPlaced[c] ? Pose() : placeOf(cameras[c], start.poses, views.cameras[c], views.object);
-            if (!place.found)
-                continue;
-            start.rig.extrinsics[c] = place;
-            isPlaced[c] = changed = true;
+            places[c] = placeOf(cameras[c], poses, views.cameras[c], views.object);
+            isPlaced[c] = true;
             for (int view = 0; view < views.count(); view++)
-                if (!start.poses[view].found && cameras[c].poses[view].found)
-                    start.poses[view] = inCamera1(cameras[c].poses[view], place);
+                if (!poses[view].found && cameras[c].poses[view].found)
+                    poses[view] = inCamera1(cameras[c].poses[view], places[c]);
         }
     }
+    std::vector<Pose> places;       //!< root -> camera
+    std::vector<bool> isPlaced;
+    std::vector<Pose> poses;        //!< of the targets, in the root's frame
+};
+
+//! The camera that saw most.
+int bestObserver(const RigViews& views)
+{
+    int best = 0, most = -1;
+    for (size_t c = 0; c < views.cameras.size(); c++)
+    {
+        int seen = 0;
+        for (const std::vector<Point2d>& pixels : views.cameras[c].refracted)
+            seen += countWhole(pixels);
+        if (seen <= most)
+            continue;
+        most = seen;
+        best = (int)c;
+    }
+    return best;
+}
+
+//! From the camera that saw most, if that leads to camera 1, whose frame all are in.
+void placeCameras(const std::vector<CameraHypothesis>& cameras, const RigViews& views, RigStart& start)
+{
+    int root = bestObserver(views);
+    Placement placement(cameras, views, root);
+    if (!placement.isPlaced[0])
+    {
+        root = 0;
+        placement = Placement(cameras, views, root);
+    }
+    const Pose toCamera1 = placement.places[0];
+    start.poses = placement.poses;
+    for (Pose& pose : start.poses)
+        if (root != 0 && pose.found)
+            pose = inCamera(pose, toCamera1);
+    for (size_t c = 1; c < cameras.size(); c++)
+        if (placement.isPlaced[c])
+            start.rig.extrinsics[c] = root == 0 ? placement.places[c] : between(toCamera1, placement.places[c]);
 }
 
 } // namespace
