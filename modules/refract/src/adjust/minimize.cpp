@@ -6,7 +6,8 @@
 
 Ceres keeps bounds by projecting each step, and creeps where a step's other coordinates rely on the one that was cut off.
 So every few iterations a coordinate that lies on its bound, with the cost falling beyond it, is held there, and is let go
-when the cost falls towards the inside.
+when the cost falls towards the inside. A window's distance has a second bound, the nearest target, beyond which there is no image:
+where a target touches its window, with the cost falling beyond it, the distance is held a little before it.
 
 A small change of the cost is no proof of a minimum: the step that is left to that of the linearised problem must be far
 below what the noise does. */
@@ -16,6 +17,7 @@ below what the noise does. */
 #include "adjust/reduced_cost.hpp"
 #include "adjust/silence.hpp"
 #include "math/dense.hpp"
+#include "window/place.hpp"
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -32,6 +34,7 @@ struct TrustRegion
     double radius;          //!< of the first step; out: of the next
     int iterations = 0;     //!< at most; out: how many were made
     ceres::TerminationType outcome = ceres::NO_CONVERGENCE;     //!< out
+    bool isIdle = false;    //!< out: the same again would not move anything
 
     void solve(ceres::Problem& problem);
 };
@@ -58,11 +61,13 @@ void TrustRegion::solve(ceres::Problem& problem)
     }
     iterations = std::max(1, (int)summary.iterations.size() - 1);
     const double COLLAPSED = 1e-20;                     // Ceres takes no start below 1e-32
+    const double before = radius;
     const bool isUsable = summary.IsSolutionUsable() && !summary.iterations.empty();
     radius = isUsable ? summary.iterations.back().trust_region_radius : firstRadius;
     if (!(radius > COLLAPSED))
         radius = firstRadius;
     outcome = isUsable ? summary.termination_type : ceres::FAILURE;
+    isIdle = summary.final_cost == summary.initial_cost && radius == before && !(change > 0.1*DBL_EPSILON);
 }
 
 //! With its manifold and bounds.
@@ -86,17 +91,42 @@ void addBlock(ceres::Problem& problem, ParameterBlock& block)
 class Minimization
 {
 public:
-    explicit Minimization(Problem& problem) : problem_(problem) {}
+    explicit Minimization(Problem& problem);
     FitOutcome run(const TermCriteria& criteria);
 
 private:
     bool solve(TrustRegion& region);
     bool isOnBound() const;
     bool holdAtBounds();
+    bool touchesTarget(int block) const;
+    bool isHeldAtTarget(int block) const;
+    bool retreat(int block);
     bool isAtMinimum() const;
     Problem& problem_;
     std::unique_ptr<ReducedCost> cost_;     //!< of what is not held
+    std::vector<double> retreat_;           //!< per block: the part of its distance by which a window was moved from a target; 0: not
 };
+
+const double FIRST_RETREAT = 1e-4, LAST_RETREAT = 1e-2;     // parts of the distance
+
+//! The coordinate of a free distance; -1: the block has none.
+int freeDistance(const ParameterBlock& block)
+{
+    const int i = block.at.distance - block.at.media;
+    return block.kind == ParameterBlock::MEDIA && !hasCenter(block.at.shape) && block.isFree[i] ? i : -1;
+}
+
+//! An earlier call on the same problem may have left distances where they are held.
+Minimization::Minimization(Problem& problem) : problem_(problem), retreat_(problem.blocks().size(), 0.)
+{
+    for (size_t b = 0; b < retreat_.size(); b++)
+    {
+        const ParameterBlock& block = problem.blocks()[b];
+        const int i = freeDistance(block);
+        if (i >= 0 && block.isHeld[i] && block.values[i] > block.lower[i])
+            retreat_[b] = FIRST_RETREAT;
+    }
+}
 
 /** The problem comes to where Ceres ends, and the cost is linearised there.
 @return false if the cost has no derivatives where it begins */
@@ -127,6 +157,7 @@ bool Minimization::solve(TrustRegion& region)
     {
         region.outcome = ceres::CONVERGENCE;
         region.iterations = 1;
+        region.isIdle = true;
         return true;
     }
     problem.AddResidualBlock(cost_.get(), nullptr, parameters);
@@ -142,16 +173,65 @@ bool Minimization::solve(TrustRegion& region)
     return true;
 }
 
-bool Minimization::isOnBound() const
+//! Of an image through a flat window: how far its nearest point is behind the last face, as a part of the face's distance.
+static double gapBehindWindow(const Problem& problem, const Image& image)
 {
-    for (const ParameterBlock& block : problem_.blocks())
-        for (int i = 0; i < (int)block.values.size(); i++)
-            if (block.isFree[i] && block.values[i] <= block.lower[i])
-                return true;
+    const RigidTransform toCamera1 = transformOf(problem.pose(image.view)), toCamera = problem.extrinsics(image.camera);
+    const Surface face = problem.camera(image.camera).layers().lastSurface();
+    const Vec3d normal(face.normal);
+    double gap = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < image.points.object.size(); i++)
+        if (image.rootWeights[i] > 0)
+            gap = std::min(gap, normal.dot(toCamera.apply(toCamera1.apply(Vec3d(image.points.object[i]))))/face.distance - 1);
+    return gap;
+}
+
+//! Whether the block has a distance that is free, and a target touches its window.
+bool Minimization::touchesTarget(int b) const
+{
+    const double TOUCHES = 1e-5;        // part of the distance
+    const ParameterBlock& block = problem_.blocks()[b];
+    if (freeDistance(block) < 0)
+        return false;
+    for (const Image& image : problem_.images())
+        if (image.refracted && problem_.ownerOf(image.camera) == block.index && gapBehindWindow(problem_, image) < TOUCHES)
+            return true;
     return false;
 }
 
-//! @return whether that changes what is held
+bool Minimization::isHeldAtTarget(int b) const
+{
+    const ParameterBlock& block = problem_.blocks()[b];
+    return retreat_[b] > 0 && block.isHeld[freeDistance(block)];
+}
+
+bool Minimization::isOnBound() const
+{
+    for (int b = 0; b < (int)problem_.blocks().size(); b++)
+    {
+        const ParameterBlock& block = problem_.blocks()[b];
+        for (int i = 0; i < (int)block.values.size(); i++)
+            if (block.isFree[i] && block.values[i] <= block.lower[i])
+                return true;
+        if (isHeldAtTarget(b) || touchesTarget(b))
+            return true;
+    }
+    return false;
+}
+
+//! Moves a window that a target touches ever farther from it, so that all else may move; false if it has gone far already.
+bool Minimization::retreat(int b)
+{
+    if (retreat_[b] >= LAST_RETREAT)
+        return false;
+    retreat_[b] = std::max(FIRST_RETREAT, 10*retreat_[b]);
+    ParameterBlock& block = problem_.blocks()[b];
+    block.values[freeDistance(block)] *= 1 - retreat_[b];
+    problem_.updateCameras();
+    return true;
+}
+
+//! @return whether that changes what is held, or where
 bool Minimization::holdAtBounds()
 {
     const FreeSpace space(problem_);
@@ -162,11 +242,14 @@ bool Minimization::holdAtBounds()
     {
         ParameterBlock& block = problem_.blocks()[b];
         const Eigen::VectorXd ofBlock = timesVector(space.bases[b], gradient.segment(space.first[b], space.columnsOf(b)));
+        const bool touches = touchesTarget(b), isNearTarget = touches || isHeldAtTarget(b);
         for (int i = 0; i < (int)block.values.size(); i++)
         {
-            const bool hold = block.isFree[i] && block.values[i] <= block.lower[i] && ofBlock[i] >= 0;
+            const bool atTarget = isNearTarget && i == freeDistance(block) && ofBlock[i] <= 0;
+            const bool hold = block.isFree[i] && (atTarget || (block.values[i] <= block.lower[i] && ofBlock[i] >= 0));
             changed = changed || hold != block.isHeld[i];
             block.isHeld[i] = hold;
+            changed = (atTarget && touches && retreat(b)) || changed;
         }
     }
     if (changed)
@@ -193,21 +276,27 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
     const double change = stopsByChange ? criteria.epsilon : 0., radius = ceres::Solver::Options().initial_trust_region_radius;
     const double STRICTER = 1e-2;
     const int IDLE = 40;                // turns of a single step in a row: more would not help either
-    TrustRegion regions[] = { { ceres::LEVENBERG_MARQUARDT, change, radius }, { ceres::DOGLEG, change, radius } };
+    const TrustRegion fresh[] = { { ceres::LEVENBERG_MARQUARDT, change, radius }, { ceres::DOGLEG, change, radius } };
+    TrustRegion regions[] = { fresh[0], fresh[1] };
     int left = criteria.maxCount, idle = 0;
-    for (int turn = 0; left > 0 && idle < IDLE; turn = 1 - turn)
+    for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = 1 - turn)
     {
         TrustRegion& region = regions[turn];
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
         if (!solve(region))
             break;
-        if (region.outcome != ceres::FAILURE && !(isOnBound() && holdAtBounds()) && region.outcome == ceres::CONVERGENCE
-            && isAtMinimum())
+        const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
+        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && isAtMinimum())
             return FitOutcome();
         left -= region.iterations;
         idle = region.iterations > 1 ? 0 : idle + 1;
         if (region.outcome == ceres::CONVERGENCE)
             region.change *= STRICTER;
+        if (isHeldAnew && std::any_of(retreat_.begin(), retreat_.end(), [](double part) { return part > 0; }))
+        {
+            std::copy(fresh, fresh + 2, regions);       // no step was long on the way to the target
+            idle = 0;
+        }
     }
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
     if (!stopsByChange)

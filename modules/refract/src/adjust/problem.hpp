@@ -141,6 +141,8 @@ public:
     void updateCameras();
     Rig rig() const;                    //!< with the current parameters
     Camera camera(int c) const;
+    int ownerOf(int c) const { return rig_.owner[c]; }
+    RigidTransform extrinsics(int c) const { return { cameras_[c].extrinsics.rotation.R, cameras_[c].extrinsics.T }; }
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     //! The pose in the direct images of a target that has this pose in an image.
