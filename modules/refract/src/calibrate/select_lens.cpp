@@ -7,7 +7,7 @@ its errors on parts of the observations that are held out in turn (adjust/held_o
 they are fitted to; held out they are worse from the number on that the data do not determine.
 
 The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard error and a few
-percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984). */
+percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984); or one that is still simpler and better than it. */
 
 #include "adjust/covariance.hpp"
 #include "adjust/held_out.hpp"
@@ -115,13 +115,13 @@ public:
     //! Index of the choice.
     int chosen() const
     {
-        for (int i = 0; i < (int)candidates_.size(); i++)
-        {
-            const Candidate& c = candidates_[i];
-            if (c.isFitted && c.excess <= MOST_STANDARD_ERRORS*c.excessSigma && c.squares <= std::pow(MOST_ABOVE_BEST, 2)*best().squares)
-                return i;
-        }
-        return (int)(&best() - candidates_.data());
+        const double most = std::pow(MOST_ABOVE_BEST, 2)*best().squares;
+        const auto enough = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+                                         { return c.isFitted && c.excess <= MOST_STANDARD_ERRORS*c.excessSigma && c.squares <= most; });
+        const Candidate& choice = enough == candidates_.end() ? best() : *enough;
+        // One that is simpler may miss that by a hair and be better.
+        return (int)(std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+                                  { return c.isFitted && c.squares <= choice.squares; }) - candidates_.begin());
     }
 
 private:
