@@ -8,6 +8,7 @@ Refused, by name: what R, with each parameter scaled to its own effect, maps to 
 required and whose standard deviation is so large that the value is no answer. */
 
 #include "adjust/covariance.hpp"
+#include "adjust/distance_profile.hpp"
 #include "math/dense.hpp"
 
 namespace cv { namespace refract {
@@ -196,15 +197,9 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         outcome = checkSigmas(parameters, half, variance);
     if (!outcome.converged())
         return outcome;
-    ofParameters = MatrixXd::Zero(problem.publicCount(), problem.publicCount());
-    if (half.size() > 0)            // else only poses or points are free; Eigen has no products of nothing
-    {
-        const MatrixXd all = product(problem.publicBasis(), half);
-        ofParameters = variance*timesTranspose(all, all);
-    }
-
     // What the cameras' covariance says of a weak direction so holds for poses and points.
     const int count = (int)half.rows(), others = (int)poses.byOuter.rows();
+    ofCameras_ = Size((int)half.cols(), count);
     half_ = MatrixXd::Zero(count + others, half.cols() + poses.half.cols());
     half_.topLeftCorner(count, half.cols()) = half;
     if (others > 0)
@@ -212,7 +207,23 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         half_.bottomLeftCorner(others, half.cols()) = product(poses.byOuter, half);
         half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
     }
+    setParameters();
     return outcome;
+}
+
+void Covariance::setParameters()
+{
+    ofParameters = MatrixXd::Zero(problem_->publicCount(), problem_->publicCount());
+    if (ofCameras_.area() == 0)         // only poses or points are free; Eigen has no products of nothing
+        return;
+    const MatrixXd all = product(problem_->publicBasis(), half_.topLeftCorner(ofCameras_.height, ofCameras_.width));
+    ofParameters = variance_*timesTranspose(all, all);
+}
+
+void Covariance::widen(Problem& problem)
+{
+    if (widenByDistanceProfiles(problem, information_, variance_, half_))
+        setParameters();
 }
 
 //! X = (1 + e) p, with the points p in the unit of the lengths and the error e that these share.

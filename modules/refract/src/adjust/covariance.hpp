@@ -19,14 +19,20 @@ struct Covariance
     @param required what must be determined by itself, GLASS_REQUIRE_...; of the rest it is enough that combinations are */
     FitOutcome compute(const Problem& problem, double variance, int required);
 
+    /** Where a distance that is free is known less well than its derivatives say (distance_profile.hpp), wider; of the problem that it was
+    computed of, which stays as it is. */
+    void widen(Problem& problem);
+
     Eigen::MatrixXd ofParameters;       //!< of the public parameters, P x P; 0 where fixed
     Mat ofPoints() const;               //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
 
 private:
+    void setParameters();
     const Problem* problem_ = nullptr;
     double variance_ = 0;
     Information information_;
     Eigen::MatrixXd half_;              //!< H, H H^T = covariance of all outer parameters for unit pixel noise
+    Size ofCameras_;                    //!< its upper left part: the parameters of cameras and targets
 };
 
 }} // namespace

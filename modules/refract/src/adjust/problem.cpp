@@ -190,7 +190,8 @@ FitOutcome Problem::findPointWithoutImage() const
         if (!cameras_[image.camera].camera(image.refracted))
         {
             const TransferredWindow* window = cameras_[image.camera].window.get();
-            CV_Assert(window);
+            if (!window)            // its own is impossible
+                return outcome;
             const GlassWindow seen = withParameters(rig_.cameras[image.camera].window(), window->parameters.data());
             outcome.status = seen.normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
             outcome.point = Point3d(seen.normal);

@@ -240,6 +240,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
+    covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
     fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);
