@@ -10,7 +10,7 @@
 #include "paper_rig.hpp"
 
 //! Fitted from the rig itself, which knows all that is given; lengths in mm.
-inline tools::RigCalibration fittedRig(const tools::RigModel& rig, const tools::RigData& data, double square = 39.)
+inline tools::RigCalibration fittedRig(const tools::RigModel& rig, const tools::RigData& data, double square = 39., int flags = 0)
 {
     tools::RigCalibration c;
     c.square = square;
@@ -18,7 +18,7 @@ inline tools::RigCalibration fittedRig(const tools::RigModel& rig, const tools::
     c.data = data;
     c.start = rig;
     c.lensSources.resize(data.cameraCount);
-    c.fit = tools::fitImages(c.data, rig, tools::allViews(c.data), 0);
+    c.fit = tools::fitImages(c.data, rig, tools::allViews(c.data), flags);
     c.residuals = tools::residualsOf(c.data, c.fit);
     return c;
 }

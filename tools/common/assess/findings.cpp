@@ -167,6 +167,46 @@ void checkCentre(const RigCalibration& c, int camera, Collected& f)
                                                   window.radius, windowStd(c.fit, camera).radius, c.unit.c_str()));
 }
 
+//! How far the nearest point that the camera saw of a target is behind the window.
+double gapToTargets(const RigCalibration& c, int camera)
+{
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    double gap = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < c.fit.views.size(); k++)
+    {
+        const View& view = c.data.views[c.fit.views[k]];
+        Vec3d rvec = c.fit.rvecs[k], tvec = c.fit.tvecs[k];
+        poseInImage(c.fit.rig, camera, true, rvec, tvec);
+        const Matx33d R = rotationMatrix(rvec);
+        const std::vector<Point3d> points = pointsOfTarget(c.fit.rig, view.objectPoints);
+        for (size_t i = 0; i < view.glass[camera].size(); i++)
+            if (seen(view.glass[camera][i]))
+                gap = std::min(gap, window.normal.dot(R*Vec3d(points[i]) + tvec) - window.distance - glassOf(window));
+    }
+    return gap;
+}
+
+void checkDistance(const RigCalibration& c, int camera, Collected& f)
+{
+    const double AT_TARGET = 0.02;          // part of the distance: a fit that comes to a target stays a little before it
+    const GlassWindow window = c.fit.rig.cameras[camera]->window();
+    const double std = windowStd(c.fit, camera).distance;
+    const std::string value = format("%.4g +- %.2g %s", window.distance, std, c.unit.c_str());
+    if (!(std > 0.))
+        return;
+    const bool isFree = c.options.flags & GLASS_FREE_DISTANCE;
+    const double gap = gapToTargets(c, camera);
+    if (isFree && window.distance == 0.)
+        f.add(A_PARAMETER, of(c, camera) + "the distance to the window ended at its bound, " + value + ": the images would have the "
+              "window behind the camera. Give it by --distance, and see whether --index, --outer-index and the lens are right");
+    else if (isFree && gap < AT_TARGET*window.distance && gap < 0.5*std)
+        f.add(A_PARAMETER, of(c, camera) + "the distance to the window ended where a target touches it, " + value
+              + ": the images hardly tell it. Give it by --distance, or take strongly tilted boards at the image's border");
+    else if (std > WEAK_RELATIVE*window.distance)
+        f.add(A_PARAMETER, of(c, camera) + "the distance to the window is weakly determined: " + value + ". Near, strongly tilted boards "
+              "at the image's border help");
+}
+
 void checkWindow(const RigCalibration& c, int camera, Collected& f)
 {
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
@@ -175,10 +215,8 @@ void checkWindow(const RigCalibration& c, int camera, Collected& f)
         checkCentre(c, camera, f);
     else
         checkTilt(c, camera, f);
-    if (!isRound(window) && std.distance > WEAK_RELATIVE*window.distance)
-        f.add(A_PARAMETER, of(c, camera) + format("the distance to the window is weakly determined: %.4g +- %.2g %s. Near, "
-                                                "strongly tilted boards at the image's border help",
-                                                window.distance, std.distance, c.unit.c_str()));
+    if (!isRound(window))
+        checkDistance(c, camera, f);
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         if (c.options.flags & GLASS_FREE_THICKNESS && std.thickness[i] > WEAK_RELATIVE*window.thickness[i])

@@ -173,30 +173,12 @@ bool Minimization::solve(TrustRegion& region)
     return true;
 }
 
-//! Of an image through a flat window: how far its nearest point is behind the last face, as a part of the face's distance.
-static double gapBehindWindow(const Problem& problem, const Image& image)
-{
-    const RigidTransform toCamera1 = transformOf(problem.pose(image.view)), toCamera = problem.extrinsics(image.camera);
-    const Surface face = problem.camera(image.camera).layers().lastSurface();
-    const Vec3d normal(face.normal);
-    double gap = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < image.points.object.size(); i++)
-        if (image.rootWeights[i] > 0)
-            gap = std::min(gap, normal.dot(toCamera.apply(toCamera1.apply(Vec3d(image.points.object[i]))))/face.distance - 1);
-    return gap;
-}
-
 //! Whether the block has a distance that is free, and a target touches its window.
 bool Minimization::touchesTarget(int b) const
 {
     const double TOUCHES = 1e-5;        // part of the distance
     const ParameterBlock& block = problem_.blocks()[b];
-    if (freeDistance(block) < 0)
-        return false;
-    for (const Image& image : problem_.images())
-        if (image.refracted && problem_.ownerOf(image.camera) == block.index && gapBehindWindow(problem_, image) < TOUCHES)
-            return true;
-    return false;
+    return freeDistance(block) >= 0 && problem_.findPointAtWindow(TOUCHES, block.index).pointIndex >= 0;
 }
 
 bool Minimization::isHeldAtTarget(int b) const
@@ -301,7 +283,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
     if (!stopsByChange)
         return FitOutcome();
-    FitOutcome outcome = problem_.findPointAtWindow();
+    const double ALL_BUT_TOUCHES = 1e-3;
+    FitOutcome outcome = problem_.findPointAtWindow(ALL_BUT_TOUCHES);
     outcome.status = FitOutcome::MAX_ITERATIONS;
     outcome.isStuck = left > 0;
     outcome.count = criteria.maxCount - std::max(left, 0);

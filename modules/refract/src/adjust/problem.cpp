@@ -217,19 +217,18 @@ FitOutcome Problem::findPointWithoutImage() const
     return FitOutcome();
 }
 
-FitOutcome Problem::findPointAtWindow() const
+FitOutcome Problem::findPointAtWindow(double nearer, int owner) const
 {
-    const double NEARER = 1e-3;         // of the distance
     for (const Image& image : images_)
     {
         const RigCamera& camera = cameras_[image.camera];
-        if (!image.refracted || !camera.camera(true))
+        if (!image.refracted || !camera.camera(true) || (owner >= 0 && rig_.owner[image.camera] != owner))
             continue;
         const Pose direct = pose(image.view);
         const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, true);
         for (int row = 0; row < (int)image.points.object.size(); row++)
         {
-            const Vec3d X = (1 - NEARER)*camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
+            const Vec3d X = (1 - nearer)*camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
             Point2d pixel;
             uchar status = REFRACT_OK;
             camera.camera(true)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);

@@ -127,8 +127,9 @@ public:
     double squaredDistances(const Image& image) const;      //!< weighted; in pixels whatever their covariances
     //! The first point with a weight that has no image; or which window no camera can look through so.
     FitOutcome findPointWithoutImage() const;
-    //! The first point with a weight that all but touches the window of its camera: nearer, it has no image.
-    FitOutcome findPointAtWindow() const;
+    /** The first point with a weight that all but touches the window of its camera: nearer by this part of its distance, it has no image.
+    @param owner of the window; -1: any */
+    FitOutcome findPointAtWindow(double nearer, int owner = -1) const;
 
     // Parameters
     const std::vector<ParameterBlock>& blocks() const { return blocks_; }
@@ -141,8 +142,6 @@ public:
     void updateCameras();
     Rig rig() const;                    //!< with the current parameters
     Camera camera(int c) const;
-    int ownerOf(int c) const { return rig_.owner[c]; }
-    RigidTransform extrinsics(int c) const { return { cameras_[c].extrinsics.rotation.R, cameras_[c].extrinsics.T }; }
     Pose pose(int view) const;
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     //! The pose in the direct images of a target that has this pose in an image.

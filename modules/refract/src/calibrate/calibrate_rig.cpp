@@ -440,7 +440,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     task.targetCovariance = readTargetCovariance(targetCovariance);
     task.flags = flags;
     task.criteria = criteria;
-    const bool placesFollow = task.isIncremental() && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
+    const bool placesFollow = task.isIncremental(rig) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);

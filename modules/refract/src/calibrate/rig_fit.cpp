@@ -135,28 +135,34 @@ int seenCount(const RigViews& views)
 
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
-    if (task.isIncremental())
+    const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
+    const int flags = task.searchFlags(rig);
+    const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) != 0, isIncremental = task.isIncremental(rig);
+    FitOutcome outcome;
+    if (isIncremental)
     {
         minima.assign(rig.count(), OtherMinimum());
-        start = incrementalStart(rig, task.views, task.flags, minima);
-        return checkPoses(task.views, start.poses);
+        start = incrementalStart(rig, views, flags, minima);
     }
-    const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
-    start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
-    FitOutcome outcome = startWindows(start.rig, views, start.poses, task.flags, minima);
-    addPosesThroughWindow(start.rig, views, start.poses);
-    if (outcome.converged())
-        outcome = keepGivenPlaces(rig, views, start.poses, start.rig);
-    if (!outcome.converged())
-        return outcome;
-    if (task.isSealed() && !task.isRobust())
-        addPosesIgnoringWindow(start.rig, views, start.poses);
+    else
+    {
+        start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+        // A window at a known distance is found from where it is given, in the fit that finds the lens.
+        outcome = startWindows(start.rig, views, start.poses, flags & GLASS_FREE_DISTANCE ? flags : task.flags, minima);
+        placeTargets(start.rig, views, searchesLens ? 0 : flags, start.poses);
+        if (outcome.converged())
+            outcome = keepGivenPlaces(rig, views, start.poses, start.rig);
+        if (!outcome.converged())
+            return outcome;
+        if (searchesLens && !task.isRobust())
+            addPosesIgnoringWindow(start.rig, views, start.poses);
+    }
     if (task.isRobust())
         dropUnusable(views, start.poses, task);
     else
         outcome = checkPoses(views, start.poses);
-    if (outcome.converged() && task.isSealed())
-        start = bestSealedStart(start, views, task.flags, minima);
+    if (outcome.converged() && searchesLens && !isIncremental)
+        start = bestSealedStart(start, views, flags, minima);
     return outcome;
 }
 

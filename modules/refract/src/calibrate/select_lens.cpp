@@ -318,7 +318,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     setOwners(rig, windowOfCamera);
     if (!imagePointsRefracted.empty())
         checkWindows(rig, task.views, flags, refractedNames);
-    const bool placesFollow = task.isIncremental() && Rs.empty() && Ts.empty();
+    const bool placesFollow = task.isIncremental(rig) && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     std::vector<int> seen;

@@ -9,6 +9,7 @@ own and one view it is all that there is to find, as the places of the cameras f
 #include "adjust/covariance.hpp"
 #include "start/rig_assembly.hpp"
 #include "start/sealed_start.hpp"
+#include "start/window_start.hpp"
 
 namespace cv { namespace refract {
 
@@ -54,27 +55,37 @@ double relativeDistanceSigma(const CameraHypothesis& hypothesis, const RigViews&
     return std::sqrt(covariance.ofParameters(row, row))/std::max(hypothesis.camera.window().distance, DBL_MIN);
 }
 
-CameraHypothesis placedCamera(const Camera& camera, const RigViews& views)
+CameraHypothesis placedCamera(const Camera& camera, const RigViews& views, int flags)
 {
-    const Rig rig = { { camera }, { 0 }, { Pose() } };
-    CameraHypothesis hypothesis = { camera, std::vector<Pose>(views.count()) };
-    addPosesThroughWindow(rig, views, hypothesis.poses);
-    return hypothesis;
+    Rig rig = { { camera }, { 0 }, { Pose() } };
+    std::vector<Pose> poses(views.count());
+    placeTargets(rig, views, flags, poses);
+    return { rig.cameras[0], poses };
+}
+
+//! What the camera may be, the best first.
+std::vector<Minimum> minimaAlone(const RigStart& start, const RigViews& views, int flags)
+{
+    if (flags & GLASS_FREE_INTRINSICS)
+        return sealedMinima(start, views, flags);
+    std::vector<int> which;
+    const RigViews seen = viewsThrough(views, 0, which);
+    return which.empty() ? std::vector<Minimum>() : windowMinima(start.rig.cameras[0], seen, flags);
 }
 
 CameraMinima fitSingleCamera(const Rig& given, int c, const RigViews& all, int flags)
 {
     const RigViews views = viewsOf(all, { c });
-    const CameraHypothesis start = placedCamera(given.cameras[c], views);
+    const CameraHypothesis start = placedCamera(given.cameras[c], views, 0);
     const Rig rig = { { start.camera }, { 0 }, { Pose() } };
     RigStart from = { rig, start.poses };
     addPosesIgnoringWindow(rig, views, from.poses);
     if (!given.owns(c) && refracts(given.cameras[c]))
         flags |= GLASS_FREE_DISTANCE;       // what is given is that of another camera
     CameraMinima alone = { std::vector<CameraHypothesis>(), std::numeric_limits<double>::infinity() };
-    const std::vector<Minimum> minima = keptMinima(sealedMinima(from, views, flags), ANY_PLAUSIBLE);
+    const std::vector<Minimum> minima = keptMinima(minimaAlone(from, views, flags), ANY_PLAUSIBLE);
     for (const Minimum& minimum : minima)
-        alone.minima.push_back(placedCamera(minimum.rig.cameras[0], views));
+        alone.minima.push_back(placedCamera(minimum.rig.cameras[0], views, flags));
     if (minima.empty())
         alone.minima.push_back(start);
     else

@@ -31,11 +31,11 @@ Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria
     if ((int)start.poses.size() != views.count())
     {
         minimum.poses.assign(views.count(), Pose());
-        addPosesThroughWindow(start.rig, views, minimum.poses);
+        placeTargets(minimum.rig, views, flags, minimum.poses);
     }
     if (!checkPoses(views, minimum.poses).converged())
         return minimum;
-    Problem problem(start.rig, views, minimum.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
+    Problem problem(minimum.rig, views, minimum.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
     const FitOutcome outcome = minimize(problem, criteria);
     const double cost = outcome.isUsable() ? problem.squaredError() : minimum.cost;
     if (!std::isfinite(cost))       // it is sorted by

@@ -39,6 +39,11 @@ struct Stage
 
 const TermCriteria COARSE(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-8), FINE(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
 
+const double ROUGHLY_SAME_ANGLE = 0.05;     //!< before the end of a fit
+/** Of many hypotheses, those that are worth more. Of those that lead to one place the best, as all that lead to the best of some views
+would leave no room for the best of all. */
+const Stage FIRST_OF_MANY = { 6, TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 20, 1e-8), 6, ROUGHLY_SAME_ANGLE };
+
 //! Excess that some views, or one camera alone, leave a minimum behind the best that all have in another.
 const double PLAUSIBLE = 10;
 //! Of minima that are sorted, those that a stage keeps.

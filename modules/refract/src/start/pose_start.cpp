@@ -5,6 +5,7 @@
 /* Starts of the views' poses. */
 
 #include "start/pose_start.hpp"
+#include "start/shared_window.hpp"
 
 namespace cv { namespace refract {
 
@@ -79,6 +80,52 @@ void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<P
     for (int view = 0; view < views.count(); view++)
         if (!poses[view].found)
             poses[view] = poseOfView(bare, rig, views, view, false);
+}
+
+bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses)
+{
+    const TransformWithDerivatives toCamera(rig.extrinsics[c]);
+    for (int view = 0; view < views.count(); view++)
+    {
+        const std::vector<Point2d>& pixels = views.cameras[c].refracted[view];
+        const TransformWithDerivatives toCamera1(poses[view]);
+        for (size_t i = 0; i < pixels.size() && poses[view].found; i++)
+        {
+            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(views.object[view][i])));
+            double u, v;
+            uchar status = REFRACT_OK;
+            rig.cameras[c].project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+            if (status != REFRACT_OK && isSeen(pixels[i]))
+                return false;
+        }
+    }
+    return true;
+}
+
+bool placeTargets(Rig& rig, const RigViews& views, int flags, std::vector<Pose>& poses)
+{
+    const std::vector<Pose> given = poses;
+    for (double part : { 1., 0.97, 0.9, 0.75, 0.5, 0.25 })
+    {
+        Rig nearer = rig;
+        if (part < 1 && !((flags & GLASS_FREE_DISTANCE) && scaleDistances(nearer, part)))
+            break;
+        std::vector<Pose> placed = given;
+        addPosesThroughWindow(nearer, views, placed);
+        bool areSeen = true;
+        for (int view = 0; view < views.count(); view++)
+            areSeen = areSeen && (placed[view].found || poseSources(views, view, false).empty());
+        for (int c = 0; c < rig.count(); c++)
+            areSeen = areSeen && showsWhatWasSeen(nearer, c, views, placed);
+        if (part == 1)
+            poses = placed;
+        if (!areSeen)
+            continue;
+        rig = nearer;
+        poses = placed;
+        return true;
+    }
+    return false;
 }
 
 double meanRange(const std::vector<Pose>& poses)

@@ -26,6 +26,14 @@ void addPosesThroughWindow(const Rig& rig, const RigViews& views, std::vector<Po
 //! The poses that are left, as if there were no window: to know roughly how far a target is where a window's start hides it.
 void addPosesIgnoringWindow(const Rig& rig, const RigViews& views, std::vector<Pose>& poses);
 
+//! Whether every point that the camera saw through its window has an image there.
+bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses);
+
+/** The other poses, from images through the windows. Where these hide a target, windows of unknown distance come nearer to their cameras,
+until all that was seen has an image.
+@return false if some has none at any distance: the windows, and the poses as far as they were found, are those of the given ones */
+bool placeTargets(Rig& rig, const RigViews& views, int flags, std::vector<Pose>& poses);
+
 //! Mean distance of the targets; NaN if no pose was found.
 double meanRange(const std::vector<Pose>& poses);
 

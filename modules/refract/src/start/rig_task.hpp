@@ -22,10 +22,14 @@ struct RigTask
     bool wantsJacobian = false;
 
     bool isRobust() const { return (flags & GLASS_ROBUST) != 0; }
-    //! Images through the windows alone have to tell the lenses too.
+    //! Neither direct images nor poses.
+    bool isThroughWindowsOnly() const;
+    //! Images through the windows alone have to tell the lenses too, and nothing is known of the cameras.
     bool isSealed() const;
-    //! A sealed rig of which hardly anything is known: its cameras are fitted alone first.
-    bool isIncremental() const;
+    //! The flags of a search for where the fit begins, which has no priors: a lens that something tells stays as it is.
+    int searchFlags(const Rig& rig) const;
+    //! Images through the windows alone have to tell where the cameras are, and windows or lenses: each camera is fitted alone first.
+    bool isIncremental(const Rig& rig) const;
 };
 
 }} // namespace

@@ -5,19 +5,13 @@
 #include "start/sealed_start.hpp"
 #include "start/rig_task.hpp"
 #include "start/shared_window.hpp"
-#include "window/place.hpp"
+#include "start/start_table.hpp"
 
 namespace cv { namespace refract {
 
 namespace {
 
-const double ROUGHLY_SAME_ANGLE = 0.05;     // before the end of a fit
-// Of those that lead to one place the best, as all that lead to the best of some views would leave no room for the best of all.
-const Stage FIRST = { 6, TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 20, 1e-8), 6, ROUGHLY_SAME_ANGLE };
 const Stage SECOND = { 10, COARSE, SIZE_MAX, SAME_ANGLE, PLAUSIBLE }, LAST = { ALL_VIEWS, FINE };
-const double PARTS_OF_RANGE[] = { 0.15, 0.4, 0.75 };
-const double TILT = 0.25;       // radians
-const int AZIMUTHS = 4;
 
 /** A lens that was calibrated through the window as if there were none has taken up the medium beyond: its focal length is
 longer by the ratio of the indices, its distortion and principal point say more of the window than of the lens. */
@@ -42,19 +36,15 @@ Rig withoutMedium(Rig rig, int flags)
 }
 
 //! The lenses as given and without the medium, each at several distances.
-std::vector<RigStart> untilted(const RigStart& given, int flags)
+std::vector<RigStart> untilted(const RigStart& given, const RigViews& views, int flags)
 {
     std::vector<RigStart> starts(1, { given.rig, {} });
     if (!(flags & GLASS_FREE_DISTANCE))
         return starts;
     starts.push_back({ withoutMedium(given.rig, flags), {} });
     for (int lens = 0; lens < 2; lens++)
-        for (double part : PARTS_OF_RANGE)
-        {
-            RigStart start = starts[lens];
-            if (setDistances(start.rig, part*meanRange(given.poses)))
-                starts.push_back(start);
-        }
+        for (const Rig& rig : atOtherDistances(starts[lens].rig, views))
+            starts.push_back({ rig, {} });
     return starts;
 }
 
@@ -63,12 +53,13 @@ std::vector<RigStart> tilted(const std::vector<RigStart>& starts, int owner)
 {
     std::vector<RigStart> all = starts;
     for (const RigStart& start : starts)
-        for (const WindowPlace& place : placesAround(start.rig.cameras[owner].window(), TILT, AZIMUTHS, 0.5))
-        {
-            RigStart other = start;
-            if (setPlace(other.rig, owner, place))
-                all.push_back(other);
-        }
+        for (const TiltRing& ring : SEALED_TILTS)
+            for (const WindowPlace& place : placesAround(start.rig.cameras[owner].window(), ring.tilt, ring.count, ring.first))
+            {
+                RigStart other = start;
+                if (setPlace(other.rig, owner, place))
+                    all.push_back(other);
+            }
     return all;
 }
 
@@ -83,19 +74,44 @@ RigViews viewsWithPose(const RigViews& views, const std::vector<Pose>& poses)
 
 } // namespace
 
-bool RigTask::isSealed() const
+bool RigTask::isThroughWindowsOnly() const
 {
-    bool tellsMore = std::any_of(knownPoses.begin(), knownPoses.end(), [](const Pose& pose) { return pose.found; });
-    for (const CameraPrior& prior : cameraPriors)
-        tellsMore = tellsMore || prior.covariance.size() > 0;
-    for (const CameraViews& camera : views.cameras)
-        tellsMore = tellsMore || seesAnything(camera.direct);
-    return !tellsMore && (flags & GLASS_FREE_INTRINSICS);
+    const bool knowsPose = std::any_of(knownPoses.begin(), knownPoses.end(), [](const Pose& pose) { return pose.found; });
+    return !knowsPose && std::none_of(views.cameras.begin(), views.cameras.end(), [](const CameraViews& camera)
+                                      { return seesAnything(camera.direct); });
 }
 
-bool RigTask::isIncremental() const
+//! Whether a covariance says something of these parameters; NaN: nothing is known.
+static bool tells(const Eigen::MatrixXd& covariance, int first, int count)
 {
-    return isSealed() && views.cameras.size() > 1 && (flags & GLASS_FREE_EXTRINSICS) && !isRobust();
+    for (int i = first; i < std::min(first + count, (int)covariance.rows()); i++)
+        if (!std::isnan(covariance(i, i)))
+            return true;
+    return false;
+}
+
+bool RigTask::isSealed() const
+{
+    const bool tellsMore = std::any_of(cameraPriors.begin(), cameraPriors.end(), [](const CameraPrior& prior)
+                                       { return prior.covariance.size() > 0; });
+    return isThroughWindowsOnly() && !tellsMore && (flags & GLASS_FREE_INTRINSICS);
+}
+
+int RigTask::searchFlags(const Rig& rig) const
+{
+    bool isLensKnown = !isThroughWindowsOnly();
+    for (size_t c = 0; c < cameraPriors.size(); c++)
+        isLensKnown = isLensKnown || tells(cameraPriors[c].covariance, 0, rig.cameras[c].lensCount());
+    return isLensKnown ? flags & ~GLASS_FREE_INTRINSICS : flags;
+}
+
+bool RigTask::isIncremental(const Rig& rig) const
+{
+    bool arePlacesKnown = !(flags & GLASS_FREE_EXTRINSICS);
+    for (size_t c = 1; c < cameraPriors.size(); c++)
+        arePlacesKnown = arePlacesKnown || tells(cameraPriors[c].covariance, rig.cameras[c].parameterCount(), 6);
+    return isThroughWindowsOnly() && !arePlacesKnown && rig.count() > 1
+           && (searchFlags(rig) & (GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE));
 }
 
 std::vector<RigStart> mirrored(const Rig& rig, const Rig& middle, int flags)
@@ -127,11 +143,11 @@ std::vector<RigStart> mirrored(const Rig& rig, const Rig& middle, int flags)
 std::vector<Minimum> sealedMinima(const RigStart& given, const RigViews& views, int flags)
 {
     const RigViews placed = viewsWithPose(views, given.poses);
-    std::vector<RigStart> starts = untilted(given, flags);
+    std::vector<RigStart> starts = untilted(given, placed, flags);
     for (int owner = 0; owner < given.rig.count(); owner++)
         if (given.rig.owns(owner))
         {
-            const std::vector<Minimum> best = multiStart(tilted(starts, owner), { FIRST }, placed, flags);
+            const std::vector<Minimum> best = multiStart(tilted(starts, owner), { FIRST_OF_MANY }, placed, flags);
             starts.clear();
             for (const Minimum& minimum : best)
                 starts.push_back(minimum.start);

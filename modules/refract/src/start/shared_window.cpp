@@ -96,6 +96,19 @@ bool setDistances(Rig& rig, double distance)
     return transferToOthers(rig).converged();
 }
 
+bool scaleDistances(Rig& rig, double factor)
+{
+    for (int c = 0; c < rig.count(); c++)
+    {
+        GlassWindow window = rig.cameras[c].window();
+        if (!rig.owns(c) || hasCenter(window.shape))
+            continue;
+        window.distance *= factor;
+        rig.cameras[c].setWindow(window);
+    }
+    return transferToOthers(rig).converged();
+}
+
 bool setPlace(Rig& rig, int owner, const WindowPlace& place)
 {
     rig.cameras[owner].setWindow(withPlace(rig.cameras[owner].window(), place));

@@ -19,6 +19,7 @@ void giveToNearest(Rig& rig);
 
 //! The distance of every window that has one from its owner; false if some camera then looks away from it.
 bool setDistances(Rig& rig, double distance);
+bool scaleDistances(Rig& rig, double factor);
 //! The place of the window of an owner, in its frame; false if some camera then looks away from it.
 bool setPlace(Rig& rig, int owner, const WindowPlace& place);
 

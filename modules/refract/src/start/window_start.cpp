@@ -7,6 +7,7 @@
 #include "start/window_start.hpp"
 #include "start/normal_from_pairs.hpp"
 #include "start/shared_window.hpp"
+#include "start/start_table.hpp"
 #include "window/place.hpp"
 
 namespace cv { namespace refract {
@@ -17,52 +18,79 @@ namespace {
 const int FEW_VIEWS = 8;
 const size_t LIKELY_TILTS = 4;
 
-//! What the camera saw through the window.
-RigViews viewsThrough(const RigViews& views, int camera)
-{
-    RigViews all = { views.object, { views.cameras[camera] }, views.variance };
-    all.cameras[0].directCovariances.clear();
-    all.cameras[0].direct.assign(views.count(), std::vector<Point2d>());
-    std::vector<int> seen;
-    for (int view = 0; view < views.count(); view++)
-        if (countWhole(all.cameras[0].refracted[view]) >= 4)
-            seen.push_back(view);
-    return pick(all, seen);
-}
-
 //! The given window, and the best few of two rings of tilts, all as they are: only the poses behind each are fitted.
 std::vector<RigStart> likelyTilts(const RigStart& given, const RigViews& views)
 {
     const std::vector<Stage> look(1, { FEW_VIEWS, COARSE, LIKELY_TILTS });
     const Minimum placed = multiStart({ given }, look, views, GLASS_FIX_NORMAL)[0];
     const RigStart& first = std::isfinite(placed.cost) ? placed : given;    // poses behind one window are near those behind another
-    std::vector<RigStart> ring, likely(1, first);
-    for (double tilt : { 0., 0.2, 0.45 })
-        for (const WindowPlace& place : placesAround(given.rig.cameras[0].window(), tilt, tilt > 0 ? 8 : 1, 0))
+    std::vector<RigStart> all, likely(1, first);
+    for (const TiltRing& ring : KNOWN_LENS_TILTS)
+        for (const WindowPlace& place : placesAround(given.rig.cameras[0].window(), ring.tilt, ring.count, ring.first))
         {
-            ring.push_back(first);
-            setPlace(ring.back().rig, 0, place);
+            all.push_back(first);
+            setPlace(all.back().rig, 0, place);
         }
-    for (const Minimum& best : multiStart(ring, look, views, GLASS_FIX_NORMAL))
+    for (const Minimum& best : multiStart(all, look, views, GLASS_FIX_NORMAL))
         likely.push_back(best);
     return likely;
 }
 
-//! The window of one camera from images through it alone.
-GlassWindow searchWindow(const Camera& camera, const RigViews& views, int flags, OtherMinimum& other)
+/** The same window, where another pose of some target fits better: a flat target far away has two. Nothing where none does.*/
+std::vector<RigStart> withBetterPoses(const Minimum& minimum, const RigViews& views)
 {
-    if (views.count() == 0)
-        return camera.window();
+    const double BETTER = 1e-3;
+    const Camera& camera = minimum.rig.cameras[0];
+    RigStart other = { minimum.rig, minimum.poses };
+    bool isBetter = false;
+    for (int view = 0; view < views.count(); view++)
+    {
+        const std::vector<Point2d>& pixels = views.cameras[0].refracted[view];
+        double rms, before;
+        const Pose pose = solvePose(camera, views.object[view], pixels, Pose(), rms);
+        solvePose(camera, views.object[view], pixels, minimum.poses[view], before);
+        if (!pose.found || !(rms < (1 - BETTER)*before))
+            continue;
+        other.poses[view] = pose;
+        isBetter = true;
+    }
+    return std::vector<RigStart>(isBetter ? 1 : 0, other);
+}
+
+} // namespace
+
+RigViews viewsThrough(const RigViews& views, int camera, std::vector<int>& which)
+{
+    RigViews all = { views.object, { views.cameras[camera] }, views.variance };
+    all.cameras[0].directCovariances.clear();
+    all.cameras[0].direct.assign(views.count(), std::vector<Point2d>());
+    which.clear();
+    for (int view = 0; view < views.count(); view++)
+        if (countWhole(views.cameras[camera].refracted[view]) >= 4)
+            which.push_back(view);
+    return pick(all, which);
+}
+
+std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, int flags)
+{
     const RigStart given = { { { camera }, { 0 }, { Pose() } }, std::vector<Pose>() };
+    std::vector<RigStart> starts = likelyTilts(given, views);
     std::vector<Stage> stages(1, { FEW_VIEWS, COARSE });
     if (views.count() > FEW_VIEWS)
         stages.push_back({ ALL_VIEWS, COARSE });
-    const std::vector<Minimum> minima = multiStart(likelyTilts(given, views), stages, views, flags & GLASS_FREE_DISTANCE);
-    std::vector<OtherMinimum> others(1);
-    describeOther(minima, others);
-    other = others[0];
-    return minima[0].rig.cameras[0].window();
+    if (flags & GLASS_FREE_DISTANCE)
+    {
+        for (const Rig& rig : atOtherDistances(given.rig, views))
+            for (const RigStart& start : likelyTilts({ rig, {} }, views))
+                starts.push_back(start);
+        stages.insert(stages.begin(), FIRST_OF_MANY);
+    }
+    flags &= GLASS_FREE_DISTANCE;
+    const std::vector<Minimum> minima = multiStart(starts, stages, views, flags);
+    return hillClimb(minima, [&](const Minimum& best) { return withBetterPoses(best, views); }, views, flags);
 }
+
+namespace {
 
 /** What a camera would see without the window, where it has no direct image but the pose is known without. Not if R and T are free
 and no direct image tells them: the normal would make up for their error. */
@@ -148,9 +176,10 @@ int bestObserver(const Rig& rig, int owner, const RigViews& views)
     return best;
 }
 
-//! The window of one owner.
+/** The window of one owner.
+@param found what poses a search for it has found: of a window whose distance was not known, others would hide behind it */
 GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, int flags,
-                        OtherMinimum& other)
+                        OtherMinimum& other, std::vector<Pose>& found)
 {
     GlassWindow window = rig.cameras[owner].window();
     if ((flags & GLASS_FIX_NORMAL) || !rig.cameras[owner].refracts())
@@ -163,50 +192,44 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     const int best = bestObserver(rig, owner, views);
     if (best < 0)
         return window;
+    std::vector<int> which;
+    const RigViews seen = viewsThrough(views, best, which);
+    if (which.empty())
+        return window;
     const GlassWindow seenByBest = transferred(window, rig.extrinsics[owner], rig.extrinsics[best]);
     if (!(seenByBest.normal[2] > 0 && distanceToSurface(seenByBest) >= 0))
         return window;
     const double givenDistance = window.distance;
-    window = transferred(searchWindow(withWindow(rig.cameras[best], seenByBest), viewsThrough(views, best), flags, other),
-                         rig.extrinsics[best], rig.extrinsics[owner]);
+    const std::vector<Minimum> minima = windowMinima(withWindow(rig.cameras[best], seenByBest), seen, flags);
+    const Minimum& minimum = minima[0];
+    std::vector<OtherMinimum> others(1);
+    describeOther(minima, others);
+    window = transferred(minimum.rig.cameras[0].window(), rig.extrinsics[best], rig.extrinsics[owner]);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
+    for (size_t i = 0; i < which.size() && (flags & GLASS_FREE_DISTANCE); i++)
+        if (i < minimum.poses.size() && minimum.poses[i].found && !found[which[i]].found)
+            found[which[i]] = best == 0 ? minimum.poses[i] : inCamera1(minimum.poses[i], rig.extrinsics[best]);
+    other = others[0];
     other.window = transferred(other.window, rig.extrinsics[best], rig.extrinsics[owner]);
     return window;
 }
 
 } // namespace
 
-FitOutcome startWindows(Rig& rig, const RigViews& views, const std::vector<Pose>& poses, int flags,
-                        std::vector<OtherMinimum>& others)
+FitOutcome startWindows(Rig& rig, const RigViews& views, std::vector<Pose>& poses, int flags, std::vector<OtherMinimum>& others)
 {
     others.assign(rig.count(), OtherMinimum());
+    std::vector<Pose> found(views.count());
     for (int c = 0; c < rig.count(); c++)
         if (rig.owns(c))
-            rig.cameras[c].setWindow(startWindow(rig, c, views, poses, flags, others[c]));
+            rig.cameras[c].setWindow(startWindow(rig, c, views, poses, flags, others[c], found));
+    for (int view = 0; view < views.count(); view++)
+        if (!poses[view].found)
+            poses[view] = found[view];
     if (flags & GLASS_FREE_DISTANCE)
         giveToNearest(rig);
     return transferToOthers(rig);
-}
-
-static bool showsWhatWasSeen(const Rig& rig, int c, const RigViews& views, const std::vector<Pose>& poses)
-{
-    const TransformWithDerivatives toCamera(rig.extrinsics[c]);
-    for (int view = 0; view < views.count(); view++)
-    {
-        const std::vector<Point2d>& pixels = views.cameras[c].refracted[view];
-        const TransformWithDerivatives toCamera1(poses[view]);
-        for (size_t i = 0; i < pixels.size() && poses[view].found; i++)
-        {
-            const Vec3d X = toCamera.apply(toCamera1.apply(Vec3d(views.object[view][i])));
-            double u, v;
-            uchar status = REFRACT_OK;
-            rig.cameras[c].project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
-            if (status != REFRACT_OK && isSeen(pixels[i]))
-                return false;
-        }
-    }
-    return true;
 }
 
 FitOutcome keepGivenPlaces(const Rig& given, const RigViews& views, const std::vector<Pose>& poses, Rig& rig)

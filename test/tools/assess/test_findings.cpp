@@ -1,0 +1,57 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// What the verdict says of a window's distance that a fit stopped at.
+#include "assess/findings.hpp"
+#include "fitted_rig.hpp"
+#include "programs/run_tool.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace tools;
+
+namespace {
+
+//! Boards behind a wall of a tank, one camera before it, of which nothing is known but its lens and the wall's material.
+RigCalibration calibratedTank(double distance, double nearest, unsigned seed)
+{
+    scenes::Random random(seed);
+    const Matx33d K(8571, 0, 1151.5, 0, 8571, 859.5, 0, 0, 1);
+    const auto camera = [&](const Vec3d& normal, double d) {
+        const Ptr<RefractiveCamera> made = RefractiveCamera::create(K, noArray(), GlassWindow(normal, 4, 1.49, d, 1.33));
+        made->setImageSize(Size(2304, 1720));
+        return made;
+    };
+    RigModel truth, start;
+    truth.add(camera(normalize(Vec3d(0.05, -0.1, 1)), distance), {});
+    start.add(camera(Vec3d(0, 0, 1), 0), {});
+    RigData data = dataOf(truth);
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(nearest, nearest + 130));
+        data.views.push_back(observe(truth, board(9, 6, 5), random.vector(0.4), tvec, false, 0.3, random));
+    }
+    RigCalibration c = fittedRig(start, data, 5, GLASS_FREE_DISTANCE);
+    c.options.flags = GLASS_FREE_DISTANCE;
+    c.baselines.throughGlass = {1.};        // px
+    return c;
+}
+
+//! Whether one of a few such tanks makes the verdict say that.
+bool isSaid(const std::string& what, double distance, double nearest)
+{
+    for (unsigned seed = 1; seed <= 3; seed++)
+        for (const std::string& weak : findingsOf(calibratedTank(distance, nearest, seed), Assessment()).weak)
+            if (mentions(weak, what))
+                return true;
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("The verdict says at which bound a window's distance ended", "[findings]")
+{
+    CHECK(isSaid("ended where a target touches it", 615, 640));
+    CHECK(isSaid("ended at its bound, 0 +- ", 0, 400));
+    CHECK_FALSE(isSaid("ended", 200, 650));
+}
