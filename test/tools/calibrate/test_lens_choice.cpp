@@ -83,6 +83,19 @@ TEST_CASE("A wide fisheye is chosen where OpenCV's model does not describe it", 
     CHECK(options.lensCoefficients == FISHEYE_LENS);
 }
 
+TEST_CASE("A fisheye is found in few images, in which OpenCV's many coefficients are not found", "[lens_choice]")
+{
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(Matx33d(560, 0, 645, 0, 563, 508, 0, 0, 1),
+                                                                         std::vector<double>{-0.02, 0.006, -0.004, 0.0012});
+    for (unsigned salt : {13, 28, 29})
+    {
+        const LensChoice choice = chooseLens(dataOf(camera, 6, false, salt), RigOptions(), false);
+        REQUIRE(!choice.scores.empty());
+        CAPTURE(salt, choice.sentence());
+        CHECK(choice.lens().model == "fisheye");
+    }
+}
+
 TEST_CASE("Three direct images are held out in parts", "[lens_choice]")
 {
     const LensChoice choice = chooseLens(dataOf(bent(), 3, false, 3), RigOptions(), true);

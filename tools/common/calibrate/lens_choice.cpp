@@ -19,6 +19,7 @@ const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target
 const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
 // A fisheye's error in that of OpenCV's model, to be taken in its place: of the rational one, which has more coefficients; of others.
 const double AS_GOOD = 1.02, CLEARLY_BETTER = 0.97;
+const double DESCRIBED = 1.;            // px: corners are found better than that, so more is of the lens
 
 //! What the candidates are fitted to.
 struct LensImages
@@ -176,8 +177,8 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
         images = glassImages(data, cameras);
     }
     LensChoice choice = chooseCoefficients(data, images, false, options, robust);
-    // A lens that k1 and k2 describe is not looked at as a fisheye.
-    if (!choice.scores.empty() && choice.lens().coefficients <= 2)
+    // A lens that k1 and k2 describe is not looked at as a fisheye. Where more coefficients find no good fit, they may be the best of bad.
+    if (!choice.scores.empty() && choice.lens().coefficients <= 2 && choice.lens().px < DESCRIBED)
         return choice;
     const LensChoice fisheye = chooseCoefficients(data, images, true, options, robust);
     if (fisheye.scores.empty())
