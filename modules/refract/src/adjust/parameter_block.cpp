@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/parameter_block.hpp"
+#include "adjust/direction_manifold.hpp"
 #include "adjust/rig_prior.hpp"
 #include "math/dense.hpp"
 #include "window/place.hpp"
@@ -18,9 +19,12 @@ std::unique_ptr<ceres::Manifold> ParameterBlock::manifold() const
 {
     if (!isOnManifold())
         return nullptr;
+    std::unique_ptr<ceres::Manifold> directions;
     if (at.shape == WINDOW_TUBE)
-        return std::unique_ptr<ceres::Manifold>(new ceres::LineManifold<3>());
-    return std::unique_ptr<ceres::Manifold>(new ceres::SphereManifold<3>());
+        directions.reset(new ceres::LineManifold<3>());
+    else
+        directions.reset(new ceres::SphereManifold<3>());
+    return std::unique_ptr<ceres::Manifold>(new DirectionManifold(std::move(directions)));
 }
 
 Eigen::MatrixXd ParameterBlock::tangentBasis(bool withHeld) const
