@@ -81,18 +81,6 @@ void addRow(Table& table, const std::string& name, const std::vector<Curve>& cur
     table.add({name, std::to_string(count), format("%.3f", std::sqrt(squares/count)), format("%.3f", largest)});
 }
 
-//! Near and far end of the scene in the frame of camera 1.
-cv::Vec2d readDepthRange(const std::string& text)
-{
-    const size_t comma = text.find(',');
-    const double near = parseNumbers(text.substr(0, comma), "--depth")[0];
-    const std::string rest = comma == std::string::npos ? "" : text.substr(comma + 1);
-    const double far = rest == "inf" ? std::numeric_limits<double>::infinity() : parseNumbers(rest, "--depth")[0];
-    if (!(near > 0 && far > near))
-        throw Failure("--depth=" + text + ": give the near and the far end, 0 < near < far (far may be inf)");
-    return cv::Vec2d(near, far);
-}
-
 //! Around a target as far before and behind it as keeps the curves of its points apart; else all that both can see.
 cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& points, const std::vector<Point2d>& partners)
 {
@@ -200,7 +188,7 @@ int refract_epilines_main(int argc, char** argv)
             points = readPixels(options.points);
 
         const cv::Vec2d depth = options.depth.empty() ? usualDepthRange(rig, points, partners)
-                                                      : readDepthRange(options.depth);
+                                                      : parseDepthRange(options.depth, "--depth");
         const std::vector<Curve> curves = curvesOf(rig, points, depth);
         const std::vector<Curve> ignored = curvesOf(withoutWindows(rig), points, depth);
         writeImage(options.out, draw(image1, image2, points, partners, curves, ignored));

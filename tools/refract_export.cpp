@@ -55,14 +55,6 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("--max-error", options.maxError, "px: exit code 2 if a camera is further off").check(moreThanZero());
 }
 
-cv::Vec2d parseRange(const std::string& text)
-{
-    const std::vector<double> numbers = parseNumbers(text, "--range");
-    if (numbers.size() != 2 || !(numbers[0] > 0 && numbers[1] > numbers[0]))
-        throw Failure("--range=" + text + ": give the near and the far end of the scene, 0 < NEAR < FAR");
-    return cv::Vec2d(numbers[0], numbers[1]);
-}
-
 void checkCombination(const Options& options, const std::string& settings)
 {
     const bool isFile = options.target == "opencv";
@@ -158,7 +150,7 @@ int refract_export_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
-        const cv::Vec2d range = parseRange(options.range);
+        const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");
         checkCombination(options, command.settings());
         const CentralRig rig = centralRigOf(options, range, command);
         write(options, command.settings(), rig);

@@ -308,13 +308,7 @@ struct Scan
 
 cv::Vec2d depthOf(const Options& o)
 {
-    const double inf = std::numeric_limits<double>::infinity();
-    if (o.depth.empty())
-        return cv::Vec2d(0., inf);
-    const std::vector<double> numbers = parseNumbers(o.depth, "--depth");
-    if (numbers.size() != 2 || !(numbers[0] > 0) || !(numbers[1] > numbers[0]))
-        throw Failure("--depth=" + o.depth + ": give two depths, NEAR,FAR");
-    return cv::Vec2d(numbers[0], numbers[1]);
+    return o.depth.empty() ? cv::Vec2d(0., std::numeric_limits<double>::infinity()) : parseDepthRange(o.depth, "--depth");
 }
 
 std::string csvOf(const std::vector<Scan>& scans)

@@ -87,20 +87,6 @@ struct PairResult
     std::string refusal;                //!< empty: it is written
 };
 
-cv::Vec2d parseDepthRange(const std::string& text)
-{
-    const size_t comma = text.find(',');
-    if (comma == std::string::npos)
-        throw Failure("--depth=" + text + ": give the near and the far end of the scene, as in --depth=400,1200");
-    const std::string farText = text.substr(comma + 1);
-    const std::vector<double> near = parseNumbers(text.substr(0, comma), "--depth");
-    const std::vector<double> far = farText == "inf" ? std::vector<double>{std::numeric_limits<double>::infinity()}
-                                                     : parseNumbers(farText, "--depth");
-    if (near.size() != 1 || far.size() != 1 || !(near[0] > 0 && far[0] > near[0]))
-        throw Failure("--depth=" + text + ": give the near and the far end of the scene, 0 < NEAR < FAR (FAR may be inf)");
-    return cv::Vec2d(near[0], far[0]);
-}
-
 void requirePly(const std::string& cloud)
 {
     const std::string extension = fs::path(cloud).extension().string();
@@ -211,7 +197,7 @@ private:
 
 cv::Vec2d givenRange(const Options& options, const Calibration& rig)
 {
-    const cv::Vec2d range = parseDepthRange(options.depth);
+    const cv::Vec2d range = parseDepthRange(options.depth, "--depth");
     if (!isBeyondWindows(rig, range[1]))
         throw Failure("--depth=" + options.depth + ": that is before or in the window of camera 1; give z of the scene beyond "
                       "it, in the unit of the calibration");
@@ -473,7 +459,7 @@ int refract_stereo_main(int argc, char** argv)
         options.matching.fullPaths = options.matcher == "hh";
         checkCombination(options);
         if (!options.depth.empty())
-            parseDepthRange(options.depth);
+            parseDepthRange(options.depth, "--depth");
         if (!options.channels.empty())
             parseChannels(options.channels);
         const Calibration rig = readPair(options, command);

@@ -3,6 +3,7 @@
 
 #include "calibrate/calib_file.hpp"
 #include "calibrate/light.hpp"
+#include "calibrate/rig_data.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
@@ -163,8 +164,8 @@ int refract_undistort_main(int argc, char** argv)
         command.parser.add("--out-dir", options.folder, "folder to write to, made if it is not there").required();
         command.parser.add("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
                            "sensor; each is corrected by itself");
-        command.parser.add("--camera", options.camera, "1 or 2: which camera of a stereo pair took the images")
-            .check(isCountUpTo(2)).captureDefault();
+        command.parser.add("--camera", options.camera, "which camera of the rig took the images")
+            .check(isCountUpTo(MAX_CAMERAS)).captureDefault();
         command.parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
         command.parse();
 
@@ -175,7 +176,8 @@ int refract_undistort_main(int argc, char** argv)
         requireWindows(calibration, options.calibration, options.noWindow);
         warnOfContradictions(calibration, options.calibration, command);
         if (options.camera > (int)calibration.cameras.size())
-            throw Failure("--camera=2: '" + options.calibration + "' has one camera");
+            throw Failure(cv::format("--camera=%d: '%s' has %d camera%s", options.camera, options.calibration.c_str(),
+                                     (int)calibration.cameras.size(), calibration.cameras.size() == 1 ? "" : "s"));
         std::vector<Frames> sources;
         for (const std::string& source : options.sources)
             sources.emplace_back(source);

@@ -178,3 +178,24 @@ TEST_CASE("Points in survey coordinates are moved near their origin, and known p
     const Mat C = data.views[1].pose->covariance(Rect(3, 3, 3, 3));
     CHECK(trace(C)[0] == Approx(2*std::pow(0.001*CV_PI/180*norm(far), 2) + 3*0.25).epsilon(1e-6));
 }
+
+TEST_CASE("Images of one camera that are given to another are refused", "[rig_data]")
+{
+    const TemporaryFolder folder;
+    std::string text = "view,x,y,z,u,v\n";
+    for (int i = 0; i < 6; i++)
+        text += format("a,%d,%d,0,%g,%g\n", i % 3, i/3, 100.5 + 20*(i % 3), 200.25 + 20*(i/3));
+    std::ofstream(folder / "one.csv") << text;
+    std::ofstream(folder / "two.csv") << text << "a,9,9,9,,\n";         // a copy that says no more
+    RigSources sources;
+    sources.glass[0] = folder / "one.csv";
+    PerCamera<Size> sizes;
+    sizes[0] = sizes[1] = Size(640, 480);
+    CHECK(readRigImages(sources, nullptr, sizes, true).glass[0].images.size() == 1);
+    for (const char* second : {"one.csv", "two.csv"})
+    {
+        sources.glass[1] = folder / second;
+        CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of camera 2")
+                          && Catch::Contains("the very pixels of 'a' of camera 1") && Catch::Contains(second));
+    }
+}

@@ -312,6 +312,33 @@ TEST_CASE("refract_calib finds the distance of a water surface", "[calib_tool]")
     CHECK(degreesBetween(window.normal, normalize(Vec3d(0.05, -0.08, 1))) < 0.1);
 }
 
+TEST_CASE("The file of a lens serves for two cameras that have one like it", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.stereo = true;
+    writeScene(f, options, 120);
+    // Not the lens of camera 2: the images say so, and the file is not what is refused.
+    const ToolResult r = runTool(stereoInputs(f, PANE + lens(f) + " --camera2=" + f / "camera1.yml"));
+    INFO(r.out << r.err);
+    CHECK_FALSE(mentions(r.err, "holds no camera"));
+    CHECK(mentions(r.err, "the images contradict --camera2"));
+}
+
+TEST_CASE("A forgotten medium is named, of one camera too", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.window = [](int) { return GlassWindow(normalize(Vec3d(0.15, -0.1, 1)), 20., 1.5437, 60., 1.333); };
+    writeScene(f, options, 119);
+    const std::string more = std::string(PANE) + " --distance=60 --no-cross-validation --lens=opencv4 --unpaired";
+    const ToolResult forgotten = runTool(inputs(f, more)), said = runTool(inputs(f, more + " --outer-index=1.333"));
+    INFO(forgotten.out << forgotten.err << said.out << said.err);
+    CHECK(forgotten.code == 1);
+    CHECK(mentions(forgotten.err, "px with --outer-index=1.333 in place of 1 (the medium in which the board was)"));
+    CHECK(said.code == 0);
+}
+
 TEST_CASE("refract_calib calibrates a stereo rig with a window for each camera", "[calib_tool]")
 {
     const TemporaryFolder f;

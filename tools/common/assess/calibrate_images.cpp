@@ -67,7 +67,7 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
         const bool lookedAtImages = requireNoMixUp(input, mixUps);
         plain = fitPlainly(input);
         fitsPlainly = isSound(input, plain);
-        if (!fitsPlainly)
+        if (!fitsPlainly || isSuspicious(input, plain))
             requireNoCause(input, mixUps, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {

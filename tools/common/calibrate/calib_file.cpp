@@ -230,6 +230,11 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
     return {key, text.substr(equals + 1)};
 }
 
+bool holdsCamera(const std::string& filename, const std::string& name)
+{
+    return !isCameraModel(filename) && !FileStorage(filename, FileStorage::READ)[name].empty();
+}
+
 KnownLens readLens(const std::string& filename, const std::string& name)
 {
     KnownLens lens{RefractiveCamera::read(filename, name), cv::Mat()};

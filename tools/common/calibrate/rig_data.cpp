@@ -126,6 +126,32 @@ std::vector<int> allViews(const RigData& data)
     return all;
 }
 
+namespace {
+
+//! No two cameras see a target in the same pixels to the last digit.
+void requireOwnImages(const RigImages& sets)
+{
+    std::map<std::vector<std::pair<double, double>>, std::pair<int, const DetectedImage*>> known;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        for (const DetectedImages* set : {&sets.direct[c], &sets.glass[c]})
+            for (const DetectedImage& image : set->images)
+            {
+                std::vector<std::pair<double, double>> pixels;
+                for (const Point2d& p : image.points)
+                    if (p.x == p.x)
+                        pixels.emplace_back(p.x, p.y);
+                if ((int)pixels.size() < MIN_POSE_POINTS)
+                    continue;
+                const auto& [camera, first] = known.insert({pixels, {c, &image}}).first->second;
+                if (camera != c)
+                    throw Failure(cv::format("'%s' of camera %d ('%s') shows the target in the very pixels of '%s' of camera %d ('%s'): "
+                                             "give each camera its own images", image.stem.c_str(), c + 1, image.path.c_str(),
+                                             first->stem.c_str(), camera + 1, first->path.c_str()));
+            }
+}
+
+} // namespace
+
 RigImages readRigImages(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
 {
     std::vector<ImageSource> given;
@@ -143,6 +169,7 @@ RigImages readRigImages(const RigSources& sources, const Target* target, const P
     const std::vector<DetectedImages> found = readDetectedImages(given, target, quiet, sources.channel);
     for (size_t i = 0; i < found.size(); i++)
         *places[i] = found[i];
+    requireOwnImages(sets);
     return sets;
 }
 

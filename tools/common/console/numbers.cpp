@@ -88,6 +88,25 @@ std::string listed(const std::vector<std::string>& names)
     return names.size() > most ? text + cv::format(" and %d more", (int)(names.size() - most)) : text;
 }
 
+cv::Vec2d parseDepthRange(const std::string& text, const std::string& option)
+{
+    const std::vector<std::string> items = splitAtCommas(text);
+    cv::Vec2d range;
+    const bool areTwo = items.size() == 2 && parseNumber(items[0], range[0]) && parseNumber(items[1], range[1]);
+    if (!areTwo || !(range[0] > 0 && range[1] > range[0]))
+        throw Failure(option + "=" + text + ": give the near and the far end of the scene, as in " + option + "=400,1200 (0 < NEAR < "
+                      "FAR)");
+    return range;
+}
+
+cv::Vec2d parseFiniteDepthRange(const std::string& text, const std::string& option)
+{
+    const cv::Vec2d range = parseDepthRange(text, option);
+    if (std::isinf(range[1]))
+        throw Failure(option + "=" + text + ": the far end must be a number here");
+    return range;
+}
+
 cv::Vec4d parsePlane(const std::string& text)
 {
     const std::vector<double> numbers = parseNumbers(text, "--plane");

@@ -28,6 +28,11 @@ std::vector<double> parseNumbers(const std::string& text, const std::string& opt
 //! "'a', 'b' and 3 more"
 std::string listed(const std::vector<std::string>& names);
 
+//! "NEAR,FAR", 0 < NEAR < FAR, of the scene; FAR may be inf.
+cv::Vec2d parseDepthRange(const std::string& text, const std::string& option);
+//! The same where FAR must be finite.
+cv::Vec2d parseFiniteDepthRange(const std::string& text, const std::string& option);
+
 //! --plane=a,b,c,d: a x + b y + c z = d.
 cv::Vec4d parsePlane(const std::string& text);
 

@@ -314,12 +314,18 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
     return true;
 }
 
+bool isSuspicious(const CalibrationInput& input, const PlainFit& plain)
+{
+    const double clean = cleanError(input);
+    if (clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean)
+        return true;
+    // In another medium than theirs images fit to some extent, with a window that is tilted far, or with another focal length.
+    return CLEAN*clean < plain.px && wrongMedium(input).px < EXPLAINS*plain.px;
+}
+
 bool isSound(const CalibrationInput& input, const PlainFit& plain)
 {
-    if (!(plain.px < largestSoundError(input.data)))
-        return false;
-    const double clean = plain.px > MIN_IMPLAUSIBLE_PX ? cleanError(input) : 0.;
-    return !(clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean);
+    return plain.px < largestSoundError(input.data) && !(plain.px > MIN_IMPLAUSIBLE_PX && isSuspicious(input, plain));
 }
 
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)

@@ -30,6 +30,10 @@ looked at before any that is not short.
 @return whether it has looked for all of them */
 bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps);
 
+/** Whether a fit to all images leaves far more than the lens's own images do, or than one with another medium behind the windows: a
+mistake may explain it, be it below a pixel. */
+bool isSuspicious(const CalibrationInput& input, const PlainFit& plain);
+
 /** Whether a fit to all images is near enough for one without wrong points to be looked for: half of the corners are where detectors find
 them, and not far more off than the lens's own images leave them. */
 bool isSound(const CalibrationInput& input, const PlainFit& plain);
