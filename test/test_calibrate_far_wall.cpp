@@ -150,7 +150,7 @@ TEST_CASE("A far wall before a long lens is found from a window on the camera", 
                 CHECK(call.wrongBy(rig) < SURE);
             }
         }
-    CHECK(refused <= 1);
+    CHECK(refused <= 2);        // one plate, from both starts
 }
 
 TEST_CASE("Three standard deviations of a far wall's distance are where the squares are larger by nine variances", "[calibrate][far_wall]")

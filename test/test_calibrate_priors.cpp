@@ -318,3 +318,41 @@ TEST_CASE("A covariance of R and T tells the scale, with any flags; without it t
     CHECK(cause([&] { posed(0.01); }) == -1);
     CHECK(cause([&] { posed(NaN); }) == CalibrationError::NO_SCALE);
 }
+
+TEST_CASE("A prior is about the value that was given, wherever the search begins", "[known][prior]")
+{
+    CAPTURE(seed());
+    for (int trial = 0; trial < 4; trial++)
+    {
+        CAPTURE(trial);
+        Random random(3440 + trial);
+        const RigTruth truth = makeRig(1, { 0 }, 1.333);
+        const RigScene scene = makeRigScene(truth, ObjectViews(4, board()), random, 1.);
+        RigCall with(truth, scene, false), without(truth, scene, false);
+        const double distance = truth.cameras[0]->window().distance;
+        for (RigCall* call : { &with, &without })
+        {
+            GlassWindow window = call->cameras[0]->window();
+            window.distance = distance;
+            call->cameras[0]->setWindow(window);
+        }
+        Mat prior(CAMERA, CAMERA, CV_64F, Scalar(0));
+        prior.at<double>(11, 11) = 0.25;            // of the distance, mm^2
+        for (int i = 0; i < 4; i++)
+            prior.at<double>(i, i) = 0.01;          // of the lens, px^2
+        for (int flags : { (int)GLASS_FREE_DISTANCE, GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | GLASS_FIX_TANGENT_DIST | GLASS_FIX_K1 |
+                                                         GLASS_FIX_K2 })
+        {
+            CAPTURE(flags);
+            RigCall call = with;
+            call.cameras[0] = with.cameras[0]->clone();
+            call.run(flags, { prior });
+            const double sigma = call.deviations.at<double>(11);
+            CAPTURE(call.cameras[0]->window().distance, sigma);
+            CHECK(std::abs(call.cameras[0]->window().distance - distance) < 4*sigma);
+            CHECK((sigma > 0 && sigma < 0.55));
+        }
+        without.run(GLASS_FREE_DISTANCE);
+        CHECK(without.deviations.at<double>(11) > 2);           // what the images alone tell
+    }
+}

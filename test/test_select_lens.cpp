@@ -323,7 +323,7 @@ TEST_CASE("Boards parallel to the image do not determine a focal length, and tha
     CAPTURE(seed());
     const TrueLens& lens = LENSES[1];
     for (double tiltDeg : { 0., 0.2, 20. })
-        for (int trial = 0; trial < 3; trial++)
+        for (int trial = 0; trial < (tiltDeg == 0.2 ? 2 : 1); trial++)
         {
             Random random(7350 + trial);
             CAPTURE(tiltDeg, trial);

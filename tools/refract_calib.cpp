@@ -24,8 +24,8 @@ that of the name (tx_mm); the rotation may also be rx_rad,... or the matrix r11,
 
 It prints ten lines: the verdict and its reasons, the error of a measured point at three ranges, what to do next. The tables of
 --verbose, --summary (for machines) and --report (to keep; its first page prints on one sheet) have the rest: what the +- is made
-of, what wrong values would do, what the next images should show. Judge the result by the held-out boards (calibrated on the
-others in turn), not by the residuals of the fit.
+of, what the next images should show. Judge the result by the held-out boards (calibrated on the others in turn), not by the
+residuals of the fit.
 
 --watch waits while cameras fill the folders of --direct, --glass, --direct2, ... (--watch=FOLDER: only that one), says after each
 image whether the board was found, how sharp and how well exposed it is, which image its name still waits for, and what the next one
@@ -39,7 +39,7 @@ the right, y down, z ahead), if the camera is not near the middle. A tube needs 
 
 Where an index stands, a material may stand: N-BK7, K9, B270, soda-lime, borosilicate, fused-silica, sapphire, PMMA, polycarbonate,
 of media also with parameters: water:T=12 (C), seawater:T=12,S=35, air:T=20,P=101325,RH=50 (C, Pa, %). The result then says which
-index it took; the wrong value that it tries is what the colours of light and the kinds of the material change it by.
+index it took; its standard deviation is what the colours of light and the kinds of the material change it by.
 
 Lengths are in the unit of --square, angles in degrees. Exit code: 0 done, 1 could not do it, 2 done, but a limit (--max-rms,
 --max-normal-std, --max-error-at) is not met, which one image through the window never does, or the images contradict a given

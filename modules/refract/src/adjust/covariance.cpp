@@ -28,7 +28,8 @@ struct FreeParameter
     const ParameterBlock* block;
     int coordinate;
     String name;
-    double maxSigma;        //!< a standard deviation beyond this is no answer
+    double maxSigma;        //!< a standard deviation beyond this is no answer, though the data had the least noise that there is
+    double maxLinear;       //!< beyond this it is none, as derivatives do not tell it
 
     double value() const { return block->values[coordinate]; }
     bool isThickness() const
@@ -60,13 +61,10 @@ int requirementOf(ParameterBlock::Kind kind)
 double largestSigma(const ParameterBlock& block, int i, double range)
 {
     const double MAX_ANGLE_SIGMA = CV_PI/4;
-    // Boards parallel to the image tell a focal length by their tilt's perspective alone, to which noise adds: of a relative deviation
-    // e the estimate is too long by some e^2, and a +- of the linearised problem is one as long as that is a tenth of it.
-    const double MAX_FOCAL_SIGMA = 0.1;
     if (block.kind == ParameterBlock::EXTRINSICS)
         return i < 3 ? MAX_ANGLE_SIGMA : range;
     if (block.kind == ParameterBlock::LENS)
-        return i < 2 ? MAX_FOCAL_SIGMA*block.values[i] : std::numeric_limits<double>::infinity();
+        return i < 2 ? block.values[i] : std::numeric_limits<double>::infinity();
     switch (kindOf(block.at, (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media) + i))
     {
     case WindowParameter::NORMAL: case WindowParameter::AXIS: return MAX_ANGLE_SIGMA;
@@ -77,8 +75,24 @@ double largestSigma(const ParameterBlock& block, int i, double range)
     }
 }
 
+/** Boards parallel to the image tell a focal length by their tilt's perspective alone, to which noise adds: of a relative deviation e
+the estimate is too long by some e^2, and a +- of the linearised problem is one as long as that is a tenth of it. So it is of what
+images without a window tell, and nothing else. */
+bool isFocalLengthOfBoards(const Problem& problem, const ParameterBlock& block, int i)
+{
+    if (block.kind != ParameterBlock::LENS || i > 1 || problem.hasScene())
+        return false;
+    if (std::find(block.names.begin(), block.names.end(), "r0") != block.names.end())
+        return false;           // a coefficient that scales the focal length: they are large together
+    if (block.sqrtInformation.rows() > 0 && !block.sqrtInformation.col(i).isZero(0))
+        return false;
+    return std::any_of(problem.images().begin(), problem.images().end(), [&](const Image& image) {
+        return image.camera == block.index && !(image.refracted && problem.rig().cameras[image.camera].refracts()); });
+}
+
 std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
 {
+    const double MAX_FOCAL_SIGMA = 0.1;
     const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(problem);
     std::vector<FreeParameter> parameters;
     for (const ParameterBlock& block : problem.blocks())
@@ -94,6 +108,7 @@ std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
             p.block = &block;
             p.coordinate = i;
             p.maxSigma = required & requirementOf(block.kind) ? largestSigma(block, i, range) : infinity;
+            p.maxLinear = isFocalLengthOfBoards(problem, block, i) ? MAX_FOCAL_SIGMA*p.maxSigma : infinity;
             parameters.push_back(p);
         }
     return parameters;
@@ -164,9 +179,9 @@ FitOutcome checkSigmas(const std::vector<FreeParameter>& parameters, const Matri
     const VectorXd sigma = half.rowwise().norm()*std::sqrt(floor);
     VectorXd excess(parameters.size());
     for (int i = 0; i < (int)parameters.size(); i++)
-        excess[i] = sigma[i]/parameters[i].maxSigma;
-    int worst;
-    if (excess.size() > 0 && excess.maxCoeff(&worst) > 1)
+        excess[i] = std::max(sigma[i]/parameters[i].maxSigma, sigma[i]*std::sqrt(variance/floor)/parameters[i].maxLinear);
+    const int worst = (int)(std::max_element(excess.data(), excess.data() + excess.size()) - excess.data());
+    if (excess.size() > 0 && excess[worst] > 1)
         return undetermined(parameters, excessivePart(half, excess, worst), 1, sigma);
     return FitOutcome();
 }

@@ -28,8 +28,24 @@ using Eigen::VectorXd;
 
 const double SIGMAS = 3;                // where the profile's width is read
 const double TO_AN_END = 2;             // standard deviations, if the profile is flat to there
-const double WEAK = 0.02;               // part of the distance: what is known better has a parabola
+const double WEAK = 0.02;               // part of the way from the window to the targets: what is known better has a parabola
 const double WIDER = 1.05;              // what is wider by less is as stated
+
+//! From a window at this distance to the targets, roughly; of a scene, which may be anywhere, the distance itself.
+double gapBehind(const Problem& problem, double distance)
+{
+    if (problem.hasScene())
+        return distance;
+    double sum = 0;
+    int count = 0;
+    for (int view = 0; view < problem.viewCount(); view++)
+        if (problem.pose(view).found)
+        {
+            sum += norm(problem.pose(view).tvec);
+            count++;
+        }
+    return std::max(sum/count - distance, 0.);
+}
 
 VectorXd valuesOf(const Problem& problem)
 {
@@ -146,6 +162,8 @@ double DistanceProfile::excess(double sigmas, const VectorXd& start, VectorXd& c
 {
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-7);
     setValues(problem_, best_ + start*(sigmas*step_[index_]/start[index_]));
+    for (size_t b = 0; b < before_.size(); b++)
+        problem_.blocks()[b].isHeld = before_[b].isHeld;
     for (ParameterBlock& block : problem_.blocks())
     {
         block.values = block.values.cwiseMax(Eigen::Map<const VectorXd>(block.lower.data(), block.lower.size()));
@@ -206,7 +224,7 @@ bool widenByDistanceProfiles(Problem& problem, const Information& information, d
         const int column = space.first[b] + (int)std::count(block.isFree.begin(), block.isFree.begin() + i, true);
         const Eigen::RowVectorXd h = half.row(column).normalized();
         const VectorXd linear = std::sqrt(variance)*timesVector(half, h.transpose());
-        if (!(linear[column] > WEAK*block.values[i]))
+        if (!(linear[column] > WEAK*gapBehind(problem, block.values[i])))
             continue;
         VectorXd change;
         {

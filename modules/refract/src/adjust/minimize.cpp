@@ -123,7 +123,7 @@ Minimization::Minimization(Problem& problem) : problem_(problem), retreat_(probl
     {
         const ParameterBlock& block = problem.blocks()[b];
         const int i = freeDistance(block);
-        if (i >= 0 && block.isHeld[i] && block.values[i] > block.lower[i])
+        if (i >= 0 && block.isHeld[i] && problem.findPointAtWindow(2*LAST_RETREAT, block.index).pointIndex >= 0)
             retreat_[b] = FIRST_RETREAT;
     }
 }
@@ -184,7 +184,8 @@ bool Minimization::touchesTarget(int b) const
 bool Minimization::isHeldAtTarget(int b) const
 {
     const ParameterBlock& block = problem_.blocks()[b];
-    return retreat_[b] > 0 && block.isHeld[freeDistance(block)];
+    return retreat_[b] > 0 && block.isHeld[freeDistance(block)] &&
+           problem_.findPointAtWindow(2*LAST_RETREAT, block.index).pointIndex >= 0;
 }
 
 bool Minimization::isOnBound() const

@@ -131,6 +131,10 @@ public:
     @param owner of the window; -1: any */
     FitOutcome findPointAtWindow(double nearer, int owner = -1) const;
 
+    /** The means of priors, where they are not the values that the problem was made with: a search may have moved these.
+    @param given the rig that the priors are of. @param poses the same of the views; empty: none is known */
+    void setPriorMeans(const Rig& given, const std::vector<Pose>& poses);
+
     // Parameters
     const std::vector<ParameterBlock>& blocks() const { return blocks_; }
     std::vector<ParameterBlock>& blocks() { return blocks_; }     //!< updateCameras() after a change

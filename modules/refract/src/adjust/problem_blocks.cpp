@@ -105,6 +105,37 @@ void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
     block.setPrior(covariance);
 }
 
+void Problem::setPriorMeans(const Rig& given, const std::vector<Pose>& poses)
+{
+    for (ParameterBlock& block : blocks_)
+    {
+        if (block.sqrtInformation.rows() == 0 || block.kind == ParameterBlock::TARGETS)
+            continue;
+        std::vector<double> mean;
+        if (block.kind == ParameterBlock::POSE || block.kind == ParameterBlock::EXTRINSICS)
+        {
+            if (block.kind == ParameterBlock::POSE ? poses.empty() : !given.extrinsics[block.index].found)
+                continue;
+            const Pose& pose = block.kind == ParameterBlock::POSE ? poses[block.index] : given.extrinsics[block.index];
+            mean.assign(pose.rvec.val, pose.rvec.val + 3);
+            mean.insert(mean.end(), pose.tvec.val, pose.tvec.val + 3);
+        }
+        else
+        {
+            const Camera& camera = given.cameras[block.index];
+            const int first = block.kind == ParameterBlock::LENS ? 0 : camera.lensCount() +
+                (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media);
+            if (block.kind != ParameterBlock::LENS && !given.owns(block.index))
+                continue;           // the search gave the window to another camera
+            const std::vector<double> all = camera.parameters();
+            mean.assign(all.begin() + first, all.begin() + first + block.values.size());
+        }
+        for (int i = 0; i < (int)mean.size(); i++)
+            if (std::isfinite(mean[i]))         // else nothing is known of it
+                block.priorMean[i] = mean[i];
+    }
+}
+
 //! Of a window the rows of its owner count; the others follow from them.
 void Problem::setRigPrior(const Eigen::MatrixXd& covariance)
 {

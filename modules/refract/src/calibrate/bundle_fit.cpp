@@ -90,7 +90,8 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
     const FitOutcome determined = covariance.compute(problem, variance, 0);     // first, as what is undetermined does not converge
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
-    covariance.widen(problem);
+    if (checkedCriteria(task.criteria).type & TermCriteria::EPS)        // else it is not where the squares are least
+        covariance.widen(problem);
     const int count = problem.publicCount() - (problem.targetBlock() < 0 ? 0 : SharedTargetErrors::COUNT);
     eigen2cv(Eigen::MatrixXd(covariance.ofParameters.topLeftCorner(count, count)), fit.covariance);
     if (task.wantsPointDeviations)

@@ -36,6 +36,7 @@ NearTask::NearTask(const RigTask& given) : task_(given), origins_(given.views.co
 void NearTask::moveBack(RigFit& fit) const
 {
     const int count = (int)origins_.size(), first = fit.jacobian.cols - 6*count;
+    const double error = fit.targetErrors.empty() ? 0 : fit.targetErrors.at<double>(0), scale = std::isnan(error) ? 1 : 1 + error;
     for (int view = 0; view < count; view++)
     {
         if (!origins_[view].isMoved() || !fit.poses[view].found)
@@ -45,8 +46,14 @@ void NearTask::moveBack(RigFit& fit) const
             Mat byPose = fit.jacobian.colRange(first + 6*view, first + 6*view + 6);
             Mat(byPose*Mat(origins_[view].nearByFar(fit.poses[view]))).copyTo(byPose);
         }
-        fit.poses[view] = origins_[view].toFar(fit.poses[view]);
+        fit.poses[view] = origins_[view].toFar(fit.poses[view], scale);
     }
+}
+
+void NearTask::moveBack(FitOutcome& outcome) const
+{
+    if (outcome.status == FitOutcome::NO_IMAGE && outcome.view >= 0)
+        outcome.point += Point3d(origins_[outcome.view].origin());
 }
 
 }} // namespace

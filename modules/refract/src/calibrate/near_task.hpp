@@ -18,6 +18,8 @@ public:
     const RigTask& task() const { return task_; }
     //! Poses and jacobian, for the targets as they were given.
     void moveBack(RigFit& fit) const;
+    //! The point that it names.
+    void moveBack(FitOutcome& outcome) const;
 
 private:
     RigTask task_;

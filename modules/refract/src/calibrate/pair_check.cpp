@@ -257,9 +257,10 @@ RigFit fitCheckingPairs(Rig& rig, const RigTask& given)
     const RigTask& task = moved.task();
     const Rig start = rig;
     RigFit fit;
-    const FitOutcome outcome = fitRig(rig, task, fit);
+    FitOutcome outcome = fitRig(rig, task, fit);
     if (!outcome.converged())
         explainRefusal(start, task);
+    moved.moveBack(outcome);
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
     checkPairs(start, rig, task, fit);
     moved.moveBack(fit);

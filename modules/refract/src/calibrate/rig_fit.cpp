@@ -203,16 +203,6 @@ void toNearestCenters(Rig& rig, RigFit& fit)
     }
 }
 
-//! Of a pose that is known in part the rest is that of the start, and the prior's mean is where the fit begins.
-static void keepKnown(const RigTask& task, std::vector<Pose>& poses)
-{
-    for (size_t view = 0; view < task.posePriors.size(); view++)
-        for (int i = 0; i < 6; i++)
-            if (task.posePriors[view].tells(i))
-                (i < 3 ? poses[view].rvec[i] : poses[view].tvec[i - 3]) = i < 3 ? task.knownPoses[view].rvec[i]
-                                                                                : task.knownPoses[view].tvec[i - 3];
-}
-
 //! Of a task all of whose views have points.
 static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
 {
@@ -224,9 +214,9 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     if (!outcome.converged())
         return outcome;
     fit.otherMinima = toMat(minima);
-    keepKnown(task, start.poses);
     Problem problem(start.rig, task.views, start.poses, task.posePriors, task.cameraPriors, task.flags,
                     task.targetCovariance);
+    problem.setPriorMeans(rig, task.knownPoses);
     TargetOutliers outliers(problem);
     if (!task.isRobust())
         outcome = checkFreedom(problem);
@@ -246,7 +236,8 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
-    covariance.widen(problem);
+    if (criteria.type & TermCriteria::EPS)      // else it is not where the squares are least
+        covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
     fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);

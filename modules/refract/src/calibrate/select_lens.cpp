@@ -160,6 +160,16 @@ private:
                            [](const CameraViews& camera) { return seesAnything(camera.refracted); });
     }
 
+    //! Whether images without windows tell all lenses, and nothing but these is asked for.
+    bool isOfDirectImages() const
+    {
+        const int OF_WINDOWS = GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX | GLASS_FREE_WEDGE |
+            GLASS_FREE_RADIUS | GLASS_FREE_CURVATURE;
+        return !hasWindow() && !(task_.flags & (OF_WINDOWS | GLASS_FREE_EXTRINSICS)) &&
+               std::all_of(task_.views.cameras.begin(), task_.views.cameras.end(),
+                           [](const CameraViews& camera) { return seesAnything(camera.direct); });
+    }
+
     //! Down from the first to the simplest, up to the richest, each from its neighbour.
     FitOutcome fitAll(const RigStart& start, size_t first)
     {
@@ -209,7 +219,7 @@ private:
         for (const HeldOutPart& part : candidate.parts)
             candidate.squares += part.squares;
         candidate.isFitted = std::isfinite(candidate.squares);
-        if (!hasWindow())               // else what is known of the window has a say, in the calibration
+        if (isOfDirectImages())         // else what is known of windows and places has a say, in the calibration
             candidate.determined = Covariance().compute(problem, problem.squaredError()/problem.freedom(), GLASS_REQUIRE_INTRINSICS);
         candidate.errors.clear();
         for (const Image& image : problem.images())
@@ -322,10 +332,12 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     std::vector<int> seen;
-    LensSelection selection(rig, onlySeen(NearTask(task).task(), seen), (flags & GLASS_ROBUST) != 0);
+    const NearTask moved(task);
+    LensSelection selection(rig, onlySeen(moved.task(), seen), (flags & GLASS_ROBUST) != 0);
     FitOutcome outcome = selection.run();
     if (outcome.view >= 0)
         outcome.view = seen[outcome.view];
+    moved.moveBack(outcome);
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
     const Candidate& chosen = selection.candidates()[selection.chosen()];
     for (int c = 0; c < count; c++)         // the windows stay as they were given

@@ -46,10 +46,10 @@ Pose NearOrigin::toNear(Pose pose) const
     return pose;
 }
 
-Pose NearOrigin::toFar(Pose pose) const
+Pose NearOrigin::toFar(Pose pose, double scale) const
 {
     if (isMoved())
-        pose.tvec -= rotationMatrix(pose.rvec)*origin_;
+        pose.tvec -= scale*(rotationMatrix(pose.rvec)*origin_);
     return pose;
 }
 

@@ -32,8 +32,8 @@ public:
     void move(std::vector<Point3d>& points) const;
     //! The pose of the moved points, by that of the given ones.
     Pose toNear(Pose pose) const;
-    //! The pose of the given points, by that of the moved ones.
-    Pose toFar(Pose pose) const;
+    //! The pose of the given points, by that of the moved ones. @param scale of both
+    Pose toFar(Pose pose, double scale = 1) const;
     //! Derivatives of (rvec, tvec) of the moved points by those of the given ones, and the other way round.
     Matx66d nearByFar(const Pose& pose) const { return byOther(pose, 1); }
     Matx66d farByNear(const Pose& pose) const { return byOther(pose, -1); }
