@@ -354,9 +354,8 @@ RigCalibration prepare(const Options& o, const Target* target)
         if (!o.camera[k].empty())
         {
             // A rig's file may serve for all cameras, and that of a lens for those that have one like it.
-            const std::string name = "camera" + cameraSuffix(k);
-            const bool isOfRig = k > 0 && o.camera[k] == o.camera[0] && holdsCamera(o.camera[k], "camera1");
-            const KnownLens lens = readLens(o.camera[k], isOfRig ? name : "");
+            const bool again = k > 0 && o.camera[k] == o.camera[0] && isOfRig(o.camera[k]);
+            const KnownLens lens = readLens(o.camera[k], again ? "camera" + cameraSuffix(k) : "");
             c.options.known[k] = lens.camera;
             c.options.knownCovariance[k] = lens.covariance;
             c.inputs.push_back(o.camera[k]);

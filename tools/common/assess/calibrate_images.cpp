@@ -66,8 +66,9 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
         const MixUps mixUps = findMixUps(input);
         const bool lookedAtImages = requireNoMixUp(input, mixUps);
         plain = fitPlainly(input);
-        fitsPlainly = isSound(input, plain);
-        if (!fitsPlainly || isSuspicious(input, plain))
+        const bool suspicious = isSuspicious(input, plain);
+        fitsPlainly = isSound(input, plain, suspicious);
+        if (suspicious)
             requireNoCause(input, mixUps, plain, !lookedAtImages);
     }
     const auto explained = [&](const auto& error, const std::string& reason) {

@@ -230,9 +230,9 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
     return {key, text.substr(equals + 1)};
 }
 
-bool holdsCamera(const std::string& filename, const std::string& name)
+bool isOfRig(const std::string& filename)
 {
-    return !isCameraModel(filename) && !FileStorage(filename, FileStorage::READ)[name].empty();
+    return !isCameraModel(filename) && !FileStorage(filename, FileStorage::READ)[cameraName(0)].empty();
 }
 
 KnownLens readLens(const std::string& filename, const std::string& name)

@@ -105,8 +105,8 @@ struct KnownLens
     cv::Mat covariance;         //!< of its parameters; empty where the file has none
 };
 
-//! Whether a file of a rig has that camera.
-bool holdsCamera(const std::string& filename, const std::string& name);
+//! Whether a file has several cameras, by their names.
+bool isOfRig(const std::string& filename);
 
 /** A lens as RefractiveCamera::read takes it, which is content without distortion_coefficients; this is not.
 @param name of the camera in the file, as there */

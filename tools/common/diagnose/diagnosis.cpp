@@ -316,6 +316,8 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
 
 bool isSuspicious(const CalibrationInput& input, const PlainFit& plain)
 {
+    if (!(plain.px < largestSoundError(input.data)))
+        return true;
     const double clean = cleanError(input);
     if (clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean)
         return true;
@@ -323,9 +325,9 @@ bool isSuspicious(const CalibrationInput& input, const PlainFit& plain)
     return CLEAN*clean < plain.px && wrongMedium(input).px < EXPLAINS*plain.px;
 }
 
-bool isSound(const CalibrationInput& input, const PlainFit& plain)
+bool isSound(const CalibrationInput& input, const PlainFit& plain, bool suspicious)
 {
-    return plain.px < largestSoundError(input.data) && !(plain.px > MIN_IMPLAUSIBLE_PX && isSuspicious(input, plain));
+    return plain.px < largestSoundError(input.data) && !(plain.px > MIN_IMPLAUSIBLE_PX && suspicious);
 }
 
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)

@@ -36,7 +36,7 @@ bool isSuspicious(const CalibrationInput& input, const PlainFit& plain);
 
 /** Whether a fit to all images is near enough for one without wrong points to be looked for: half of the corners are where detectors find
 them, and not far more off than the lens's own images leave them. */
-bool isSound(const CalibrationInput& input, const PlainFit& plain);
+bool isSound(const CalibrationInput& input, const PlainFit& plain, bool suspicious);
 
 //! Throws Failure if a mistake explains why the images fit no better.
 void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo);

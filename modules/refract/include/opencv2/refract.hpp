@@ -43,7 +43,8 @@ without a window.
   as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth unless the caller fixed
   the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
   Matx33d, or rotation vectors.
-- **Object coordinates** may have any origin: survey coordinates lose no more than their own rounding.
+- **Object coordinates** may have any origin, except where poses are known in part, and in bundles: survey coordinates lose no
+  more than their own rounding.
 - **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
 - **Half pixels**: triangulateRefractive for any number of cameras, refractiveSolvePnP, refractiveSolvePnPGeneric,
   calibrateGlassRig and refractiveBundleAdjust take pixels of which one coordinate is NaN: observations of the other one. So a
@@ -173,7 +174,7 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
     GLASS_FIX_NORMAL = 1048576,         //!< the windows stay in their places (calibrateGlassRig, refractiveBundleAdjust)
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
-    GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens
+    GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens; of a focal length by boards without a window, to 10 %
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
     GLASS_FREE_WEDGE = 16777216,        //!< wedge of every layer; a window without one gets one, starting at 0
     GLASS_FREE_RADIUS = 33554432,       //!< radius of a dome or tube

@@ -37,19 +37,6 @@ struct FreeParameter
     bool isNumber() const { return block->kind == ParameterBlock::LENS || block->kind == ParameterBlock::MEDIA; }
 };
 
-double meanRange(const Problem& problem)
-{
-    double sum = 0;
-    int count = 0;
-    for (int view = 0; view < problem.viewCount(); view++)
-        if (problem.pose(view).found)
-        {
-            sum += norm(problem.pose(view).tvec);
-            count++;
-        }
-    return sum/count;
-}
-
 //! The GLASS_REQUIRE_... flag of a block.
 int requirementOf(ParameterBlock::Kind kind)
 {
@@ -93,7 +80,7 @@ bool isFocalLengthOfBoards(const Problem& problem, const ParameterBlock& block, 
 std::vector<FreeParameter> freeParameters(const Problem& problem, int required)
 {
     const double MAX_FOCAL_SIGMA = 0.1;
-    const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(problem);
+    const double infinity = std::numeric_limits<double>::infinity(), range = meanRange(problem.poses());
     std::vector<FreeParameter> parameters;
     for (const ParameterBlock& block : problem.blocks())
         for (int i = 0; i < (int)block.values.size(); i++)

@@ -36,15 +36,7 @@ double gapBehind(const Problem& problem, double distance)
 {
     if (problem.hasScene())
         return distance;
-    double sum = 0;
-    int count = 0;
-    for (int view = 0; view < problem.viewCount(); view++)
-        if (problem.pose(view).found)
-        {
-            sum += norm(problem.pose(view).tvec);
-            count++;
-        }
-    return std::max(sum/count - distance, 0.);
+    return std::max(meanRange(problem.poses()) - distance, 0.);
 }
 
 VectorXd valuesOf(const Problem& problem)

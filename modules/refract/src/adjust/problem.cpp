@@ -118,6 +118,14 @@ Pose Problem::pose(int view) const
     return pose;
 }
 
+std::vector<Pose> Problem::poses() const
+{
+    std::vector<Pose> all;
+    for (int view = 0; view < viewCount(); view++)
+        all.push_back(pose(view));
+    return all;
+}
+
 void Problem::setPose(int view, const Pose& pose)
 {
     ParameterBlock& block = blocks_[poseBlock(view)];

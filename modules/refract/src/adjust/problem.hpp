@@ -147,6 +147,7 @@ public:
     Rig rig() const;                    //!< with the current parameters
     Camera camera(int c) const;
     Pose pose(int view) const;
+    std::vector<Pose> poses() const;        //!< of all views
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
     //! The pose in the direct images of a target that has this pose in an image.
     Pose inDirectImages(const Image& image, const Pose& pose) const;

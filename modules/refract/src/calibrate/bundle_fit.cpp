@@ -72,8 +72,7 @@ void describe(const Problem& problem, BundleFit& fit)
     for (const Image& image : problem.images())
         sum += describeImage(problem, image, image.camera, (int)fit.points.size(), fit);
     fit.rms = std::sqrt(sum/problem.pointCount());
-    for (int view = 0; view < problem.viewCount(); view++)
-        fit.poses.push_back(problem.pose(view));
+    fit.poses = problem.poses();
 }
 
 } // namespace

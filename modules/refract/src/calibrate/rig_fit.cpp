@@ -244,8 +244,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     markUnusable(given, fit);
     if (task.wantsJacobian)
         eigen2cv(publicJacobian(problem), fit.jacobian);
-    for (int view = 0; view < problem.viewCount(); view++)
-        fit.poses.push_back(problem.pose(view));
+    fit.poses = problem.poses();
     rig = problem.rig();
     toNearestCenters(rig, fit);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);

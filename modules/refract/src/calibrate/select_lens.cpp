@@ -209,9 +209,7 @@ private:
         candidate.isFitted = outcome.converged();
         if (!outcome.isUsable())
             return outcome;
-        candidate.fitted = { problem.rig(), std::vector<Pose>() };
-        for (int view = 0; view < problem.viewCount(); view++)
-            candidate.fitted.poses.push_back(problem.pose(view));
+        candidate.fitted = { problem.rig(), problem.poses() };
         if (!outcome.converged())
             return outcome;
         candidate.parts = heldOutErrors(problem);

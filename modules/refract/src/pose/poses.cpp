@@ -35,6 +35,19 @@ int scatterRank(const std::vector<Point3d>& points)
     return rank;
 }
 
+double meanRange(const std::vector<Pose>& poses)
+{
+    double sum = 0;
+    int count = 0;
+    for (const Pose& pose : poses)
+        if (pose.found)
+        {
+            sum += norm(pose.tvec);
+            count++;
+        }
+    return sum/count;
+}
+
 Pose poseOf(const RigidTransform& transform)
 {
     Pose pose;

@@ -23,6 +23,9 @@ struct Pose
 Pose poseOf(const RigidTransform& transform);
 RigidTransform transformOf(const Pose& pose);
 
+//! Mean distance of the targets; NaN if no pose was found.
+double meanRange(const std::vector<Pose>& poses);
+
 //! Object -> camera, with camera 1 -> camera, gives object -> camera 1.
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
 

@@ -41,8 +41,7 @@ Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria
     if (!std::isfinite(cost))       // it is sorted by
         return minimum;
     minimum.rig = problem.rig();
-    for (int view = 0; view < views.count(); view++)
-        minimum.poses[view] = problem.pose(view);
+    minimum.poses = problem.poses();
     minimum.cost = cost;
     minimum.freedom = problem.freedom();
     minimum.converged = outcome.converged();

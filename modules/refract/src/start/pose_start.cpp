@@ -128,19 +128,6 @@ bool placeTargets(Rig& rig, const RigViews& views, int flags, std::vector<Pose>&
     return false;
 }
 
-double meanRange(const std::vector<Pose>& poses)
-{
-    double sum = 0;
-    int count = 0;
-    for (const Pose& pose : poses)
-        if (pose.found)
-        {
-            sum += norm(pose.tvec);
-            count++;
-        }
-    return sum/count;
-}
-
 bool hasPoints(const RigViews& views, int view)
 {
     return std::any_of(views.cameras.begin(), views.cameras.end(), [=](const CameraViews& camera)

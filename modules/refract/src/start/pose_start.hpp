@@ -34,9 +34,6 @@ until all that was seen has an image.
 @return false if some has none at any distance: the windows, and the poses as far as they were found, are those of the given ones */
 bool placeTargets(Rig& rig, const RigViews& views, int flags, std::vector<Pose>& poses);
 
-//! Mean distance of the targets; NaN if no pose was found.
-double meanRange(const std::vector<Pose>& poses);
-
 //! Some image of the view has a point.
 bool hasPoints(const RigViews& views, int view);
 
