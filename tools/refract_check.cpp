@@ -34,6 +34,7 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 #include "calibrate/conditions.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/starting_model.hpp"
+#include "calibrate/given_std.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/colour.hpp"
@@ -66,7 +67,8 @@ struct Options
     double falseAlarm = 0., detect = 0.1, sigma = 0.;
     bool newPane = false;
     PaneStd pane = {0., 0.001, 0.};
-    double wedgeMinutes = 1., placement = 0.;
+    double wedgeMinutes = 1.;
+    double placement = -1.;         //!< negative: that of the calibration
     ConditionsOptions conditions;
     std::string history, page, time, serial;
     double drift = 0.02;
@@ -94,7 +96,8 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--pixel-sigma", o.sigma, "standard deviation of a pixel coordinate (default: that of the calibration's "
         "residuals)").check(moreThanZero());
     parser.add("--placement-std", o.placement, "by how much all targets, or the camera's mount, moved between the direct and the glass "
-        "images, along each axis, one standard deviation: in air, that looks like a tilt").check(notNegative()).captureDefault();
+        "images, along each axis, one standard deviation: in air, that looks like a tilt (default: what calib.yml was made with, or "
+        "0.02 mm)").check(notNegative());
     Option newPane = parser.addFlag("--new-pane", o.newPane, "the panes are not those of the calibration, but others of their kind");
     parser.add("--wedge-std", o.wedgeMinutes, "with --new-pane: the angle between the faces of a pane, one standard deviation, arc "
         "minutes").check(notNegative()).captureDefault().needs(newPane);
@@ -124,14 +127,21 @@ CheckInput inputOf(const Options& o, const Calibration& calibration)
     return withNewPanes(input, pane);
 }
 
+//! What is known of boards between direct and glass images, where nobody says.
+double usualPlacementOf(const Calibration& calibration)
+{
+    return calibration.placementStd >= 0. ? calibration.placementStd
+                                          : USUAL_PLACEMENT_MM/millimetresIn(calibration.unit.empty() ? "mm" : calibration.unit);
+}
+
 //! The targets may have moved between the new images of pairs, independently of what happened when the calibration was made.
-void addPlacement(const Options& o, const std::vector<View>& views, CheckInput& input)
+void addPlacement(double placement, const std::vector<View>& views, CheckInput& input)
 {
     RigData data;
     data.cameraCount = (int)input.rig.cameras.size();
     data.views = views;
     GivenStd std;
-    std.placement = o.placement;
+    std.placement = placement;
     const cv::Mat covariance = targetCovarianceOf(data, input.rig, std);
     if (!covariance.empty())
         input = withTargetColumns(input, covariance);
@@ -215,6 +225,17 @@ int imagesNeeded(const WindowCheck& window, const CheckResult& result, double de
     return 0;
 }
 
+//! The least tilt that would show, to one digit.
+double tiltThatShows(const WindowCheck& window, const CheckResult& result)
+{
+    const double CEILING = 90.;
+    for (double decade = 1e-4; decade < CEILING; decade *= 10.)
+        for (int digit = 1; digit < 10; digit++)
+            if (powerOf(window, result, digit*decade) >= CERTAIN)
+                return digit*decade;
+    return 0.;
+}
+
 //! --detect of a centre, as a length.
 std::string detected(const WindowCheck& window, const Options& o)
 {
@@ -235,13 +256,16 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
         const std::string noisy = result.sigma > input.sigma ? format("the new images are noisier than the calibration's (%.3g px, "
             "there %.3g px: check focus, light, motion); ", result.sigma, input.sigma) : "";
-        const std::string more = !times || commonMotion ? "" : format("take about %d times as many %s%s, or ", times,
+        const double shown = tiltThatShows(window, result);
+        const std::string more = commonMotion ? format("more pairs do not help, as all boards or the camera's mount may have moved by %.2g "
+            "between direct and glass images: give a smaller --placement-std if they stood better, or ", o.placement)
+                                              : !times ? "" : format("take about %d times as many %s%s, or ", times,
             pairs ? "pairs" : "images",
             pairs ? " (a nearer board or one with more corners also helps)" : " or, far better, a pair without and with the window");
         const std::string change = window.lengthPerDegree > 0. ? "a motion of the centre by " + detected(window, o)
                                                                : format("a tilt of %g deg", o.detect);
         return noisy + format("camera %d: these images would show %s with a probability of only %.0f %%, so 'unchanged' "
-                              "cannot be said; ", window.camera + 1, change.c_str(), 100.*power) + more + "ask for a larger --detect";
+                              "cannot be said; ", window.camera + 1, change.c_str(), 100.*power) + more + (shown > 0. ? format("ask for --detect=%g", shown) : std::string("ask for a larger --detect"));
     }
     if (result.windows.empty())
         return "the images do not tell where any window is: take a pair without and with the window, or more images";
@@ -446,6 +470,8 @@ int refract_check_main(int argc, char** argv)
         warnOfContradictions(asCalibrated, options.calibration, command);
         requireSameUnit(asCalibrated, target.square(), options.unit);
         requireSerial(options, asCalibrated);
+        if (options.placement < 0.)
+            options.placement = usualPlacementOf(asCalibrated);
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
@@ -458,7 +484,7 @@ int refract_check_main(int argc, char** argv)
         const NewImages images = readViews(options, calibration, target, command);
         if (kept)
             kept->requireNewImages(images.files);
-        addPlacement(options, images.views, input);
+        addPlacement(options.placement, images.views, input);
         const CheckResult result = checkRig(input, images.views, options.falseAlarmOfCheck(), calibration.unit);
         const std::string why = whyNot(result, options, input);
         std::string verdict = verdictOf(result, why);

@@ -1,7 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "measure/measurement.hpp"
+#include "assess/rig_check.hpp"
+#include "measure/consistency.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
@@ -25,7 +26,9 @@ static const char MANUAL[] = R"(Draws where the partners of image points can lie
 
 Left the points in image 1, right their curves in image 2 (solid), each in its colour, and where the curve would run if
 the windows were ignored (dashed). With a target, its points in image 2 are marked too, and the table says how far they
-lie from their curves: next to 0 if the calibration is right.)";
+lie from their curves: next to 0 if the calibration is right.
+
+Exit code: 0 done, 1 could not do it, 2 the picture is written, but most points of the target contradict the calibration.)";
 
 namespace {
 
@@ -144,6 +147,26 @@ cv::Mat draw(const cv::Mat& image1, const cv::Mat& image2, const std::vector<Poi
     return picture;
 }
 
+//! Empty, or what is wrong if most of the target's points in both images contradict the calibration.
+std::string contradictionOf(const Calibration& rig, const Target& target, const std::vector<Point2d>& points,
+                            const std::vector<Point2d>& partners)
+{
+    const double sigma = pixelSigmaOf(rig);
+    Measurement measured = measureRig(rig, {points, partners}, sigma);
+    checkConsistency(rig, sigma, measured);
+    if (2*measured.inconsistent() <= measured.seenPoints())
+        return "";
+    View view;
+    view.objectPoints = target.objectPoints();
+    view.neighbours = target.neighbours();
+    view.glass[0] = points;
+    view.glass[1] = partners;
+    const std::string cause = causesOf(rig, {view}, sigma);
+    return format("%d of %d points are off their curves by more than noise and calibration explain: ", measured.inconsistent(),
+                  measured.seenPoints())
+        + (cause.empty() ? "are the images of one moment, of this rig, and in its cameras' order?" : "what explains them: " + cause);
+}
+
 void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote").required();
@@ -178,11 +201,13 @@ int refract_epilines_main(int argc, char** argv)
         const cv::Mat image1 = readRaw(options.image1, *rig.cameras[0].camera);
         const cv::Mat image2 = readRaw(options.image2, *rig.cameras[1].camera);
         std::vector<Point2d> points, partners;
+        std::string contradiction;
         if (options.target.given())
         {
             const Target target(options.target);
             points = detectIn(image1, options.image1, target);
             partners = target.alignWith(points, detectIn(image2, options.image2, target));
+            contradiction = contradictionOf(rig, target, points, partners);
         }
         else
             points = readPixels(options.points);
@@ -199,6 +224,8 @@ int refract_epilines_main(int argc, char** argv)
             addRow(table, "through the windows", curves, partners);
             table.print(std::cout);
         }
-        return DONE;
+        if (!contradiction.empty())
+            command.warn(contradiction);
+        return contradiction.empty() ? DONE : LIMIT_NOT_MET;
     });
 }

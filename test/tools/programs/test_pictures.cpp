@@ -210,6 +210,13 @@ TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tool
     CHECK(result.out.find("windows ignored") != std::string::npos);
     CHECK(cv::imread(folder / "picture.png").size() == cv::Size(2*1280 + 8, 1024));
 
+    const ToolResult exchanged = runTool("refract_epilines " + STEREO + "/truth.yml " + image("measure2/z600_1") + " "
+                                         + image("measure1/z600_1") + TARGET + " --out=" + (folder / "exchanged.png"));
+    CAPTURE(exchanged.err);
+    CHECK(exchanged.code == 2);
+    CHECK(mentions(exchanged.err, "off their curves"));
+    CHECK(std::filesystem::exists(folder / "exchanged.png"));
+
     std::ofstream(folder / "points.txt") << "# u v\n640 500\n300.5, 420.25\n";
     std::ofstream(folder / "points.csv") << "id,u1,v1,u2\n0,640,500,1\n1,nan,nan,2\n";
     for (const std::string name : {"points.txt", "points.csv"})

@@ -269,6 +269,7 @@ Calibration readCalibration(const std::string& filename)
     if (fs["unit"].isString())
         fs["unit"] >> calibration.unit;
     calibration.square = readNumber(fs["target_square"], 0.);
+    calibration.placementStd = readNotNegative(fs, "placement_std", -1., filename);
     if (fs["channel"].isString())
         calibration.channel = channelOf(fs["channel"]);
     calibration.label = readLabel(fs);
@@ -348,6 +349,8 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
             fs << "unit" << calibration.unit;
         if (calibration.square > 0)
             fs << "target_square" << calibration.square;
+        if (calibration.placementStd >= 0)
+            fs << "placement_std" << calibration.placementStd;
         if (calibration.channel != BRIGHTNESS)
             fs << "channel" << nameOf(calibration.channel);
         writeCameras(fs, calibration);

@@ -19,7 +19,7 @@ Per camera: image_width, image_height, camera_matrix, distortion_coefficients, l
 index, inner_index, outer_index, wedge, curvature, wavelength, materials; of a dome or tube center, axis, radius in place of normal and
 distance}, glass_window_std {normal_deg, distance, center, axis_deg, radius, thickness, index, outer_index, wedge, curvature, each where
 the window has it}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and
-target_square (of the board), channel (of colour images, that it is for), verdict, contradictions (what the data say against what
+target_square (of the board), placement_std (see GivenStd), channel (of colour images, that it is for), verdict, contradictions (what the data say against what
 was given, a sentence each), weak_points (a sentence each), window_serial, notes {key: text}, what provenance.hpp names, and command,
 refract_version, opencv_version, calibration_time. */
 namespace tools {
@@ -69,6 +69,7 @@ struct Calibration
     double dof = 0.;        //!< degrees of freedom of those residuals; 0 where unknown
     std::string unit;       //!< of length; empty where unknown
     double square = 0.;     //!< side of a square of the board that it was made with; 0 where unknown
+    double placementStd = -1.;      //!< by how much boards moved between direct and glass images, per axis; negative where unknown
     Channel channel = BRIGHTNESS;   //!< of colour images, in which the points were found: it is valid for that one
     std::string verdict;    //!< of refract_calib; empty where unknown
     /** Between the images and given values, a sentence each: errors of points may be larger than their +-. */

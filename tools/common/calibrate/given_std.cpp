@@ -22,7 +22,6 @@ const double INDEX = 0.001;                 // of a number; a material's name te
 const double DISTANCE_MM = 1.;              // a ruler to where the centre of projection is thought to be
 const double WEDGE_MINUTES = 1.;            // plate glass
 const double RADIUS_MM = 0.1;               // a drawing's tolerance
-const double PLACEMENT_MM = 0.02;           // a board on a stand, a camera on its mount, while the window goes in
 
 const char* const DEFAULT = "default";
 
@@ -138,7 +137,7 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
     std.scale = choose(SQUARE, v.square > 0. ? 1./v.square : 0., Std(USUAL_SQUARE_STD, DEFAULT), v.square > 0.);
-    std.placement = choose(PLACEMENT, 1., Std(PLACEMENT_MM*v.millimetre, DEFAULT), true);
+    std.placement = choose(PLACEMENT, 1., Std(USUAL_PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;
 }
 

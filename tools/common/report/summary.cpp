@@ -377,6 +377,7 @@ Calibration toFile(const RigCalibration& c, const std::string& command)
     file.covariance = c.fit.covariance;
     file.unit = c.square > 0 ? c.unit : "";      // else nobody said what the points are in
     file.square = c.square;
+    file.placementStd = c.data.countPairs() ? c.options.std.placement.value : -1.;
     file.channel = c.options.channel;
     file.label = c.label;
     file.provenance = {withHashes(c.used), calibratedVolume(c), uncertaintySources(c)};
