@@ -68,7 +68,7 @@ RigModel tilted(const RigModel& rig, double degrees, double azimuth)
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-struct Rates { double falseAlarms, found, predicted, named, inTwoSigma; };
+struct Rates { double falseAlarms, found, predicted, named, paneFirst, inTwoSigma; };
 
 //! Trials of one pair each, in a random place; calibration and noise level drawn anew.
 Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int trials, unsigned salt)
@@ -98,6 +98,8 @@ Rates rates(const std::vector<Point3d>& object, double tiltDeg, double z, int tr
         if (!window.moved)
             continue;
         named++;
+        const std::string& first = other.changes[0].name;
+        result.paneFirst += mentions(first, "thickness") || mentions(first, "index") || mentions(first, "wedge");
         const double off = std::acos(std::min(1., window.normal.dot(away.cameras[0]->window().normal)))*180/CV_PI;
         result.inTwoSigma += off < 2*window.stdDeg[0];
     }
@@ -117,6 +119,7 @@ TEST_CASE("A window that moved is found as often as predicted, and one that did 
     CHECK(r.found > 0.85);
     CHECK(r.found > r.predicted - 0.06);                // predicted is for the direction in which a tilt shows least
     CHECK(r.named > 0.95);                              // the tilt among what may have changed
+    CHECK(r.paneFirst == 0);                            // which only another pane would have
     CHECK(r.inTwoSigma > 0.8);                          // 0.865 where both principal deviations are equal
 }
 

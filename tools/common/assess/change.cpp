@@ -192,6 +192,7 @@ private:
                 turnAxis(rig, c, d[0]*u + d[1]*v); });
         add("radius of the " + name + " changed by", c, {length(1, WIDE*window.radius)},
             [c](RigModel& rig, const VectorXd& d) { changePane(rig, c, [&](GlassWindow& w) { w.radius += d[0]; }); });
+        rows.back().isOfAnotherPane = true;
         for (size_t i = 0; i < window.thickness.size(); i++)
             addLayer(c, i, window, name);
     }
@@ -202,8 +203,10 @@ private:
         const std::string of = layer + " of the " + name + " changed by";
         add("thickness" + of, c, {length(1, window.thickness[i])}, [c, i](RigModel& rig, const VectorXd& d) {
             changePane(rig, c, [&](GlassWindow& w) { w.thickness[i] += d[0]; }); });
+        rows.back().isOfAnotherPane = true;
         add("index" + of, c, {{"", 1., 1, WIDE}}, [c, i](RigModel& rig, const VectorXd& d) {
             changePane(rig, c, [&](GlassWindow& w) { w.index[i] += d[0]; }); });
+        rows.back().isOfAnotherPane = true;
     }
 
     void addWedge(int c, const std::string& name)
@@ -212,10 +215,12 @@ private:
         add("wedge of the " + name + " (another pane, or the pane turned) changed by", c, {minutes},
             [c](RigModel& rig, const VectorXd& d) {
                 changeWindow(rig, c, [&](GlassWindow& w) { w.wedge[0] += Vec2d(d[0], d[1]); }); });
+        rows.back().isOfAnotherPane = true;
         const GlassWindow window = rig_.cameras[c]->window();
         add(name + ": another pane, wedge and thickness changed by", c, {minutes, length(1, window.thickness[0])},
             [c](RigModel& rig, const VectorXd& d) {
                 changeWindow(rig, c, [&](GlassWindow& w) { w.wedge[0] += Vec2d(d[0], d[1]); w.thickness[0] += d[2]; }); });
+        rows.back().isOfAnotherPane = true;
     }
 
     void addMedium()

@@ -29,6 +29,7 @@ struct Change
     std::function<void(RigModel& rig, const VectorXd& delta)> apply;
     bool isTilt = false;        //!< of the window of that camera
     bool isShift = false;       //!< of the centre of its dome or tube
+    bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
     //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
     std::string chart = "";
     std::vector<std::string> axes = {};     //!< of its parameters in that chart

@@ -54,7 +54,8 @@ struct ChartedScore
 struct CheckResult
 {
     bool changed = false;
-    std::vector<NamedChange> changes;   //!< the best first, then those about as good: one or the other
+    //! The best and those about as good, one or the other: first those for which no pane need be another, each kind the best first.
+    std::vector<NamedChange> changes;
     bool explained = true;              //!< the best leaves no more than noise
     std::vector<WindowCheck> windows;   //!< of the cameras that have a glass image; of a shared window the first
     double sigma;                       //!< of a pixel coordinate that the test took
