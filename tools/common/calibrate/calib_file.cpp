@@ -5,6 +5,7 @@
 #include "calibrate/rig_data.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
+#include "console/keys.hpp"
 
 #include <sys/stat.h>
 #include <algorithm>
@@ -127,6 +128,21 @@ FileNode cameraNode(const FileStorage& fs, size_t camera)
 {
     const FileNode root = fs.isOpened() ? fs.root() : FileNode();
     return root[cameraName(0)].empty() ? root : root[cameraName(camera)];
+}
+
+//! Of one camera, and of the file.
+void requireKnownKeys(const FileStorage& fs, size_t cameras, const std::string& filename)
+{
+    const std::vector<std::string> ofCamera = {"image_width", "image_height", "camera_matrix", "distortion_coefficients", "lens_model",
+                                               "glass_window", "glass_window_std"};
+    std::vector<std::string> known = {"window_of_camera", "covariance", "residual_sigma", "degrees_of_freedom", "target_square",
+                                      "placement_std", "channel", "verdict", "contradictions", "weak_points", "window_serial",
+                                      "calibration_time"};
+    known.insert(known.end(), ofCamera.begin(), ofCamera.end());
+    if (fs.isOpened())
+        requireNoMisspelling(fs.root(), known, filename);
+    for (size_t c = 0; c < cameras; c++)
+        requireNoMisspelling(cameraNode(fs, c), ofCamera, filename);
 }
 
 //! What the module reads of a file.
@@ -261,6 +277,7 @@ Calibration readCalibration(const std::string& filename)
     calibration.covariance = rig.covariance;
     // Of a .cameramodel, nothing else is known.
     const FileStorage fs = isCameraModel(filename) ? FileStorage() : FileStorage(filename, FileStorage::READ);
+    requireKnownKeys(fs, rig.cameras.size(), filename);
     for (size_t c = 0; c < rig.cameras.size(); c++)
         calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), {rig.Rs[c], rig.Ts[c]});
     calibration.rms = readNumber(fs["rms"], -1.);

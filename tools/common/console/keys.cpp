@@ -5,6 +5,7 @@
 #include "console/failure.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tools {
 
@@ -63,6 +64,40 @@ void Keys::allowOnly(const std::vector<std::string>& known) const
     for (const std::string& key : node_.keys())
         if (std::find(known.begin(), known.end(), key) == known.end())
             throw Failure(name_ + ": there is no key '" + key + "'; it takes " + names);
+}
+
+namespace {
+
+//! Levenshtein's distance: letters to insert, delete or replace.
+size_t editDistance(const std::string& a, const std::string& b)
+{
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t(0));
+    for (size_t i = 1; i <= a.size(); i++)
+    {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); j++)
+        {
+            const size_t above = row[j];
+            row[j] = std::min(std::min(above, row[j - 1]) + 1, diagonal + (a[i - 1] != b[j - 1]));
+            diagonal = above;
+        }
+    }
+    return row[b.size()];
+}
+
+} // namespace
+
+void requireNoMisspelling(const FileNode& node, const std::vector<std::string>& known, const std::string& filename)
+{
+    const size_t FEW = 2, SHORT = 8;        // letters: of a short name few make another
+    const auto isKnown = [&known](const std::string& key) {         // with a number it is that of another camera
+        return std::find(known.begin(), known.end(), key.substr(0, key.find_last_not_of("0123456789") + 1)) != known.end(); };
+    for (const std::string& key : node.isMap() ? node.keys() : std::vector<std::string>())
+        for (const std::string& name : known)
+            if (name.size() > SHORT && !isKnown(key) && editDistance(key, name) <= FEW)
+                throw Failure("'" + filename + "' has a key '" + key + "', which nothing reads: is it '" + name + "'?");
 }
 
 } // namespace tools

@@ -34,6 +34,10 @@ private:
     std::string name_;
 };
 
+/** Of files that may have other programs' keys, too: throws Failure for a key that is nearly a known one (two letters less, more or other),
+and no other's, so that a typing error does not become a default. */
+void requireNoMisspelling(const cv::FileNode& node, const std::vector<std::string>& known, const std::string& filename);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_KEYS_HPP

@@ -1,0 +1,28 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "console/failure.hpp"
+#include "console/keys.hpp"
+#include <catch2/catch.hpp>
+
+using namespace tools;
+
+TEST_CASE("A misspelled key is refused, one of another program not", "[keys]")
+{
+    const std::vector<std::string> known = {"camera_matrix", "lens_model", "R"};
+    const auto check = [&known](const std::string& key) {
+        const cv::FileStorage fs("%YAML:1.0\n---\n" + key + ": 1\n", cv::FileStorage::READ | cv::FileStorage::MEMORY);
+        requireNoMisspelling(fs.root(), known, "rig.yml");
+    };
+    for (const std::string key : {"camera_matrix", "camera_matrix2", "camera_name", "lens", "R3", "Rs", "nframes"})
+    {
+        CAPTURE(key);
+        CHECK_NOTHROW(check(key));
+    }
+    for (const std::string key : {"camera_matrx", "cameramatrix", "camera_martix", "lens_modl", "lensmodel"})
+    {
+        CAPTURE(key);
+        CHECK_THROWS_WITH(check(key), Catch::Contains("'" + key + "'") && Catch::Contains("is it '"));
+    }
+    CHECK_NOTHROW(requireNoMisspelling(cv::FileNode(), known, "rig.yml"));
+}
