@@ -4,6 +4,7 @@
 #include "report/digest.hpp"
 #include "assess/next_step.hpp"
 #include "assess/round_window.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/lines.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -101,6 +102,35 @@ std::string places(const RigCalibration& c)
     return text + (windows.size() > FEW ? ", ..." : "");
 }
 
+/** What a tape measure can check, and a wrong square, unit or thickness shows in: how far cameras are apart, and windows before them. The
+boards' range is in the line of errors. */
+std::string tapeMeasures(const RigCalibration& c)
+{
+    const size_t FEW = 3;
+    Lines apart, away;
+    for (int k = 0; k < c.data.cameraCount; k++)
+    {
+        const cv::refract::GlassWindow window = c.fit.rig.cameras[k]->window();
+        if (k > 0)
+            apart.push_back(format("%.4g", cv::norm(c.fit.rig.extrinsics[k].T)));
+        if (!isRound(window) && window.innerIndex != window.outerIndex)
+            away.push_back(format("%.4g", window.distance));
+    }
+    const auto listOf = [FEW](const Lines& numbers) {
+        std::string list;
+        for (size_t i = 0; i < std::min(FEW, numbers.size()); i++)
+            list += (i ? ", " : "") + numbers[i];
+        return list + (numbers.size() > FEW ? ", ..." : "");
+    };
+    std::string text;
+    if (!apart.empty())
+        text = (apart.size() > 1 ? "cameras are " : "camera 2 is ") + listOf(apart) + " " + c.unit + " from camera 1";
+    if (!away.empty())
+        text += (text.empty() ? "" : ", ") + std::string(away.size() > 1 ? "windows are " : "the window is ") + listOf(away)
+            + (text.empty() ? " " + c.unit : "") + " before " + (c.data.cameraCount > 1 ? "their cameras" : "the camera");
+    return text.empty() ? "" : "Check by tape measure: " + text;
+}
+
 std::string leftOut(const RigCalibration& c)
 {
     int points = 0;
@@ -140,7 +170,7 @@ void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a
         append(tail, broken("A measured point: +- " + errorAtThreeRanges(c, a)));
         append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "plane square to the camera")
                             + ", worst point of the image)"));
-        facts = {metLimits(f), heldOutBoards(c), leftOut(c), places(c)};
+        facts = {metLimits(f), heldOutBoards(c), leftOut(c), places(c), tapeMeasures(c)};
     }
     append(tail, firstOf(broken("Next: " + nextStep(c, a, f) + "."), 3, DIGEST_COLUMNS));
     append(tail, firstOf(broken("More: --verbose, " + (report.empty() ? "--report=report.html" : report)), 1, DIGEST_COLUMNS));
