@@ -71,6 +71,14 @@ TEST_CASE("A wrong square, thickness, index or medium is found and named", "[dia
             X *= 0.1;
     CHECK_THAT(explained(square), Catch::Contains("--square=3.9: set free, it would be 39.") && Catch::Contains("unit"));
 
+    // By no unit: whichever of the two is found to be wrong, the other may be.
+    square = right;
+    square.square = 25.;
+    for (View& view : square.data.views)
+        for (Point3d& X : view.objectPoints)
+            X *= 25./39.;
+    CHECK_THAT(explained(square), Catch::Contains("--square=25: set free, it would be 39") || Catch::Contains("or --square would be 39"));
+
     CalibrationInput thickness = right;
     thickness.options.window.thickness[0] = 0.787;
     CHECK_THAT(explained(thickness), (Catch::Contains("--thickness=19.9") || Catch::Contains("--thickness=20"))

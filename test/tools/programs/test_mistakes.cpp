@@ -145,3 +145,16 @@ TEST_CASE("Mistakes with images and options are told by their names within secon
     }
     std::cout << cv::format("[numbers] longest answer to a mistake: %.1f s of processor time\n", most);
 }
+
+TEST_CASE("A square that is no other unit, and cameras exchanged, are named, and nothing beside", "[tools][calib][mistakes][slow]")
+{
+    const TemporaryFolder f;
+    const auto calibrate = [&](const std::string& square, const std::string& glass1, const std::string& glass2) {
+        return runTool("refract_calib --size=6x5 --thickness=20 --index=1.5437 --out=" + (f / "calib.yml") + " --square=" + square
+                       + direct(STEREO + "/direct1/*") + " --direct2='" + STEREO + "/direct2/*' --glass='" + STEREO + "/" + glass1
+                       + "/*' --glass2='" + STEREO + "/" + glass2 + "/*'").err; };
+    CHECK_THAT(calibrate("25", "glass1", "glass2"), Catch::Contains("--square would be 38.9 in place of 25")
+                                                    || Catch::Contains("--square would be 39 in place of 25"));
+    // What is left is what the boards moved, within --placement-std.
+    CHECK_THAT(calibrate("39", "glass2", "glass1"), Catch::Contains("--glass and --glass2 exchanged") && !Catch::Contains("something else"));
+}

@@ -138,6 +138,24 @@ std::string outerRadiusHint(double given, double found, double glass)
     return std::abs(given - glass - found) < NEARLY*glass ? " (is that given of the outer face? --radius is of the inner one)" : "";
 }
 
+//! The side of a board's square, as it is given; 0: there is no board.
+double squareOf(const RigData& data)
+{
+    for (const View& view : data.views)
+        if (!view.neighbours.empty())
+            return norm(view.objectPoints[view.neighbours[0].second] - view.objectPoints[view.neighbours[0].first]);
+    return 0.;
+}
+
+/** Images of a pane between equal media show its thickness in squares of the board: another square explains as much. Near what is given
+that is a cause of its own. */
+std::string squareHint(double square, double ratio)
+{
+    const double NEAR = 0.2;
+    return !(square > 0.) || std::abs(ratio - 1.) < NEAR ? ""
+        : format(", or --square would be %.3g in place of %.4g, as only their ratio shows", square/ratio, square);
+}
+
 /** Of some windows together. Of several layers, which images hardly distinguish, each takes its part of what their sum changes by. */
 Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vector<int>& owners)
 {
@@ -155,6 +173,10 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
     const std::string where = owners.size() == 1 ? ofWindow(rig, owners[0]) : std::string(" of all windows");
     const std::string value = typed(rig.options, given);
     const double glass = glassOf(rig.options.window);
+    const GlassWindow& window = rig.options.window;
+    const bool isRatio = given.flag == GLASS_FREE_THICKNESS && owners == rig.windowOwners() && window.innerIndex == window.outerIndex
+                         && !(rig.options.flags & GLASS_USE_POSES);
+    const double square = isRatio ? squareOf(rig.data) : 0.;
     return {format("%s %d", given.option, owners.size() == 1 ? owners[0] : -1), {shift},
             [=](const Relaxed& found, double deviations) {
         const std::string estimate = plusMinus(sumOf(found, numbers), stdOfSum(found, numbers));
@@ -164,6 +186,7 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
         return format("the images contradict %s=%s%s: set free, the %s%s would be ", given.option, value.c_str(),
                       given.std() > 0. ? format(" +- %.2g", given.std()).c_str() : "", given.word, where.c_str())
             + estimate + unitHint(sumOf(found, numbers)/given.sum())
+            + squareHint(square, sumOf(found, numbers)/given.sum())
             + (given.flag == GLASS_FREE_RADIUS ? outerRadiusHint(given.sum(), sumOf(found, numbers), glass) : std::string())
             + howSure(deviations); }};
 }
@@ -365,15 +388,6 @@ void addPlaces(const FittedRig& rig, std::vector<Cause>& causes)
                 const double moved = norm(after.R.t()*after.T - before.R.t()*before.T);
                 return format("camera %d moved in the rig between direct and glass images: it turned by %.3g degrees and moved by %.2g",
                               c + 1, turned, moved) + howSure(deviations); }});
-}
-
-//! The side of a board's square, as it is given; 0: there is no board.
-double squareOf(const RigData& data)
-{
-    for (const View& view : data.views)
-        if (!view.neighbours.empty())
-            return norm(view.objectPoints[view.neighbours[0].second] - view.objectPoints[view.neighbours[0].first]);
-    return 0.;
 }
 
 void addTarget(const FittedRig& rig, std::vector<Cause>& causes)

@@ -142,12 +142,27 @@ std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mis
     return bestBelow(maxPx, tried);
 }
 
-/** What leaves more than the images' own noise explains only a part.
+/** px, that a motion of the boards of pairs may leave which --placement-std allows: a fit that looks for causes takes values as exact. */
+double allowedError(const CalibrationInput& input)
+{
+    std::vector<double> scales;         // pixels a unit of length has
+    for (const View& view : input.data.views)
+        for (int c = 0; c < input.data.cameraCount && hasPairs(input.data); c++)
+            for (const auto& [a, b] : view.hasGlass(c) ? view.neighbours : std::vector<std::pair<int, int>>())
+                scales.push_back(cv::norm(view.glass[c][b] - view.glass[c][a])/cv::norm(view.objectPoints[b] - view.objectPoints[a]));
+    scales.erase(std::remove_if(scales.begin(), scales.end(), [](double scale) { return std::isnan(scale); }), scales.end());
+    if (scales.empty())
+        return 0.;
+    std::nth_element(scales.begin(), scales.begin() + scales.size()/2, scales.end());
+    return MEDIAN*scales[scales.size()/2]*input.options.std.placement;
+}
+
+/** What leaves more than the images' own noise, and than what --placement-std allows, explains only a part.
 @param clean px, of cleanError; 0: not known */
-std::string fits(const Explanation& e, double clean)
+std::string fits(const CalibrationInput& input, const Explanation& e, double clean)
 {
     const std::string text = format("the same images fit within %.2g px with ", e.px) + e.sentence;
-    return clean > 0. && e.px > clean ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
+    return clean > 0. && e.px > std::hypot(clean, allowedError(input)) ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
 }
 
 } // namespace
@@ -163,10 +178,10 @@ std::vector<std::string> told(const CalibrationInput& input, const std::vector<E
         best = std::min(best, e.px);
     const Explanation shape = best > clean && best < NO_FIT ? wrongShape(input) : Explanation{"", NO_FIT};
     if (AS_GOOD*shape.px < best)
-        return {fits(shape, clean)};
+        return {fits(input, shape, clean)};
     std::vector<std::string> sentences;
     for (const Explanation& e : explaining)
-        sentences.push_back(fits(e, clean));
+        sentences.push_back(fits(input, e, clean));
     return sentences;
 }
 
@@ -215,13 +230,14 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
 }
 
 //! A contradicted value and others that explain the images about as well, the best first.
-std::vector<std::string> toldBeside(const Contradiction& value, const std::vector<Explanation>& others, double clean)
+std::vector<std::string> toldBeside(const CalibrationInput& input, const Contradiction& value, const std::vector<Explanation>& others,
+                                    double clean)
 {
     std::vector<std::string> sentences = {value.sentence};
     for (const Explanation& e : bestBelow(AS_GOOD*MEDIAN*value.sigma, others))
     {
         const bool isBest = e.px < MEDIAN*value.sigma/VALUE_BEFORE;
-        sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(e, clean));
+        sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(input, e, clean));
         if (AS_GOOD*e.px < MEDIAN*value.sigma)
             return {sentences[0]};
     }
@@ -240,7 +256,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
     {
         std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
         if (isFound(others, clean))
-            return toldBeside(*plain.explained, others, clean);
+            return toldBeside(input, *plain.explained, others, clean);
         if (!(plain.px < NO_FIT))       // pairs that contradict each other: a cause is one name for that, an exchange may be another
             for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean))
                 others.push_back(e);
@@ -248,7 +264,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
             others.push_back(SCALE.undo(input));
         if (clean > 0. && MEDIAN*plain.explained->sigma > clean)        // it leaves more than noise
             others.push_back(wrongShape(input));
-        return toldBeside(*plain.explained, others, clean);
+        return toldBeside(input, *plain.explained, others, clean);
     }
     const double most = std::min(EXPLAINS*plain.px, sound);
     std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
@@ -264,7 +280,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
         explaining = explanationsOf(input, LAST_MISTAKES, most, clean);
     }
     for (const Explanation& e : explaining)
-        sentences.push_back(fits(e, clean));
+        sentences.push_back(fits(input, e, clean));
     return sentences;
 }
 
