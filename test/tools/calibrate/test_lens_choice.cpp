@@ -119,6 +119,21 @@ TEST_CASE("Images through the window decide where there is no other, and where t
     CHECK(choice.lens().coefficients >= 1);
 }
 
+TEST_CASE("No fisheye is chosen where boards that are nearly parallel to the image tell no focal length", "[lens_choice]")
+{
+    const Ptr<RefractiveCamera> camera = bent();
+    scenes::Random random(17);
+    RigData data = dataOf(camera, 8, false, 17);
+    for (View& view : data.views)
+    {
+        const Vec3d rvec = random.vector(0.02), tvec(random.uniform(-120, 120), random.uniform(-90, 90), random.uniform(400, 600));
+        refractiveProjectPoints(view.objectPoints, rvec, tvec, camera, view.direct[0]);
+        for (Point2d& p : view.direct[0])
+            p += Point2d(random.normal(0.2), random.normal(0.2));
+    }
+    CHECK(chooseLens(data, RigOptions(), false).scores.empty());
+}
+
 TEST_CASE("Nothing is chosen for a lens that is known", "[lens_choice]")
 {
     RigOptions options;

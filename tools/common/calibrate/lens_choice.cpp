@@ -137,7 +137,11 @@ LensChoice chooseCoefficients(const RigData& data, const LensImages& images, boo
                 choice.chosen = i;
         }
     }
-    catch (const cv::Exception&) {}         // told where the calibration itself fails
+    catch (const CalibrationError& e)
+    {
+        choice.undetermined = e.cause == CalibrationError::UNDETERMINED;
+    }
+    catch (const cv::Exception&) {}         // both are told where the calibration itself fails
     return choice;
 }
 
@@ -177,6 +181,8 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
         images = glassImages(data, cameras);
     }
     LensChoice choice = chooseCoefficients(data, images, false, options, robust);
+    if (choice.undetermined)
+        return LensChoice();
     // A lens that k1 and k2 describe is not looked at as a fisheye. Where more coefficients find no good fit, they may be the best of bad.
     if (!choice.scores.empty() && choice.lens().coefficients <= 2 && choice.lens().px < DESCRIBED)
         return choice;

@@ -25,12 +25,14 @@ struct LensChoice
     int chosen = 0;
     bool byImages = true;       //!< false: by parts of the target
     bool direct = true;         //!< false: images through the window
+    bool undetermined = false;  //!< the images do not tell a focal length: no other model makes that better
 
     const LensScore& lens() const { return scores[chosen]; }
     std::string sentence() const;
 };
 
-//! Empty where all lenses are known, or no candidate can be fitted. @param robust points far from the richest lens's fit do not count
+//! Empty where all lenses are known, no candidate can be fitted, or the images do not determine one.
+//! @param robust points far from the richest lens's fit do not count
 LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust);
 
 //! The options for this lens.
