@@ -71,6 +71,11 @@ TEST_CASE("One image under two names is told", "[data_checks]")
     CHECK(allNotices(sets, false) == "");
     sets.glass[0].images[4].points = sets.glass[0].images[1].points;
     CHECK_THAT(allNotices(sets, false), Catch::Contains("'g/v1.png' and 'g/v4.png' are one image"));
+
+    for (DetectedImage& image : sets.glass[0].images)
+        image.points = sets.glass[0].images[0].points;
+    CHECK_THAT(allNotices(sets, false), Catch::Contains("'g/v0.png' and 'g/v1.png', ") && Catch::Contains(" more are one image")
+                                        && !Catch::Contains("v5.png"));
 }
 
 TEST_CASE("Boards that are all parallel are told where they hide something", "[data_checks]")

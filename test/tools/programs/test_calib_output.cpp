@@ -66,6 +66,18 @@ nlohmann::json summaryOf(const TemporaryFolder& f) { return nlohmann::json::pars
 
 } // namespace
 
+TEST_CASE("A housing that cannot be opened is not asked for pairs", "[calib_tool][ten_lines]")
+{
+    const TemporaryFolder f;
+    const std::string stereo = paths::bundled() + "/stereo";
+    const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --thickness=20 --index=1.5437 --camera=" + stereo + "/truth.yml --glass='"
+                                 + stereo + "/glass1/*' --no-cross-validation --out=" + (f / "c.yml"));
+    CAPTURE(r.out, r.err);
+    CHECK(r.code == 0);
+    CHECK(mentions(r.out, "take another image: "));
+    CHECK(!mentions(r.out, "pair"));
+}
+
 TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_lines]")
 {
     const struct { const char* name; int views; bool stereo; std::string more, says, next; int code; } cases[] = {

@@ -143,13 +143,16 @@ Advice adviseImages(const RigCalibration& calibration)
     const ViewPlanner planner(calibration);
     Advice advice;
     advice.now = planner.qualityOf(planner.now());
+    const std::vector<View>& views = calibration.data.views;
+    advice.arePairs = std::any_of(views.begin(), views.end(), [](const View& view) { return view.countDirect() > 0; });
+    const Kind kind = advice.arePairs ? PAIR : GLASS_ONLY;
     if (!(calibration.square > 0))      // where another target would be put nobody knows
         return advice;
     std::vector<Placement> placements;
     std::vector<MatrixXd> informations;
     for (const Placement& placement : planner.placements())
     {
-        const MatrixXd information = planner.informationOf(placement, PAIR);
+        const MatrixXd information = planner.informationOf(placement, kind);
         if (information.size() == 0)
             continue;
         placements.push_back(placement);
@@ -178,7 +181,7 @@ Advice adviseImages(const RigCalibration& calibration)
         if (n == 0)
             first = at;
     }
-    if (first < 0)
+    if (first < 0 || !advice.arePairs)
         return advice;
     const struct { Kind kind; const char* words; } others[] = {{GLASS_ONLY, "only the image through the window of the first"},
                                                               {DIRECT_ONLY, "only the direct image of the first"}};

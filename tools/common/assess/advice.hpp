@@ -27,6 +27,7 @@ struct PlannedImage
 struct Advice
 {
     Quality now;
+    bool arePairs = true;               //!< false: images through the window alone, as all that there are (a sealed housing)
     std::vector<PlannedImage> pairs;    //!< the best next pairs, one after the other
     std::vector<PlannedImage> instead;  //!< other kinds of image in place of the first, each by itself
 };

@@ -22,7 +22,8 @@ int fewestPairs(const RigCalibration& c)
 //! "another pair: near (z = 490 mm), in the middle of the image, ..."
 std::string nextPair(const Assessment& a, int count)
 {
-    const std::string pairs = count == 1 ? "another pair" : format("%d more pairs", count);
+    const std::string pairs = (count == 1 ? std::string("another ") : format("%d more ", count))
+        + (a.advice.arePairs ? "pair" : "image") + (count == 1 ? "" : "s");
     return a.advice.pairs.empty() ? pairs : pairs + (count == 1 ? ": " : ", first: ") + a.advice.pairs[0].placement;
 }
 

@@ -87,14 +87,24 @@ void noticeDuplicates(const RigImages& sets, std::vector<std::string>& notices)
         for (bool through : {false, true})
             for (const DetectedImage& image : (through ? sets.glass : sets.direct)[c].images)
                 all.push_back({&image, "'" + image.path + "'"});
+    std::vector<std::pair<std::string, std::string>> repeated;      // one image and a later one
     for (size_t i = 0; i < all.size(); i++)
-        for (size_t j = 0; j < i; j++)
-            if (areOneImage(*all[i].image, *all[j].image))
-            {
-                notices.push_back(all[j].name + " and " + all[i].name + " are one image (the same corners to 0.0001 px): it "
-                                  "counts twice, so that the +- are too small. Leave one out");
-                break;
-            }
+    {
+        const auto first = std::find_if(all.begin(), all.begin() + i, [&](const Named& other) {
+            return areOneImage(*all[i].image, *other.image); });
+        if (first != all.begin() + i)
+            repeated.push_back({first->name, all[i].name});
+    }
+    if (repeated.empty())
+        return;
+    const size_t FEW = 3;
+    std::string text;
+    for (size_t i = 0; i < std::min(FEW, repeated.size()); i++)
+        text += (i ? ", " : "") + repeated[i].first + " and " + repeated[i].second;
+    if (repeated.size() > FEW)
+        text += format(", and %zu more", repeated.size() - FEW);
+    notices.push_back(text + " are one image (the same corners to 0.0001 px): " + (repeated.size() == 1 ? "it counts" : "each counts")
+                      + " twice, so that the +- are too small. Leave one out");
 }
 
 //! Unit normal of the board in the frame of the camera, roughly: for a usual lens, without its distortion. 0: it has none.

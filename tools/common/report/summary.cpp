@@ -309,7 +309,7 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     };
     add("now", advice.now);
     for (size_t i = 0; i < advice.pairs.size(); i++)
-        add(format("pair %zu: ", i + 1) + advice.pairs[i].placement, advice.pairs[i].quality);
+        add(format(advice.arePairs ? "pair %zu: " : "image %zu: ", i + 1) + advice.pairs[i].placement, advice.pairs[i].quality);
     for (const PlannedImage& image : advice.instead)
         add("instead: " + image.placement, image.quality);
     return rows;
