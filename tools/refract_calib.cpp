@@ -472,13 +472,14 @@ int refract_calib_main(int argc, char** argv)
         const RigCalibration calibration = calibrate(options, command.quiet());
         const Assessment assessment = assess(calibration);
         const Findings findings = findingsOf(calibration, assessment);
+        // In the order of their worth: a full disk takes the report, not the calibration.
+        writeCalibration(options.out, withFindings(toFile(calibration, command.line()), findings));
         if (!options.pinholeOut.empty())
             writePinhole(options.pinholeOut, calibration, command.line());
         if (!options.summary.empty())
             writeText(options.summary, summaryJson(calibration, assessment, findings, command.line()));
         if (!options.report.empty())
             writeText(options.report, makeReport(calibration, assessment, findings, command.line(), command.quiet()));
-        writeCalibration(options.out, withFindings(toFile(calibration, command.line()), findings));
         if (options.verbose)
             printSummary(std::cout, calibration, assessment, findings);
         else if (!command.quiet())

@@ -78,6 +78,18 @@ TEST_CASE("A housing that cannot be opened is not asked for pairs", "[calib_tool
     CHECK(!mentions(r.out, "pair"));
 }
 
+TEST_CASE("A report that cannot be written leaves the calibration", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    const std::string stereo = paths::bundled() + "/stereo";
+    const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --thickness=20 --index=1.5437 --camera=" + stereo + "/truth.yml --glass='"
+                                 + stereo + "/glass1/*' --no-cross-validation --quiet --out=" + (f / "c.yml") + " --summary=/dev/full");
+    CAPTURE(r.err);
+    CHECK(r.code == 1);
+    CHECK(mentions(r.err, "/dev/full"));
+    CHECK(std::filesystem::exists(f / "c.yml"));
+}
+
 TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_lines]")
 {
     const struct { const char* name; int views; bool stereo; std::string more, says, next; int code; } cases[] = {
