@@ -73,7 +73,7 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
         if (own.has(column))
             add(name, given, column, count);
     };
-    addIf("distance", std.distance.text(length), own.distance, 1);
+    addIf("distance", std.isDistanceOpen ? "not given" : std.distance.text(length), own.distance, 1);
     addIf("radius", std.radius.text(length), own.radius, 1);
     addIf("centre", std.center.text(length), own.center, 3);
     addIf("bow", std.bow.text(" mm per m"), own.curvature, 1);

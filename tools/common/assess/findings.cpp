@@ -192,7 +192,7 @@ void checkDistance(const RigCalibration& c, int camera, Collected& f)
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const double std = windowStd(c.fit, camera).distance;
     const std::string value = format("%.4g +- %.2g %s", window.distance, std, c.unit.c_str());
-    if (!(std > 0.))
+    if (!(std > 0.) || c.options.std.isDistanceOpen)
         return;
     const bool isFree = c.options.flags & GLASS_FREE_DISTANCE;
     const double gap = gapToTargets(c, camera);
@@ -231,8 +231,10 @@ void checkWindow(const RigCalibration& c, int camera, Collected& f)
     if (other && !other->isExcluded())
         f.add(THE_DATA, of(c, camera) + other->sentence());
     if (equalMedia(window) && !isRound(window))
-        f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it "
-                               "has exactly no effect on the image (and is not needed)");
+        f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it has "
+                               + (std.distance > 0. ? format("an effect only as far as the faces are not parallel (%.4g +- %.2g %s)",
+                                                             window.distance, std.distance, c.unit.c_str())
+                                                    : std::string("no effect on the image where faces are parallel")) + ", and is not needed");
 }
 
 //! Thickness and index of a single layer: what shows at small angles, and how well it is known.

@@ -110,9 +110,8 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
         throw Failure("--bow-std is of a pane: give --thickness and --index");
     if (!layers && (isSaid(THICKNESS) || isSaid(INDEX) || isSaid(WEDGE)))
         throw Failure("--thickness-std, --index-std and --wedge-std are of layers: give --thickness and --index");
-    if (v.equalMedia && (isSaid(DISTANCE) || isSaid(OUTER_INDEX)))
-        throw Failure("--distance-std and --outer-index-std: with the same medium on both sides of the window the distance has no effect "
-                      "on the image, and that medium is what indices are relative to; leave them out");
+    if (v.equalMedia && isSaid(OUTER_INDEX))
+        throw Failure("--outer-index-std: the medium on both sides of the window is what indices are relative to; leave it out");
     if (isSaid(DISTANCE) && !v.distance)
         throw Failure("--distance-std is of a distance that is given: add --distance");
     if (isSaid(SQUARE) && !(v.square > 0.))
@@ -128,9 +127,14 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     for (const GivenIndex& layer : v.layers)
         std.index.push_back(choose(INDEX, 1., usualStdOf(layer), !isFree(GLASS_FREE_INDEX)));
     std.outerIndex = choose(OUTER_INDEX, 1., usualStdOf(v.outer), !v.equalMedia && !isFree(GLASS_FREE_OUTER_INDEX));
-    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT),
-                          !v.equalMedia && v.distance && !isFree(GLASS_FREE_DISTANCE));
     std.wedge = choose(WEDGE, ARC_MINUTE, Std(WEDGE_MINUTES*ARC_MINUTE, DEFAULT), layers && isFlat && !isFree(GLASS_FREE_WEDGE));
+    // Between equal media parallel faces hide where they are; a wedge turns rays there.
+    const bool showsDistance = isFlat && (!v.equalMedia || (layers && (std.wedge > 0. || isFree(GLASS_FREE_WEDGE))));
+    if (isSaid(DISTANCE) && isFlat && !showsDistance)
+        throw Failure("--distance-std: with the same medium on both sides of the window and parallel faces the distance has no effect on the "
+                      "image; leave it out");
+    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT), showsDistance && v.distance && !isFree(GLASS_FREE_DISTANCE));
+    std.isDistanceOpen = showsDistance && v.equalMedia && !v.distance;
     std.radius = choose(RADIUS, 1., Std(RADIUS_MM*v.millimetre, DEFAULT), !isFlat && !isFree(GLASS_FREE_RADIUS));
     std.center = isFlat ? Std() : choose(CENTER, 1., Std(), false);
     std.bow = choose(BOW, 1., Std(), false);

@@ -41,6 +41,7 @@ struct GivenStd
     Std bow;                            //!< of a pane, mm of sag per metre
     double curvature = 0.;              //!< the same, over the unit of lengths
     Std scale;                          //!< of the targets (a board's square), relative
+    bool isDistanceOpen = false;        //!< nobody gave it, and faces that are not parallel show it a little, between equal media, too
     Std placement;                      //!< by how much all boards moved between direct and glass, per axis
 
     Std indexOf(size_t layer) const { return layer < index.size() ? index[layer] : Std(); }

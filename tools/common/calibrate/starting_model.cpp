@@ -230,19 +230,20 @@ static double targetRadius(const RigData& data)
     return radius;
 }
 
-//! Mean position of the targets in camera 1, of those that it sees without its window.
+//! Mean position of the targets in camera 1, of those that it sees without its window; if there are none, through it.
 static Vec3d meanPosition(const RigData& data, const RigModel& rig)
 {
     const Ptr<RefractiveCamera> bare = copyWithWindow(rig.cameras[0], GlassWindow());
     Vec3d sum;
     int count = 0;
     RigidTransform pose;
-    for (const View& view : data.views)
-        if (solveView(view, bare, view.direct[0], pose))
-        {
-            sum += pose.T;
-            count++;
-        }
+    for (bool glass : {false, true})
+        for (const View& view : count ? std::vector<View>() : data.views)
+            if (solveView(view, glass ? rig.cameras[0] : bare, (glass ? view.glass : view.direct)[0], pose))
+            {
+                sum += pose.T;
+                count++;
+            }
     return count ? sum*(1./count) : Vec3d();
 }
 
@@ -283,8 +284,21 @@ double startDistance(const RigData& data, double square)
     return SHARE*width;
 }
 
-RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources)
+/** A window of which nobody said where it is, somewhere between camera and targets: as a uniform distribution has it, but sooner near the
+camera. */
+static RigOptions withOpenDistance(const RigData& data, const RigModel& rig, RigOptions options)
 {
+    const double targets = norm(meanPosition(data, rig)), SOONER = 0.25;
+    if (!(targets > 0.))
+        return options;         // camera 1 saw nothing: told where the calibration fails
+    options.window.distance = SOONER*targets;
+    options.std.distance = Std(targets/std::sqrt(12.), "not given");
+    return options;
+}
+
+RigModel startModel(const RigData& data, const RigOptions& given, std::vector<LensSource>& lensSources)
+{
+    RigOptions options = given;
     RigModel rig;
     lensSources.assign(data.cameraCount, LensSource());
     for (int c = 0; c < data.cameraCount; c++)
@@ -300,6 +314,12 @@ RigModel startModel(const RigData& data, const RigOptions& options, std::vector<
     }
     rig.windows = options.windows;
     startExtrinsics(data, options.flags & GLASS_USE_POSES, rig);
+    if (options.std.isDistanceOpen)
+    {
+        options = withOpenDistance(data, rig, options);
+        for (Ptr<RefractiveCamera>& camera : rig.cameras)
+            camera = copyWithWindow(camera, options.window);
+    }
     for (int c = 0; c < data.cameraCount; c++)
         rig.known.push_back(knownOf(*rig.cameras[c], options, c));
     rig.targetCovariance = targetCovarianceOf(data, rig, options.std);

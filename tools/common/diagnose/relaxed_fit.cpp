@@ -62,16 +62,18 @@ Eigen::Matrix<double, 3, 2> across(const Vec3d& normal)
 const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known;
 const double AT_MOST = 0.6;             // beyond this part boards reach into it
 
-/** Between equal media a calibration holds the distance, which parallel faces are indifferent to. A wedge is not: its glass is as thick as
-where the light goes through, and cameras that share it look through it at two places. Whatever is tested, it is then somewhere before the
-boards; a cause that alone was free to say so would explain what only the held distance leaves. */
-bool holdsDistanceOfWedge(const Fit& fit, int camera)
+/** Parallel faces between equal media are indifferent to the distance. A wedge is not: its glass is as thick as where the light goes
+through, and cameras that share it look through it at two places. Whatever is tested, it is then somewhere before the boards. */
+bool showsDistanceByWedge(const Fit& fit, int camera)
 {
     const ParameterColumns at = columnsOf(fit.rig, camera);
     const GlassWindow& window = fit.rig.cameras[camera]->window();
     return fit.rig.ownsWindow(camera) && window.innerIndex == window.outerIndex && at.wedge < at.curvature
-        && fit.stdDeviations.at<double>(at.wedge) > 0. && !(fit.stdDeviations.at<double>(at.distance) > 0.);
+        && fit.stdDeviations.at<double>(at.wedge) > 0.;
 }
+
+//! A fit that took the wedge for none held it; a cause that alone was free to say so would explain what only the held distance leaves.
+bool holdsDistance(const Fit& fit, int camera) { return !(fit.stdDeviations.at<double>(columnsOf(fit.rig, camera).distance) > 0.); }
 
 double nearestBoard(const Fit& fit)
 {
@@ -121,7 +123,7 @@ MatrixXd freeOf(const Fit& fit)
         else
             addFree(at.center, at.center + 3);
         addFree(at.thickness - 1, at.end);          // from the distance or the radius on
-        if (holdsDistanceOfWedge(fit, c))
+        if (showsDistanceByWedge(fit, c) && holdsDistance(fit, c))
             add(at.distance);
     }
     for (int i = 0; i < TARGET_ERRORS && !rig.targetCovariance.empty(); i++)
@@ -232,13 +234,15 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
         information_.bottomRightCorner(TARGET_ERRORS, TARGET_ERRORS) = informationOf(toEigen(rig_.targetCovariance));
     start_.before = toVector(rig_);
     for (int c = 0; c < (int)rig_.cameras.size(); c++)
-        if (holdsDistanceOfWedge(fit, c))
+        if (showsDistanceByWedge(fit, c))
         {
             const int distance = columnsOf(rig_, c).distance;
             const double nearest = nearestBoard(fit), somewhere = BEFORE_BOARDS*nearest;
             Eigen::Index column;
             free_.row(distance).maxCoeff(&column);
-            bounds_.push_back({distance, (int)column, AT_MOST*nearest});
+            bounds_.push_back({distance, (int)column, std::max(AT_MOST*nearest, 1.01*start_.before[distance])});
+            if (!holdsDistance(fit, c))
+                continue;
             known_[distance] = start_.before[distance] = somewhere;
             information_(distance, distance) = 1./(somewhere*somewhere);
             rig_ = withVector(rig_, start_.before);
