@@ -845,3 +845,33 @@ TEST_CASE("refract_calib on real images in air and water", "[calib_tool][real]")
     std::cout << "[numbers] ouc_laser3d, water surface fitted to the water images: RMS " << rms << " px\n";
     CHECK(rms < 0.30);
 }
+
+TEST_CASE("In air, too, a wedge tells where the window is, and nobody need know it", "[tools][calib][wedge]")
+{
+    const double MINUTE = CV_PI/180/60;
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.window = [=](int camera) {
+        GlassWindow window = PaperRig().window(camera);
+        window.distance = 250;
+        window.wedge = {Vec2d(3*MINUTE, -MINUTE)};
+        return window; };
+    const Vec3d normal = options.window(0).normal;
+    for (unsigned salt : {211, 212, 213})
+    {
+        writeScene(f, options, salt);
+        const auto deviationsOff = [&](const std::string& more) {
+            const ToolResult r = runTool(brief(f, PANE + lens(f) + " --wedge-std=3 --no-cross-validation" + more));
+            CAPTURE(r.err);
+            CHECK(r.code == 0);
+            const FileStorage fs(f / "calib.yml", FileStorage::READ);
+            std::vector<double> stated;
+            fs["glass_window_std"]["normal_deg"] >> stated;
+            const Vec3d found = RefractiveCamera::read(f / "calib.yml")->window().normal;
+            return std::asin(norm(found.cross(normal)))*180/CV_PI/stated[0]; };
+        CAPTURE(salt);
+        CHECK(deviationsOff("") < 4);
+        CHECK(deviationsOff(" --distance=250 --distance-std=1") < 4);
+        CHECK(deviationsOff(" --distance=0 --distance-std=0") > 4);         // what held there is no longer said of none
+    }
+}
