@@ -7,8 +7,9 @@
 #include "calibrate/provenance.hpp"
 #include "calibrate/rig_data.hpp"
 
-/* Images that calibrated, so that they are known again: they must not test the calibration. A file is known by its bytes, an image
-of which only the target's pixels came by these. */
+/* Images that calibrated, so that they are known again: they must not test the calibration. A file is known by its bytes; an image that
+was stored anew, made a little noisier, or of which points were left out, by where it shows the target: a board that was held anew, even
+next to where it was, is farther off. */
 namespace tools {
 
 //! One that calibrates.
@@ -29,8 +30,10 @@ cv::Point2d meanOfSeen(const std::vector<cv::Point2d>& pixels);
 //! The image with these bytes; null: none.
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, const std::string& sha256);
 
-//! The image of a camera that shows the target where these pixels do; null: none.
-const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels);
+/** The image of a camera that shows the target where these pixels do, whatever their names and numbers are; null: none.
+@param pixelSigma noise of a pixel coordinate: images of more are known again by coarser agreement */
+const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
+                                  double pixelSigma);
 
 } // namespace tools
 

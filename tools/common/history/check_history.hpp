@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_CHECK_HISTORY_HPP
 
 #include "assess/rig_check.hpp"
+#include "console/times.hpp"
 #include <string>
 #include <vector>
 
@@ -45,14 +46,6 @@ struct CheckHistory
     std::vector<ChartedChange> changes;
     std::vector<CheckRecord> checks;
 };
-
-//! 2026-11-26, 2026-11-26T08:30, 2026-11-26T08:30:00Z or ...+01:00 -> UTC as CheckRecord::time. Throws Failure for anything else.
-std::string parseTime(const std::string& text, const std::string& option);
-//! That of now, or of SOURCE_DATE_EPOCH if it is set.
-std::string timeOfNow();
-//! Seconds since 1970. @param time as CheckRecord::time
-double secondsOf(const std::string& time);
-std::string timeAt(double seconds);
 
 //! No file: an empty history. Throws Failure if the file is not one.
 CheckHistory readHistory(const std::string& filename);
