@@ -42,7 +42,8 @@ is more.
 
 Refused: images that calibrated (by their pixels, stored anew or with points left out; by SHA-256 where there are files), lengths without
 U, points that are not there or have a status other than 0, names or pairs that stand twice, points of another calibration, a
---pixel-sigma that the images refute, a test before its calibration or in the future. Lengths that reach out of the volume are marked. What the test lacks of VDI/VDE 2634 part 1 (seven lines, five lengths on each, the longest two thirds of the volume's
+--pixel-sigma that the images refute, a test before its calibration or in the future. Lengths that reach out of the volume are marked.
+What the test lacks of VDI/VDE 2634 part 1 (seven lines, five lengths on each, the longest two thirds of the volume's
 diagonal) is said. Lines are found from where the lengths are.
 
 --dcc: PTB's digital calibration certificate, version 3.3.0. The same input gives the same bytes on one day: the date of the test is that
@@ -112,7 +113,8 @@ void checkOptions(const Options& o, const std::string& settings)
         throw Failure("--plane is for points that one camera saw: measure the board with refract_measure, and give --points");
     o.label.check();
     if (o.standard.isStated() != (o.standard.expansion == o.standard.expansion))
-        throw Failure("--temperature and --expansion belong together: the standard's expansion (1e-6 per K) says what its temperature does");
+        throw Failure("--temperature and --expansion belong together: the standard's expansion (1e-6 per K) says what its temperature "
+                      "does");
     if (!o.certificate.empty())
         Plot::checkAvailable();
     std::vector<std::string> inputs = {o.calibration, o.points, o.lengths, settings};
@@ -377,8 +379,8 @@ int refract_accept_main(int argc, char** argv)
         acceptance.notices = noticesOf(o, calibration, data.points, errors, acceptance.imagesChecked, images);
         acceptance.add(noise.remarks);
         if (isOwnBoard)
-            acceptance.add({format("The lengths are those of a board with the square that calibrated (%.6g): if it is that board, the scale "
-                                   "is not tested; take another standard", calibration.square)});
+            acceptance.add({format("The lengths are those of a board with the square that calibrated (%.6g): if it is that board, the "
+                                   "scale is not tested; take another standard", calibration.square)});
         acceptance.add(remarksOfVolume(volume, calibration.provenance.volume));
         if (o.conditions.isSaid())
             acceptance.add({"The " + o.conditions.notice(asCalibrated)});

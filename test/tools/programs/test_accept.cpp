@@ -157,7 +157,8 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
         html = readFile(out / "c.html");
         xml = readFile(out / "d.xml");
     }
-    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water", "signature", "2+L/1000",
+    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water", "signature",
+                             "2+L/1000",
                              "Page 1 of 2", "Page 2 of 2", "ISO 14253-1:2017", "the calibrated volume, mm: x", "as it was at the test",
                              "Authorised by", "Not stated: laboratory", "VDI/VDE 2634 part 1", "contribution, mm"})
     {

@@ -11,10 +11,11 @@
 
 namespace tools {
 
-const char* const DECISION_RULE = "ISO 14253-1:2017 with guard bands of expanded uncertainties for 95.45 %, as its editions of 1998 and 2013 "
-    "had them (its own default, a conformance probability of 95 %, is 1.65 u). Pass: |error| + U <= limit, U with the rig's calibration. Fail: "
-    "|error| - U of the test > limit, with the certified length, its temperature and the noise of the points' pixels, without the calibration "
-    "of the rig, which is what is tested. Else undecided";
+const char* const DECISION_RULE = "ISO 14253-1:2017 with guard bands of expanded uncertainties for 95.45 %, as its editions of 1998 and "
+    "2013 had them (its own default, a conformance probability of 95 %, is 1.65 u). "
+    "Pass: |error| + U <= limit, U with the rig's calibration. "
+    "Fail: |error| - U of the test > limit, with the certified length, its temperature and the noise of the points' pixels, without the "
+    "calibration of the rig, which is what is tested. Else undecided";
 
 Decision decide(double error, double U, double testU, double limit)
 {
@@ -91,7 +92,8 @@ std::string CommonScale::sentence() const
 {
     const std::string sign = value > 0 ? "+" : "";
     return "All errors share one scale, " + sign + plusMinus(100.*value, 100.*std)
-        + cv::format(" %% (%d of %d have its sign): look at the square of the board that calibrated, and at the standard", ofOneSign, count);
+        + cv::format(" %% (%d of %d have its sign): look at the square of the board that calibrated, and at the standard", ofOneSign,
+                     count);
 }
 
 /* Least squares with the test's own errors; those of one certificate may be common, which no scatter shows: a scale is known no better than

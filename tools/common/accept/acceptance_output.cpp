@@ -91,7 +91,8 @@ void printAcceptance(std::ostream& out, const Acceptance& a, const std::string& 
 
 void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTable>& budgets)
 {
-    Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "U of test", "limit", "decision"});
+    Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "U of test", "limit",
+                 "decision"});
     for (const LengthResult& r : a.lengths)
     {
         const int decimals = decimalsOf(r.U());
@@ -108,7 +109,8 @@ void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTa
     {
         const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
         const auto ofU = [&](double value) { return rounded(value, decimalsOf(budget.u) + 1); };
-        out << '\n' << budget.quantity << ": " << rounded(budget.value, decimalsOf(budget.U)) << (a.unit.empty() ? "" : " " + a.unit) << "\n\n";
+        out << '\n' << budget.quantity << ": " << rounded(budget.value, decimalsOf(budget.U)) << (a.unit.empty() ? "" : " " + a.unit)
+            << "\n\n";
         Table rows({"source", "standard uncertainty", "sensitivity" + (a.unit.empty() ? "" : unit + " per its unit"), "contribution" + unit,
                     "share, %", "degrees of freedom"});
         for (const GumRow& row : budget.rows)
@@ -126,7 +128,8 @@ std::string certificateJson(const Certificate& c)
     Json lengths = Json::array(), budgets = Json::array(), inputs = Json::array();
     for (const LengthResult& r : a.lengths)
         lengths.append({{"name", r.length.name}, {"length", r.length.length}, {"length_U", r.length.U}, {"measured", r.measured},
-                        {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", r.budget.dof}, {"test_U", r.testU()}, {"limit", r.limit},
+                        {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", r.budget.dof}, {"test_U", r.testU()},
+                        {"limit", r.limit},
                         {"decision", textOf(r.decision)}, {"outside_volume", r.outside}});
     for (const GumTable& budget : c.budgets)
     {

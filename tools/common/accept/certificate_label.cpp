@@ -64,8 +64,8 @@ CertificateLabel CertificateLabel::completed(const Calibration& calibration, con
         label.issued = timeOfNow().substr(0, DAY);
     const std::string calibrated = calibration.time.substr(0, DAY);
     if (calibrated.size() == DAY && label.date < calibrated)
-        throw Failure((date.empty() ? "the test is of " + label.date + " (SOURCE_DATE_EPOCH, or the newest file)" : "--date=" + date) + ": '"
-                      + filename + "' was calibrated later, on " + calibrated + "; a test is of a calibration that there is");
+        throw Failure((date.empty() ? "the test is of " + label.date + " (SOURCE_DATE_EPOCH, or the newest file)" : "--date=" + date)
+                      + ": '" + filename + "' was calibrated later, on " + calibrated + "; a test is of a calibration that there is");
     return label;
 }
 

@@ -53,8 +53,8 @@ PixelNoise pixelNoiseOf(const Calibration& calibration, const TestPoints& points
         return {stated, remarksOfStated(points, stated, calibrated, shown.sigma())};
     if (!(calibrated > 0) || !shown.isMoreThan(calibrated))
         return {calibrated, {}};
-    return {shown.sigma(), {format("The pixels of these points are noisier than those of the calibration, %.2g px in place of %.2g px: U has "
-                                   "the larger one", shown.sigma(), calibrated)}};
+    return {shown.sigma(), {format("The pixels of these points are noisier than those of the calibration, %.2g px in place of %.2g px: U "
+                                   "has the larger one", shown.sigma(), calibrated)}};
 }
 
 } // namespace tools

@@ -92,7 +92,7 @@ bool requireOtherImages(const TestPoints& points, const std::vector<std::string>
     {
         const RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
         for (size_t c = 0; c < pixels.size(); c++)
-            if (findImage(calibration.provenance.images, (int)c, pixels[c], pixelSigmaOf(calibration)))
+            if (findImage(calibration.provenance.images, (int)c, pixels[c], sameImageTolerance(pixelSigmaOf(calibration))))
             {
                 used.push_back(image);
                 break;

@@ -16,15 +16,7 @@ namespace {
 //! Of older files, by the mean of the pixels: two images of a board, even if it was not moved, differ by more.
 const double SAME_MEAN = 1e-4;
 
-/* Storing an image as a JPEG of quality 50, or two grey levels of noise, move a corner by 0.03 px where 0.014 px is its noise. A board that
-moves by a tenth of a millimetre, 600 mm away, moves by 0.2 px. */
-const double SAME_PIXEL = 0.1, MOST = 0.5, SIGMAS = 3.;
 const size_t FEWEST = 2;                // pixels; one may be near to another by chance
-
-double toleranceOf(double pixelSigma)
-{
-    return pixelSigma > 0 ? std::min(MOST, std::max(SAME_PIXEL, SIGMAS*pixelSigma)) : SAME_PIXEL;
-}
 
 //! How many of the pixels are where one of the others is. @param others in the order of x
 size_t countSame(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
@@ -50,6 +42,12 @@ std::vector<cv::Point2d> seenOf(const std::vector<cv::Point2d>& pixels)
 }
 
 } // namespace
+
+double sameImageTolerance(double pixelSigma)
+{
+    const double MOST = 0.5, SIGMAS = 3.;
+    return pixelSigma > 0 ? std::min(MOST, std::max(USUAL_TOLERANCE, SIGMAS*pixelSigma)) : USUAL_TOLERANCE;
+}
 
 std::vector<UsedImage> usedImages(const RigImages& sets)
 {
@@ -101,9 +99,8 @@ const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, c
 }
 
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
-                                  double pixelSigma)
+                                  double tolerance)
 {
-    const double tolerance = toleranceOf(pixelSigma);
     const cv::Point2d mean = meanOfSeen(pixels);
     std::vector<cv::Point2d> sorted = seenOf(pixels);
     std::sort(sorted.begin(), sorted.end(), [](const cv::Point2d& a, const cv::Point2d& b) { return a.x < b.x; });
