@@ -3,6 +3,8 @@
 
 #include "accept/acceptance_output.hpp"
 #include "accept/board_points.hpp"
+#include "accept/pixel_noise.hpp"
+#include "accept/scale_test.hpp"
 #include "calibrate/calibration_images.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
@@ -13,9 +15,11 @@
 #include "console/table.hpp"
 #include "report/plot.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
+#include <set>
 
 static const char MANUAL[] = R"(Tests a calibrated rig by calibrated lengths that it measures through its windows: the error of
 indication of each, its uncertainty U, and whether it is within what is permitted; with a certificate to sign.
@@ -23,7 +27,8 @@ indication of each, its uncertainty U, and whether it is within what is permitte
   refract_accept calib.yml --points=points.csv --lengths=lengths.csv --max-error=0.1               points of refract_measure
   refract_accept calib.yml LEFT RIGHT --size=6x5 --square=39 --lengths=... --max-error=0.05+L/2000  images of a certified board
 
-Decision (ISO 14253-1): a length passes if |error| + U <= limit, fails if |error| - U > limit, else it is undecided.
+Decision (ISO 14253-1): a length passes if |error| + U <= limit, fails if |error| - U of the test > limit, else it is undecided. U of the
+test is without the calibration of the rig: that is what is tested, and is no excuse.
 
 points.csv: what refract_measure wrote, or any points in the frame of camera 1 (the centres of spheres): [image,]id,x,y,z, and where
 they are known u1,v1,u2,v2,... (raw pixels), sx,sy,sz (one standard deviation) and status.
@@ -31,16 +36,18 @@ lengths.csv: name,image1,id1,image2,id2,length,U. U as the certificate of the st
 empty, the length is one of each image that shows both points.
 
 U of an error (coverage 95.45 %; k is 2 for many degrees of freedom, after Welch and Satterthwaite): the noise of each point's pixels,
-the covariance of the calibration, which both points share, and the certified length. --verbose and the certificate have the budget
-as the GUM writes it.
+the covariance of the calibration, which both points share, the certified length, and its temperature. --verbose and the certificate have
+the budget as the GUM writes it. The noise of a pixel is that of the calibration's residuals, or what the points' own rays show, if that
+is more.
 
-Refused: images that calibrated (by their pixels, and by SHA-256 where there are files), lengths without U, points that are not there
-or have a status other than 0, names or pairs that stand twice, points of another calibration. Lengths that reach out of the calibrated
-volume are marked. What the test lacks of VDI/VDE 2634 part 1 (seven lines, five lengths on each, the longest two thirds of the volume's
+Refused: images that calibrated (by their pixels, stored anew or with points left out; by SHA-256 where there are files), lengths without
+U, points that are not there or have a status other than 0, names or pairs that stand twice, points of another calibration, a
+--pixel-sigma that the images refute, a test before its calibration or in the future. Lengths that reach out of the volume are marked.
+What the test lacks of VDI/VDE 2634 part 1 (seven lines, five lengths on each, the longest two thirds of the volume's
 diagonal) is said. Lines are found from where the lengths are.
 
---dcc: PTB's digital calibration certificate, version 3.3.0. The same input gives the same bytes: the date is that of --date, of
-SOURCE_DATE_EPOCH, or of the newest file that was read.
+--dcc: PTB's digital calibration certificate, version 3.3.0. The same input gives the same bytes on one day: the date of the test is that
+of --date, of SOURCE_DATE_EPOCH, or of the newest file that was read; that of issue of --issued, SOURCE_DATE_EPOCH, or today.
 
 Exit code: 0 all lengths pass, 1 could not do it, 2 at least one fails or is undecided.)";
 
@@ -48,6 +55,8 @@ namespace {
 
 using namespace tools;
 namespace fs = std::filesystem;
+
+const double NOT_STATED = std::numeric_limits<double>::quiet_NaN();
 
 struct Options
 {
@@ -58,6 +67,7 @@ struct Options
     std::string certificate, dcc, summary;
     CertificateLabel label;
     double pixelSigma = 0.;
+    StandardTemperature standard = {NOT_STATED, 0.5, NOT_STATED, NOT_STATED, 20.};
     bool noWindow = false, verbose = false;
 };
 
@@ -81,15 +91,13 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--dcc", o.dcc, "digital calibration certificate to write, XML");
     parser.add("--summary", o.summary, "JSON file with all that is said, and more");
     parser.addFlag("--verbose", o.verbose, "all lengths and budgets");
-    parser.add("--number", o.label.number, "of the certificate (default: made of what was read)");
-    parser.add("--date", o.label.date, "of the test, year-month-day");
-    parser.add("--serial", o.label.serial, "of cameras and windows (default: window_serial of calib.yml)");
-    parser.add("--customer", o.label.customer, "for whom");
-    parser.add("--laboratory", o.label.laboratory, "where");
-    parser.add("--operator", o.label.person, "who tested");
-    parser.add("--country", o.label.country, "of the laboratory, two letters (ISO 3166-1), for --dcc");
-    parser.add("--standard", o.label.standard, "standard of length: kind, serial number, certificate");
-    parser.add("--environment", o.label.environment, "what was measured in: temperatures, medium");
+    parser.add("--temperature", o.standard.temperature, "of the standard at the test, degrees C: its lengths are corrected from "
+               "--reference-temperature (default: not stated, and they are taken as certified)");
+    parser.add("--temperature-std", o.standard.std, "of --temperature, K, one standard deviation").check(notNegative()).captureDefault();
+    parser.add("--expansion", o.standard.expansion, "of the standard, 1e-6 per K: steel 11.5, aluminium 23, float glass 9");
+    parser.add("--expansion-std", o.standard.expansionStd, "of --expansion, 1e-6 per K (default: a tenth of it)").check(notNegative());
+    parser.add("--reference-temperature", o.standard.reference, "of the standard's certificate, degrees C").captureDefault();
+    o.label.addTo(parser);
 }
 
 //! What would fail at the end, after all the work.
@@ -103,12 +111,10 @@ void checkOptions(const Options& o, const std::string& settings)
         throw Failure("--points are measured already: leave --size and --square out");
     if (!o.boards.empty() && !o.plane.empty())
         throw Failure("--plane is for points that one camera saw: measure the board with refract_measure, and give --points");
-    if (!o.label.date.empty())
-        requireDate(o.label.date, "--date");
-    const bool isCountry = o.label.country.size() == 2 && std::all_of(o.label.country.begin(), o.label.country.end(),
-                                                                      [](char c) { return c >= 'A' && c <= 'Z'; });
-    if (!o.label.country.empty() && !isCountry)
-        throw Failure("--country=" + o.label.country + ": give two capital letters, as in --country=DE");
+    o.label.check();
+    if (o.standard.isStated() != (o.standard.expansion == o.standard.expansion))
+        throw Failure("--temperature and --expansion belong together: the standard's expansion (1e-6 per K) says what its temperature "
+                      "does");
     if (!o.certificate.empty())
         Plot::checkAvailable();
     std::vector<std::string> inputs = {o.calibration, o.points, o.lengths, settings};
@@ -128,14 +134,34 @@ std::optional<cv::Vec4d> planeOf(const Options& o, const Calibration& calibratio
     return std::nullopt;
 }
 
-std::optional<CalibratedVolume> volumeOf(const Options& o, const Calibration& calibration)
+TestVolume volumeOf(const Options& o, const Calibration& calibration)
 {
+    TestVolume volume(calibration.provenance.volume);
     if (o.volume.empty())
-        return calibration.provenance.volume;
+        return volume;
     const std::vector<double> v = parseNumbers(o.volume, "--volume");
     if (v.size() != 6 || !(v[0] < v[1] && v[2] < v[3] && v[4] < v[5]))
         throw Failure("--volume=" + o.volume + ": give xmin,xmax,ymin,ymax,zmin,zmax, each pair growing");
-    return CalibratedVolume{{v[0], v[2], v[4]}, {v[1], v[3], v[5]}};
+    volume.box = CalibratedVolume{{v[0], v[2], v[4]}, {v[1], v[3], v[5]}};
+    volume.isStated = true;
+    return volume;
+}
+
+//! In 1/K, the expansion's deviation as is usual where it is not said.
+StandardTemperature temperatureOf(const Options& o)
+{
+    const double PPM = 1e-6, USUAL = 0.1;
+    StandardTemperature standard = o.standard;
+    standard.expansionStd = PPM*(standard.expansionStd == standard.expansionStd ? standard.expansionStd
+                                                                               : USUAL*std::abs(standard.expansion));
+    standard.expansion *= PPM;
+    return standard;
+}
+
+std::string textOf(const StandardTemperature& standard)
+{
+    return !standard.isStated() ? "" : format("%.2f +- %.2g C, expansion (%.3g +- %.2g)e-6/K, certified at %.4g C", standard.temperature,
+                                              standard.std, 1e6*standard.expansion, 1e6*standard.expansionStd, standard.reference);
 }
 
 std::string unitOf(const Options& o, const Calibration& calibration)
@@ -198,16 +224,52 @@ std::vector<std::string> requireNoneCalibrated(const std::vector<std::string>& f
 
 std::vector<std::string> imagesOf(const TestPoints& points, const std::vector<CalibratedLength>& lengths)
 {
-    std::vector<std::string> images;
+    std::set<std::string> images;
     for (const CalibratedLength& length : lengths)
         for (size_t end : length.ends)
-            if (std::find(images.begin(), images.end(), points.points[end].image) == images.end())
-                images.push_back(points.points[end].image);
-    return images;
+            images.insert(points.points[end].image);
+    return {images.begin(), images.end()};
+}
+
+//! What sx, sy, sz say beside the pixels, and what that means for --pixel-sigma.
+std::vector<std::string> remarksOf(const PointErrors::Stated& stated, const Options& o)
+{
+    std::vector<std::string> remarks;
+    if (stated.more)
+        remarks.push_back("sx, sy, sz of some points say more than their pixels do, and are taken"
+                          + std::string(o.pixelSigma > 0 ? ": --pixel-sigma is not used for these" : ""));
+    if (stated.lessThanPixels)
+        remarks.push_back("sx, sy, sz of some points say less than their pixels and the calibration do, and are not used");
+    if (stated.lessThanCalibration)
+        remarks.push_back("sx, sy, sz are smaller than the calibration's part of them, which was added");
+    return remarks;
+}
+
+std::vector<std::string> remarksOfVolume(const TestVolume& volume, const std::optional<CalibratedVolume>& calibrated)
+{
+    if (!volume.isStated)
+        return {};
+    std::string text = "The volume is stated (--volume): " + volume.numbers();
+    if (!calibrated)
+        return {text + "; where the rig was calibrated is not known"};
+    text += "; calibrated was " + TestVolume(calibrated).numbers();
+    const bool isWithin = calibrated->contains(volume.box->least) && calibrated->contains(volume.box->most);
+    return {text + (isWithin ? "" : ", and outside of that the calibration extrapolates")};
+}
+
+std::vector<std::string> remarksOfMissing(const CertificateLabel& label, const StandardTemperature& standard)
+{
+    std::string text;
+    std::vector<std::string> missing = label.missing();
+    if (!standard.isStated())
+        missing.push_back("temperature of the standard (its lengths are taken as certified)");
+    for (const std::string& name : missing)
+        text += (text.empty() ? "Not stated: " : ", ") + name;
+    return text.empty() ? std::vector<std::string>() : std::vector<std::string>{text};
 }
 
 std::vector<std::string> noticesOf(const Options& o, const Calibration& calibration, const TestPoints& points, const PointErrors& errors,
-                                   bool imagesChecked)
+                                   bool imagesChecked, const std::vector<std::string>& images)
 {
     const std::string file = "'" + o.calibration + "'";
     std::vector<std::string> notices;
@@ -219,13 +281,24 @@ std::vector<std::string> noticesOf(const Options& o, const Calibration& calibrat
         notices.push_back("Whether images of the test calibrated, too, was not checked: "
                           + (calibration.provenance.images.empty() ? file + " does not name its images"
                              : std::string("the points have no pixels; give --images")));
+    const std::vector<std::string> sameNames = points.havePixels ? std::vector<std::string>() : namesThatCalibrated(images, calibration);
+    if (!sameNames.empty())
+        notices.push_back("Images of these names calibrated, and may be the same: " + listed(sameNames));
     if (!points.haveSigma)
         notices.push_back("The points have no sx, sy, sz: their noise is taken to be that of a pixel in the calibration");
     if (!points.havePixels)
         notices.push_back("The points have no pixels: each counts as seen by all cameras in whose images it is");
-    if (errors.added())
-        notices.push_back("sx, sy, sz are smaller than the calibration's part of them, which was added");
+    for (const std::string& remark : remarksOf(errors.stated(), o))
+        notices.push_back(remark);
     return notices;
+}
+
+//! All that was read.
+std::vector<std::string> filesOf(const Options& o, const TestData& data)
+{
+    std::vector<std::string> files = {o.calibration, o.points, o.lengths};
+    files.insert(files.end(), data.files.begin(), data.files.end());
+    return files;
 }
 
 void addInput(const std::string& what, const std::string& path, std::vector<CertificateInput>& inputs)
@@ -235,20 +308,16 @@ void addInput(const std::string& what, const std::string& path, std::vector<Cert
 }
 
 Certificate certificateOf(const Options& o, const Calibration& calibration, const Acceptance& acceptance, const PointErrors& errors,
-                          const TestData& data, const std::vector<std::string>& hashes, const Command& command)
+                          const TestData& data, const std::vector<std::string>& hashes, const CertificateLabel& label,
+                          const Command& command)
 {
     Certificate c;
-    c.label = o.label;
+    c.label = label;
+    c.temperature = textOf(temperatureOf(o));
     c.command = command.line();
     c.calibrationTime = calibration.time;
     c.calibrationVerdict = calibration.verdict;
     c.acceptance = &acceptance;
-    std::vector<std::string> inputs = {o.calibration, o.points, o.lengths};
-    inputs.insert(inputs.end(), data.files.begin(), data.files.end());
-    if (c.label.date.empty())
-        c.label.date = timeOfFiles(inputs).substr(0, 10);
-    if (c.label.serial.empty())
-        c.label.serial = calibration.label.serial;
     addInput("calibration", o.calibration, c.inputs);
     addInput("points", o.points, c.inputs);
     addInput("lengths", o.lengths, c.inputs);
@@ -290,21 +359,33 @@ int refract_accept_main(int argc, char** argv)
         const Calibration calibration = o.conditions.appliedTo(asCalibrated, o.calibration);
         requireWindows(calibration, o.calibration, o.noWindow);
         const std::optional<cv::Vec4d> plane = planeOf(o, calibration);
-        const std::optional<CalibratedVolume> volume = volumeOf(o, calibration);
+        const TestVolume volume = volumeOf(o, calibration);
         const std::string unit = unitOf(o, calibration);
-        const double pixelSigma = o.pixelSigma > 0 ? o.pixelSigma : pixelSigmaOf(calibration);
-        const TestData data = readData(o, calibration, pixelSigma, command.quiet());
+        const TestData data = readData(o, calibration, o.pixelSigma > 0 ? o.pixelSigma : pixelSigmaOf(calibration), command.quiet());
+        const CertificateLabel label = o.label.completed(calibration, o.calibration, filesOf(o, data));
         const std::vector<std::string> hashes = requireNoneCalibrated(data.files, calibration);
-        const std::vector<CalibratedLength> lengths = readLengths(o.lengths, data.points);
-        const bool byPixels = requireOtherImages(data.points, imagesOf(data.points, lengths), calibration);
-        const PointErrors errors(calibration, data.points, pixelSigma, plane);
+        std::vector<CalibratedLength> lengths = readLengths(o.lengths, data.points);
+        const std::vector<std::string> images = imagesOf(data.points, lengths);
+        const bool byPixels = requireOtherImages(data.points, images, calibration);
+        const bool isOwnBoard = areOfBoard(lengths, calibration.square);
+        for (CalibratedLength& length : lengths)
+            if (o.standard.isStated())
+                length = temperatureOf(o).applied(length);
+        const PixelNoise noise = pixelNoiseOf(calibration, data.points, o.pixelSigma);
+        const PointErrors errors(calibration, data.points, noise.sigma, plane);
         Acceptance acceptance = testLengths(data.points, errors, lengths, limit, volume);
         acceptance.unit = unit;
         acceptance.imagesChecked = byPixels || (!hashes.empty() && !calibration.provenance.images.empty());
-        acceptance.notices = noticesOf(o, calibration, data.points, errors, acceptance.imagesChecked);
+        acceptance.notices = noticesOf(o, calibration, data.points, errors, acceptance.imagesChecked, images);
+        acceptance.add(noise.remarks);
+        if (isOwnBoard)
+            acceptance.add({format("The lengths are those of a board with the square that calibrated (%.6g): if it is that board, the "
+                                   "scale is not tested; take another standard", calibration.square)});
+        acceptance.add(remarksOfVolume(volume, calibration.provenance.volume));
         if (o.conditions.isSaid())
-            acceptance.notices.push_back("The " + o.conditions.notice(asCalibrated));
-        const Certificate certificate = certificateOf(o, calibration, acceptance, errors, data, hashes, command);
+            acceptance.add({"The " + o.conditions.notice(asCalibrated)});
+        acceptance.add(remarksOfMissing(label, o.standard));
+        const Certificate certificate = certificateOf(o, calibration, acceptance, errors, data, hashes, label, command);
         writeOutputs(o, certificate);
         if (!command.quiet())
             printAcceptance(std::cout, acceptance, o.certificate);

@@ -21,7 +21,8 @@ If nothing changed, it says that something did with the probability --false-alar
 
 The charts (rig7.html, or --history-page) show drifts that no single check does: an EWMA of each parameter and T^2 of all, whose limits
 take into account that the calibration's own error is the same in all checks. --false-alarm (then 1/370) is for all charts and the
-check together. The images of each check must be new ones, and the calibration the same.
+check together. The images of each check must be new ones (one that was stored anew is known by where it shows the target), and the
+calibration the same. An edited or deleted record is told. Two checks at once wait for each other.
 
 --outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration.
 
@@ -43,7 +44,10 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 #include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
+#include "calibrate/calibration_images.hpp"
+#include "history/history_lock.hpp"
 #include "history/history_page.hpp"
+#include "measure/measurement.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
 #include <filesystem>
@@ -65,7 +69,7 @@ struct Options
     RigSources images;
     TargetOptions target;
     double falseAlarm = 0., detect = 0.1, sigma = 0.;
-    bool newPane = false;
+    bool newPane = false, fixedTarget = false;
     PaneStd pane = {0., 0.001, 0.};
     double wedgeMinutes = 1.;
     double placement = -1.;         //!< negative: that of the calibration
@@ -111,6 +115,8 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--history-page", o.page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
         .needs(history);
     parser.add("--time", o.time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)").needs(history);
+    parser.addFlag("--fixed-target", o.fixedTarget, "the target stands where it stood at the checks before: its images may look alike")
+        .needs(history);
     parser.add("--serial", o.serial, "serial number of the window that stands on it: must be that of calib.yml");
     parser.add("--drift", o.drift, "degrees a month: says within how many checks such a drift of a window is found, of a dome's "
         "centre as seen from a radius away")
@@ -193,6 +199,7 @@ struct NewImages
 {
     std::vector<View> views;
     std::vector<std::string> files;
+    std::vector<CalibrationImage> shown;
 };
 
 NewImages readViews(const Options& o, const Calibration& calibration, const Target& target, const Command& command)
@@ -210,6 +217,8 @@ NewImages readViews(const Options& o, const Calibration& calibration, const Targ
     NewImages result;
     for (const DetectedImages* set : sets.all())
         result.files.insert(result.files.end(), set->files.begin(), set->files.end());
+    for (const UsedImage& image : usedImages(sets))
+        result.shown.push_back(image.image);
     for (const View& view : groupIntoViews(&target, sets, false).views)
         if (view.hasGlass())
             result.views.push_back(view);
@@ -362,8 +371,8 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
     if (!result.windows.empty())
         table.print(std::cout);
     std::cout << '\n';
-    printLines(format("Noise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g.", result.sigmaSeen,
-                      input.sigma, o.falseAlarmOfCheck()));
+    printLines(format("Noise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g%s.", result.sigmaSeen,
+                      input.sigma, o.falseAlarm, o.hasHistory() ? ", of the charts and this check together" : ""));
 }
 
 //! A check among all others of its calibration.
@@ -371,24 +380,32 @@ class KeptCheck
 {
 public:
     //! @param calibration as it was read
-    KeptCheck(const Options& o, const Calibration& calibration) : o_(o), history_(readHistory(o.history))
+    KeptCheck(const Options& o, const Calibration& calibration)
+        : o_(o), calibration_(calibration), lock_(o.history), history_(readHistory(o.history))
     {
         Plot::checkAvailable("--history");
         requireSameRig(history_, o.history, calibration, o.calibration);
         covariance_ = toEigen(withWedges(checkInputOf(calibration, o.calibration, o.sigma)).covariance);
+        if (!o.time.empty())
+            requirePast(o.time, "--time");
         time_ = o.time.empty() ? timeOfNow() : parseTime(o.time, "--time");
     }
 
-    void requireNewImages(const std::vector<std::string>& files)
+    void requireNewImages(const NewImages& images)
     {
-        record_ = recordOf({{}, VectorXd(), MatrixXd(), MatrixXd()}, files, time_, history_);
-        requireNew(history_, o_.history, record_);
+        const double tolerance = o_.fixedTarget ? IDENTICAL : sameImageTolerance(pixelSigmaOf(calibration_));
+        record_ = recordOf({{}, VectorXd(), MatrixXd(), MatrixXd()}, images.files, time_, history_, images.shown);
+        requireNotCalibrated(record_, calibration_, tolerance);
+        requireNew(history_, o_.history, record_, tolerance);
     }
 
+    //! What of the history is not as it was written.
+    const std::vector<std::string>& broken() const { return history_.broken; }
+
     //! @param input of the check
-    void add(const CheckResult& check, const CheckInput& input, const std::vector<std::string>& files, const std::string& verdict)
+    void add(const CheckResult& check, const CheckInput& input, const NewImages& images, const std::string& verdict)
     {
-        record_ = recordOf(check.charted, files, time_, history_);
+        record_ = recordOf(check.charted, images.files, time_, history_, images.shown);
         record_.verdict = verdict;
         record_.sigma = check.sigma;
         record_.dof = input.dof;
@@ -433,13 +450,19 @@ public:
         for (const FoundDrift& f : result_.found)
             found.append({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", o_.drift}, {"drift_per_month", f.perMonth},
                           {"checks", f.checks}});
-        return {{"checks", history_.checks.size()}, {"alarm", isAlarm()}, {"beyond", result_.chartsBeyond(history_)},
+        return {{"checks", history_.checks.size()}, {"broken", history_.broken}, {"alarm", isAlarm()},
+                {"beyond", result_.chartsBeyond(history_)},
                 {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
                 {"ewma_limit", result_.points.back().limit}, {"found", found}};
     }
 
 private:
+    // Of an unmoved target's images no two have the same noise; a hundredth of a pixel is kept of each.
+    static constexpr double IDENTICAL = 0.008;
+
     const Options& o_;
+    const Calibration& calibration_;
+    HistoryLock lock_;
     CheckHistory history_;
     MatrixXd covariance_;
     std::string time_;
@@ -480,10 +503,13 @@ int refract_check_main(int argc, char** argv)
         std::unique_ptr<KeptCheck> kept;
         if (options.hasHistory())
             kept = std::make_unique<KeptCheck>(options, asCalibrated);
+        if (kept)
+            for (const std::string& sentence : kept->broken())
+                command.warn("'" + options.history + "' is not as it was written: " + sentence);
         CheckInput input = inputOf(options, calibration);
         const NewImages images = readViews(options, calibration, target, command);
         if (kept)
-            kept->requireNewImages(images.files);
+            kept->requireNewImages(images);
         addPlacement(options.placement, images.views, input);
         const CheckResult result = checkRig(input, images.views, options.falseAlarmOfCheck(), calibration.unit);
         const std::string why = whyNot(result, options, input);
@@ -497,7 +523,7 @@ int refract_check_main(int argc, char** argv)
         }
         if (kept)
         {
-            kept->add(result, input, images.files, verdict);
+            kept->add(result, input, images, verdict);
             isAlarm |= kept->isAlarm();
             if (isAlarm && !result.changed)
                 verdict = "drifted";

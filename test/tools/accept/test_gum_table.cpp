@@ -3,6 +3,7 @@
 
 // The budget of one quantity: its rows add up, and to what the quantity really errs by.
 #include "acceptance_scene.hpp"
+#include "accept/pixel_noise.hpp"
 
 using namespace acceptance_scene;
 
@@ -43,12 +44,12 @@ TEST_CASE("Rows of the budget of a point, a length and a plane add up in squares
     const RigPixels pixels = pixelsOf(modelOf(calibration), pointsOnPlane(), SIGMA, random);
     const TestPoints points = testPoints(calibration, pixels, SIGMA);
     const PointErrors errors(calibration, points, SIGMA, std::nullopt);
-    CHECK_FALSE(errors.added());
+    CHECK_FALSE((errors.stated().more || errors.stated().lessThanPixels || errors.stated().lessThanCalibration));
     for (const LinearQuantity& quantity : {coordinateOf(points, 0, 2), distanceOf(points, 0, 11), planeDistanceOf(points, "a")})
     {
         CAPTURE(quantity.name);
         REQUIRE_FALSE(quantity.weights.empty());
-        const GumTable table = errors.table(quantity, "certified", 0.02);
+        const GumTable table = errors.table(quantity, {{"certified", "", 0.01, 1.}});
         CHECK(squares(table)/(table.u*table.u) == Approx(1.).epsilon(0.01));
         CHECK(table.rows.back().contribution == Approx(0.01));
         CHECK(table.rows.back().sensitivity == Approx(1.));
@@ -109,8 +110,52 @@ TEST_CASE("Points that are only places have the same error, if their sx, sy, sz 
     for (TestPoint& point : points.points)
         point.sigma = Vec3d::all(1e-3);
     const PointErrors added(calibration, points, SIGMA, std::nullopt);
-    CHECK(added.added());
+    CHECK(added.stated().lessThanCalibration);
     CHECK(added.table(distanceOf(points, 0, 1)).u > 1e-3);
+}
+
+TEST_CASE("Beside pixels, sx, sy, sz that say less than these do not make a test better", "[gum]")
+{
+    const Calibration calibration = calibrated();
+    scenes::Random random(1236);
+    TestPoints points = testPoints(calibration, pixelsOf(modelOf(calibration), POINTS, 0., random), SIGMA);
+    const double u = PointErrors(calibration, points, SIGMA, std::nullopt).table(distanceOf(points, 0, 1)).u;
+    for (TestPoint& point : points.points)
+        point.sigma = Vec3d::all(1e-9);
+    const PointErrors less(calibration, points, SIGMA, std::nullopt);
+    CHECK(less.stated().lessThanPixels);
+    CHECK(less.table(distanceOf(points, 0, 1)).u == Approx(u));
+    for (TestPoint& point : points.points)
+        point.sigma = Vec3d::all(1.);
+    const PointErrors more(calibration, points, SIGMA, std::nullopt);
+    CHECK(more.stated().more);
+    CHECK(more.table(distanceOf(points, 0, 1)).u > 10.*u);
+}
+
+TEST_CASE("The noise of a pixel is what the points' own rays show, whatever is stated", "[gum]")
+{
+    const Calibration calibration = calibrated();
+    scenes::Random random(1237);
+    std::vector<Point3d> many;
+    for (int i = 0; i < 60; i++)
+        many.emplace_back(random.uniform(-90, 90), random.uniform(-60, 60), random.uniform(550, 650));
+    const TestPoints points = testPoints(calibration, pixelsOf(modelOf(calibration), many, SIGMA, random), SIGMA);
+    CHECK_THROWS_WITH(pixelNoiseOf(calibration, points, 1e-4), Catch::Contains("--pixel-sigma=0.0001") && Catch::Contains("noise of"));
+    const PixelNoise usual = pixelNoiseOf(calibration, points, 0.);
+    CHECK(usual.sigma == calibration.sigma);
+    CHECK(usual.remarks.empty());
+    // Sharper images than the calibration's may say so; noisier ones need not be told.
+    const TestPoints sharp = testPoints(calibration, pixelsOf(modelOf(calibration), many, 0.2*SIGMA, random), SIGMA);
+    const PixelNoise stated = pixelNoiseOf(calibration, sharp, 0.03);
+    CHECK(stated.sigma == 0.03);
+    CHECK(stated.remarks.size() == 1);
+    const TestPoints noisy = testPoints(calibration, pixelsOf(modelOf(calibration), many, 3*SIGMA, random), SIGMA);
+    const PixelNoise seen = pixelNoiseOf(calibration, noisy, 0.);
+    CHECK(seen.sigma == Approx(3*SIGMA).epsilon(0.3));
+    CHECK(seen.remarks.size() == 1);
+    TestPoints places = points;
+    places.havePixels = false;
+    CHECK_THAT(pixelNoiseOf(calibration, places, 0.01).remarks.at(0), Catch::Contains("is not used"));
 }
 
 TEST_CASE("Points of another calibration are refused", "[gum]")

@@ -271,6 +271,93 @@ TEST_CASE("A history survives its file, and a check that does not fit is refused
     }
 }
 
+TEST_CASE("A trend begins where it began, with a +- that is true, and a jump is none", "[history]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random random(6600);
+    const int checks = 12, trials = 400;
+    const double noise = 0.002, shared = 0.01, perMonth = 0.02, begun = 5.3, start = secondsOf("2024-01-01T00:00:00Z");
+    std::vector<double> months;
+    for (int t = 0; t < checks; t++)
+        months.push_back(t);
+    const MatrixXd S = noise*noise*MatrixXd::Identity(checks, checks) + shared*shared*MatrixXd::Ones(checks, checks);
+    const auto trendOf = [&](const std::function<double(double)>& change) {
+        VectorXd value(checks);
+        const double offset = random.normal(shared);
+        for (int t = 0; t < checks; t++)
+            value[t] = change(months[t]) + offset + random.normal(noise);
+        return trendThrough(months, value, S, 0.01, start);
+    };
+    double slope = 0., since = 0., reached = 0.;
+    int ramps = 0, falsely = 0, jumps = 0, lines = 0;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        const Trend trend = trendOf([&](double t) { return perMonth*std::max(0., t - begun); });
+        ramps += trend.since == trend.since;
+        slope += std::pow((trend.perMonth - perMonth)/trend.std, 2)/trials;
+        since += std::pow((trend.since - start - begun*MONTH)/trend.sinceStd, 2)/trials;
+        reached += std::pow((trend.reached - start - (begun + 0.01/perMonth)*MONTH)/(0.5*(trend.latest - trend.earliest)), 2)/trials;
+        falsely += trendOf([](double) { return 0.; }).isSignificant();
+        jumps += trendOf([&](double t) { return t > begun ? 0.05 : 0.; }).step == start + 5*MONTH;
+        const Trend line = trendOf([&](double t) { return perMonth*t; });
+        lines += std::isnan(line.since) && std::isnan(line.step);
+    }
+    std::cout << format("[numbers] trends of 12 checks from the 6th on: errors over stated +-, RMS: slope %.2f, beginning %.2f, time of "
+                        "the limit %.2f; significant without one %.1f %%\n", std::sqrt(slope), std::sqrt(since), std::sqrt(reached),
+                        100.*falsely/trials);
+    CHECK(ramps == trials);
+    CHECK(std::sqrt(slope) == Approx(1.).margin(0.15));
+    CHECK(std::sqrt(since) == Approx(1.).margin(0.15));
+    CHECK(std::sqrt(reached) == Approx(1.).margin(0.15));
+    CHECK(falsely < 0.1*trials);            // two standard deviations
+    CHECK(jumps >= 0.95*trials);
+    CHECK(lines >= 0.9*trials);
+}
+
+TEST_CASE("An edited or deleted check is told, at each reading", "[history]")
+{
+    scenes::Random random(6700);
+    RigWithHistory rig(allScenes()[0], random);
+    for (int t = 0; t < 3; t++)
+        rig.check(rig.rig.truth, random);
+    const TemporaryFolder folder;
+    const std::string file = folder / "history.json";
+    writeHistory(file, rig.history);
+    const CheckHistory whole = readHistory(file);
+    CHECK(whole.broken.empty());
+    const auto brokenAfter = [&](const std::function<void(CheckHistory&)>& edit) {
+        CheckHistory edited = whole;
+        edit(edited);
+        std::vector<std::string> told;
+        for (int reading = 0; reading < 2; reading++)       // it stays so when it is written again
+        {
+            writeHistory(file, edited);
+            edited = readHistory(file);
+            told = edited.broken;
+        }
+        return told;
+    };
+    CHECK(brokenAfter([](CheckHistory& h) { h.checks[1].score[0] += 1e-3; }).size() == 1);
+    CHECK(brokenAfter([](CheckHistory& h) { h.checks[2].verdict = "unchanged!"; }).size() == 1);
+    CHECK(brokenAfter([](CheckHistory& h) { h.checks.erase(h.checks.begin() + 1); }).size() == 1);
+    CHECK(brokenAfter([](CheckHistory& h) { h.checks.erase(h.checks.begin()); }).size() == 1);
+    // The last one, by hand.
+    writeHistory(file, whole);
+    std::ifstream in(file);
+    std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const size_t last = text.find(whole.checks[2].sha256, text.rfind("\"last\""));
+    REQUIRE(last != std::string::npos);
+    std::ofstream(file) << text.replace(last, 64, whole.checks[1].sha256);
+    CHECK(readHistory(file).broken.size() == 1);
+}
+
+TEST_CASE("A time to come is refused", "[history]")
+{
+    CHECK_THROWS_AS(requirePast("2999-01-01", "--time"), Failure);
+    CHECK_NOTHROW(requirePast(timeOfNow().substr(0, 10), "--time"));
+    CHECK_THROWS_AS(requireDate("2024-01-01T00:00", "--date"), Failure);
+}
+
 TEST_CASE("Times are read as ISO 8601 writes them", "[history]")
 {
     CHECK(parseTime("2026-11-26", "--time") == "2026-11-26T00:00:00Z");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 
 namespace {
 
@@ -77,7 +78,7 @@ bool hasProgram(const std::string& name) { return std::system(("command -v " + n
 
 } // namespace
 
-TEST_CASE("refract_accept decides with a guard band, and says it in ten lines", "[tools][accept_tool]")
+TEST_CASE("refract_accept decides with guard bands, and says it in a few lines", "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
     const TemporaryFolder out;
@@ -87,7 +88,9 @@ TEST_CASE("refract_accept decides with a guard band, and says it in ten lines", 
     CHECK(wide.code == 0);
     CHECK(wide.err.empty());
     CHECK(wide.out.compare(0, 6, "PASS: ") == 0);
-    CHECK(std::count(wide.out.begin(), wide.out.end(), '\n') <= 10);
+    CHECK(std::count(wide.out.begin(), wide.out.end(), '\n') <= 18);
+    CHECK(mentions(wide.out, "the scale"));        // lengths of the board that calibrated
+    CHECK(mentions(wide.out, "Not stated: laboratory"));
     CHECK(mentions(wide.out, "VDI/VDE 2634 part 1"));
     std::istringstream lines(wide.out);
     for (std::string line; std::getline(lines, line);)
@@ -154,8 +157,10 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
         html = readFile(out / "c.html");
         xml = readFile(out / "d.xml");
     }
-    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water",
-                             "Signature", "2+L/1000"})
+    for (const char* part : {"Wet &amp; &lt;Dry&gt;", "W-17", "Conforms: all 18 lengths", "<svg", "20 C, tap water", "signature",
+                             "2+L/1000",
+                             "Page 1 of 2", "Page 2 of 2", "ISO 14253-1:2017", "the calibrated volume, mm: x", "as it was at the test",
+                             "Authorised by", "Not stated: laboratory", "VDI/VDE 2634 part 1", "contribution, mm"})
     {
         CAPTURE(part);
         CHECK(mentions(html, part));
@@ -233,7 +238,136 @@ TEST_CASE("refract_accept refuses images that calibrated, and tells when it cann
     const nlohmann::json json = jsonOf(out / "s.json");
     CHECK(json["images_checked"] == false);
     CHECK(json["lengths"].size() == 3);
-    CHECK(json["notices"].size() == 3);
+    const std::string notices = json["notices"].dump();
+    for (const char* part : {"was not checked", "have no sx, sy, sz", "have no pixels"})
+        CHECK(mentions(notices, part));
+    // A name is all that can be told of points without pixels.
+    writeFile(out / "named.csv", "image,id,x,y,z\nview00,a,0,0,600\nview00,b,100,0,600\n");
+    writeFile(out / "named_lengths.csv", std::string(HEADING) + "l,view00,a,view00,b,100,0.1\n");
+    CHECK(mentions(runTool(bench.accept(out / "named.csv", out / "named_lengths.csv", "9")).out, "Images of these names calibrated"));
+}
+
+TEST_CASE("Images that calibrated are known again, stored anew or with points left out; a board next to where it was is not",
+          "[tools][accept_tool]")
+{
+    const Bench& bench = Bench::get();
+    const TemporaryFolder out;
+    scenes::Random random(4110);
+    // The calibrating corners with each moved by so much, of the first of which so many are left out.
+    const auto accept = [&](double noise, double shift, int leftOut) {
+        for (int camera : {1, 2})
+        {
+            std::istringstream in(readFile(bench.folder/format("glass%d.vnl", camera)));
+            std::ostringstream changed;
+            std::map<std::string, int> count;
+            for (std::string line; std::getline(in, line);)
+            {
+                std::istringstream words(line);
+                std::string name, rest;
+                double x, y;
+                if (line[0] == '#' || !(words >> name >> x >> y))
+                {
+                    changed << line << '\n';
+                    continue;
+                }
+                std::getline(words, rest);
+                if (count[name]++ < leftOut)
+                    changed << name << " - - -\n";
+                else
+                    changed << name << format(" %.6f %.6f", x + shift + random.normal(noise), y + random.normal(noise)) << rest << '\n';
+            }
+            writeFile(out/format("new%d.vnl", camera), changed.str());
+        }
+        writeFile(out / "l.csv", HEADING + format("side,,23,,29,%.4f,0.01\n", SQUARE));
+        return runTool(bench.start() + " " + out / "new1.vnl" + " " + out / "new2.vnl" + BOARD_OPTIONS + " --lengths=" + out / "l.csv"
+                       + " --max-error=5");
+    };
+    for (const auto& [noise, leftOut] : {std::make_pair(0., 0), {0.03, 0}, {0., 10}, {0.03, 20}})
+    {
+        const ToolResult same = accept(noise, 0., leftOut);
+        CAPTURE(noise, leftOut, same.out, same.err);
+        CHECK(same.code == 1);
+        CHECK(mentions(same.err, "these images calibrated, stored anew perhaps"));
+    }
+    const ToolResult near = accept(0.03, 0.8, 0);
+    CAPTURE(near.out, near.err);
+    CHECK(near.code == 0);
+}
+
+TEST_CASE("What would make a test better than it is, is refused or remarked", "[tools][accept_tool]")
+{
+    const Bench& bench = Bench::get();
+    const TemporaryFolder out;
+    const std::string points = bench.folder / "points.csv", lengths = bench.folder / "lengths.csv";
+    const ToolResult boards = runTool(bench.start() + " " + bench.fresh / "glass1.vnl" + " " + bench.fresh / "glass2.vnl" + BOARD_OPTIONS
+                                      + " --lengths=" + lengths + " --max-error=2 --pixel-sigma=0.0001");
+    CHECK(boards.code == 1);
+    CHECK(mentions(boards.err, "--pixel-sigma=0.0001"));
+    CHECK(runTool(bench.accept(points, lengths, "2") + " --pixel-sigma=0.0001").code == 1);
+
+    // sx, sy, sz beside pixels.
+    std::istringstream csv(readFile(points));
+    std::ostringstream better;
+    std::string line;
+    for (int row = 0; std::getline(csv, line); row++)
+    {
+        std::vector<std::string> cells;
+        std::istringstream in(line);
+        for (std::string cell; std::getline(in, cell, ',');)
+            cells.push_back(cell);
+        for (size_t i = 0; i < cells.size(); i++)
+            better << (i ? "," : "") << (row && i >= 9 && i <= 11 ? "1e-9" : cells[i]);
+        better << '\n';
+    }
+    writeFile(out / "better.csv", better.str());
+    REQUIRE(mentions(readFile(points), "x,y,z,sx,sy,sz"));
+    const auto largestU = [&](const std::string& file, const std::string& more) {
+        const ToolResult result = runTool(bench.accept(file, lengths, "2") + " --summary=" + out / "s.json" + more);
+        CAPTURE(result.err);
+        REQUIRE(result.code == 0);
+        double U = 0.;
+        const nlohmann::json summary = jsonOf(out / "s.json");
+        for (const auto& length : summary["lengths"])
+            U = std::max(U, length["U"].get<double>());
+        return U;
+    };
+    const double U = largestU(points, "");
+    CHECK(largestU(out / "better.csv", "") == Approx(U).epsilon(0.02));
+    CHECK(mentions(jsonOf(out / "s.json")["notices"].dump(), "are not used"));
+
+    // A volume of one's own: its numbers, and whose it is.
+    largestU(points, " --volume=-10,10,-10,10,500,510 --certificate=" + out / "c.html");
+    CHECK(mentions(jsonOf(out / "s.json")["notices"].dump(), "The volume is stated (--volume): x -10 ... 10"));
+    CHECK(mentions(readFile(out / "c.html"), "dashed: the stated volume"));
+
+    // The standard is 10 K warmer than its certificate.
+    largestU(points, " --temperature=30 --temperature-std=1 --expansion=23");
+    const nlohmann::json warm = jsonOf(out / "s.json");
+    CHECK(warm["lengths"][0]["length"].get<double>() == Approx(5*SQUARE*(1 + 23e-6*10)).margin(1e-6));
+    bool hasRow = false;
+    for (const auto& row : warm["budgets"][0]["rows"])
+        if (row["source"] == "temperature of the standard")
+        {
+            hasRow = true;
+            CHECK(row["contribution"].get<double>() == Approx(23e-6*SQUARE*4).epsilon(0.7));
+        }
+    CHECK(hasRow);
+}
+
+TEST_CASE("A certificate is well-formed whatever letters are given", "[tools][accept_tool]")
+{
+    const Bench& bench = Bench::get();
+    const TemporaryFolder out;
+    const ToolResult latin = bench.run(out, "\"a <b>&\xE9\",view00,0,view00,5,195,0.1\n");
+    CHECK(latin.code == 1);
+    CHECK(mentions(latin.err, "not UTF-8"));
+    CHECK(mentions(bench.run(out, "a,view00,0,view00,5,195,0.1\n", " --max-error=1 --customer='\xE9'").err, "--customer"));
+    writeFile(out / "caf\xE9.csv", readFile(bench.folder / "points.csv"));
+    const ToolResult named = runTool(bench.accept("'" + out / "caf\xE9.csv'", bench.folder / "lengths.csv", "2") + " --quiet --dcc="
+                                     + out / "d.xml");
+    CAPTURE(named.err);
+    CHECK(named.code == 0);
+    CHECK(mentions(readFile(out / "d.xml"), "caf\xEF\xBF\xBD.csv"));
 }
 
 TEST_CASE("refract_accept says what is wrong in one sentence", "[tools][accept_tool]")
@@ -258,6 +392,10 @@ TEST_CASE("refract_accept says what is wrong in one sentence", "[tools][accept_t
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1+L", "grows with the tested length"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --date=2026-02-30", "year-month-day"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --country=Germany", "two capital letters"},
+        {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --date=2999-01-01", "in the future"},
+        {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --date=1999-01-01", "was calibrated later"},
+        {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --serial=W-18", "is of 'W-17'"},
+        {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --temperature=21", "belong together"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --volume=1,0,1,2,3,4", "each pair growing"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --unit=m", "is in mm"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --size=6x5 --square=39", "leave --size and --square out"},

@@ -4,6 +4,8 @@
 // refract_check --history as a user runs it, month after month.
 #include "calib_scene.hpp"
 #include <nlohmann/json.hpp>
+#include <filesystem>
+#include <thread>
 
 using namespace calib_scene;
 
@@ -68,9 +70,16 @@ TEST_CASE("refract_check --history keeps checks, finds a drift and refuses what 
     const std::string third = other / "third.yml";
     writeFile(third, std::string(text).replace(text.find("W-0042", text.find("\nwindow_serial")), 6, "W-0043"));
     writeFile(folder / "none.json", "{\"checks\": []}");
+    // Last month's corners with a comment added, as another file.
+    const TemporaryFolder again;
+    for (const char* name : {"direct1.vnl", "glass1.vnl", "direct2.vnl", "glass2.vnl"})
+        writeFile(again/name, readFile(february/name) + "# new\n");
     const struct { std::string command, says; } cases[] = {
         {check(calibration, january, history + " --time=2026-03-15"), "already"},
         {check(calibration, march, history + " --time=2026-01-01"), "backwards"},
+        {check(calibration, march, history + " --time=2999-01-01"), "in the future"},
+        {check(calibration, again, history + " --time=2026-03-15"), "stored anew"},
+        {check(calibration, folder, history + " --time=2026-03-15"), "' of camera 1 calibrated"},
         {check(calibration, march, history + " --time=15.3.2026"), "--time=15.3.2026"},
         {check(calibration, march, history + " --serial=W-0043"), "W-0042"},
         {check(third, march, history), "another rig"},
@@ -90,10 +99,22 @@ TEST_CASE("refract_check --history keeps checks, finds a drift and refuses what 
         CHECK(readFile(folder / "rig.json") == kept);
     }
 
+    // Two at once: none is lost.
+    const TemporaryFolder april, may;
+    writeMonth(april, 8004, 0.);
+    writeMonth(may, 8005, 0.);
+    std::filesystem::copy_file(folder / "rig.json", folder / "two.json");
+    std::thread other1([&] { runTool(check(calibration, april, " --history=" + folder / "two.json --time=2026-05-15")); });
+    runTool(check(calibration, may, " --history=" + folder / "two.json --time=2026-05-15"));
+    other1.join();
+    CHECK(nlohmann::json::parse(readFile(folder / "two.json"))["checks"].size() == 4);
+    CHECK_FALSE(std::filesystem::exists(folder / "two.json.lock"));
+
     const ToolResult moved = runTool(check(calibration, march, history + " --time=2026-03-15 --summary=" + folder / "check.json"));
     INFO(moved.out << moved.err);
     CHECK(moved.code == 2);
     CHECK(mentions(moved.out, "window of camera 2: tilt has changed by"));
+    CHECK(mentions(moved.out, "0.0027027, of the charts and this check together"));
     const nlohmann::json json = nlohmann::json::parse(readFile(folder / "check.json"));
     CHECK(json["history"]["checks"] == 3);
     CHECK(json["history"]["alarm"] == true);

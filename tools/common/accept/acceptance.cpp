@@ -4,16 +4,32 @@
 #include "accept/acceptance.hpp"
 #include "accept/measuring_lines.hpp"
 #include "console/failure.hpp"
+#include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tools {
 
-Decision decide(double error, double U, double limit)
+const char* const DECISION_RULE = "ISO 14253-1:2017 with guard bands of expanded uncertainties for 95.45 %, as its editions of 1998 and "
+    "2013 had them (its own default, a conformance probability of 95 %, is 1.65 u). "
+    "Pass: |error| + U <= limit, U with the rig's calibration. "
+    "Fail: |error| - U of the test > limit, with the certified length, its temperature and the noise of the points' pixels, without the "
+    "calibration of the rig, which is what is tested. Else undecided";
+
+Decision decide(double error, double U, double testU, double limit)
 {
     if (std::abs(error) + U <= limit)
         return Decision::PASS;
-    return std::abs(error) - U > limit ? Decision::FAIL : Decision::UNDECIDED;
+    return std::abs(error) - testU > limit ? Decision::FAIL : Decision::UNDECIDED;
+}
+
+std::string TestVolume::numbers() const
+{
+    if (!box)
+        return "not known";
+    const cv::Point3d& p = box->least, & q = box->most;
+    return cv::format("x %.4g ... %.4g, y %.4g ... %.4g, z %.4g ... %.4g", p.x, q.x, p.y, q.y, p.z, q.z);
 }
 
 std::string textOf(Decision decision)
@@ -57,23 +73,70 @@ double Acceptance::rms() const
     return std::sqrt(squares/lengths.size());
 }
 
+std::vector<std::string> Acceptance::remarks() const
+{
+    std::vector<std::string> all = notices;
+    if (const std::optional<CommonScale> scale = commonScale(lengths))
+        all.insert(all.begin(), scale->sentence());
+    if (outside())
+        all.push_back(cv::format("Outside of %s (marked *): %d of %zu lengths", volume.name().c_str(), outside(), lengths.size()));
+    std::string lacks;
+    for (const std::string& part : missing)
+        lacks += (lacks.empty() ? "" : "; ") + part;
+    if (!lacks.empty())
+        all.push_back("VDI/VDE 2634 part 1 asks for more: " + lacks);
+    return all;
+}
+
+std::string CommonScale::sentence() const
+{
+    const std::string sign = value > 0 ? "+" : "";
+    return "All errors share one scale, " + sign + plusMinus(100.*value, 100.*std)
+        + cv::format(" %% (%d of %d have its sign): look at the square of the board that calibrated, and at the standard", ofOneSign,
+                     count);
+}
+
+/* Least squares with the test's own errors; those of one certificate may be common, which no scatter shows: a scale is known no better than
+the best of the lengths. */
+std::optional<CommonScale> commonScale(const std::vector<LengthResult>& lengths)
+{
+    const size_t FEWEST = 3;
+    const double CLEAR = 3., EXPLAINS = 0.5, NEARLY_ALL = 0.9;
+    double weights = 0., sum = 0., squares = 0., common = std::numeric_limits<double>::infinity();
+    for (const LengthResult& r : lengths)
+    {
+        const double u = 0.5*r.testU()/r.length.length, scale = r.error/r.length.length;
+        weights += 1./(u*u);
+        sum += scale/(u*u);
+        squares += scale*scale/(u*u);
+        common = std::min(common, 0.5*r.length.U/r.length.length);
+    }
+    CommonScale scale{sum/weights, std::hypot(1./std::sqrt(weights), common), 0, (int)lengths.size()};
+    for (const LengthResult& r : lengths)
+        scale.ofOneSign += r.error*scale.value > 0;
+    const bool explains = squares - sum*scale.value < EXPLAINS*squares && scale.ofOneSign >= NEARLY_ALL*scale.count;
+    if (lengths.size() < FEWEST || !(std::abs(scale.value) > CLEAR*scale.std) || !explains)
+        return std::nullopt;
+    return scale;
+}
+
 Acceptance testLengths(const TestPoints& points, const PointErrors& errors, const std::vector<CalibratedLength>& lengths,
-                       const PermissibleError& limit, const std::optional<CalibratedVolume>& volume)
+                       const PermissibleError& limit, const TestVolume& volume)
 {
     Acceptance result{points, limit, {}, volume, {}, {}, "", false};
     for (const CalibratedLength& length : lengths)
     {
         const LinearQuantity distance = distanceOf(points, length.ends[0], length.ends[1]);
         LengthResult r{length, distance.value, distance.value - length.length, limit.of(length.length), GumTable(), Decision::UNDECIDED};
-        r.budget = errors.table(distance, "the length as certified", length.U);
+        r.budget = errors.table(distance, sourcesOf(length));
         r.budget.quantity = "error of the length '" + length.name + "'";
         r.budget.value = r.error;
         if (!std::isfinite(r.budget.U))
             throw Failure("the uncertainty of the length '" + length.name + "' is not known: its points are seen by fewer cameras than it "
                           "takes, or the calibration has no noise of a pixel; calibrate with refract_calib, or give --pixel-sigma");
-        r.decision = decide(r.error, r.budget.U, r.limit);
+        r.decision = decide(r.error, r.U(), r.testU(), r.limit);
         for (size_t end : length.ends)
-            r.outside = r.outside || (volume && !volume->contains(points.points[end].X));
+            r.outside = r.outside || (volume.box && !volume.box->contains(points.points[end].X));
         result.lengths.push_back(r);
     }
     result.missing = missingOf(result);

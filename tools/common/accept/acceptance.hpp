@@ -7,15 +7,33 @@
 #include "accept/gum_table.hpp"
 #include "accept/lengths.hpp"
 
-/* An acceptance test: errors of indication of calibrated lengths against what is permitted, decided with a guard band (ISO 14253-1):
+/* An acceptance test: errors of indication of calibrated lengths against what is permitted, decided with guard bands (ISO 14253-1):
 
-    conforms:   |error| + U <= limit,       does not:   |error| - U > limit,       else undecided. */
+    conforms:   |error| + U <= limit,       does not:   |error| - U_test > limit,       else undecided.
+
+U_test is of the test alone: the certified length, its temperature, the noise of the points' pixels. U has what the rig's own calibration
+may err by, too. What a rig errs by is what is tested: it may not excuse a failure by how badly it is known, but a pass must hold wherever
+in its volume it measures. */
 namespace tools {
 
 enum class Decision { PASS, FAIL, UNDECIDED };
 
-Decision decide(double error, double U, double limit);
+Decision decide(double error, double U, double testU, double limit);
 std::string textOf(Decision decision);
+//! The rule with its edition and guard bands, for whoever signs.
+extern const char* const DECISION_RULE;
+
+//! In which lengths are tested.
+struct TestVolume
+{
+    std::optional<CalibratedVolume> box;    //!< none: not known
+    bool isStated = false;                  //!< by --volume; else it is where the rig was calibrated
+
+    TestVolume(const std::optional<CalibratedVolume>& ofCalibration = std::nullopt) : box(ofCalibration) {}
+    std::string name() const { return isStated ? "the stated volume" : "the calibrated volume"; }
+    //! "x -100 ... 100, y -80 ... 80, z 500 ... 700"
+    std::string numbers() const;
+};
 
 struct LengthResult
 {
@@ -23,9 +41,10 @@ struct LengthResult
     double measured, error, limit;
     GumTable budget;                    //!< of the error
     Decision decision;
-    bool outside = false;               //!< an end is not in the calibrated volume
+    bool outside = false;               //!< an end is not in the volume
 
     double U() const { return budget.U; }
+    double testU() const { return budget.testU; }
     //! What of the limit is used up, U included: above 1 it does not pass.
     double used() const { return (std::abs(error) + U())/limit; }
 };
@@ -35,23 +54,37 @@ struct Acceptance
     TestPoints points;
     PermissibleError limit;
     std::vector<LengthResult> lengths;
-    std::optional<CalibratedVolume> volume;
+    TestVolume volume;
     std::vector<std::string> missing;   //!< against VDI/VDE 2634 part 1, half a sentence each
     std::vector<std::string> notices;   //!< what the reader should know, a sentence each
     std::string unit;
     bool imagesChecked = false;         //!< that none of them calibrated
 
+    void add(const std::vector<std::string>& more) { notices.insert(notices.end(), more.begin(), more.end()); }
     Decision decision() const;          //!< of all lengths: one that fails is enough, one that is undecided too
     int count(Decision decision) const;
     int outside() const;
+    std::vector<std::string> remarks() const;   //!< all that a reader should know, a sentence each: screen and paper have the same
     const LengthResult& decisive() const;       //!< that uses most of its limit
     const LengthResult& largest() const;        //!< error
     double rms() const;
 };
 
-//! Errors and decisions. @param volume in which the rig is calibrated; none: not known
+//! Errors and decisions.
 Acceptance testLengths(const TestPoints& points, const PointErrors& errors, const std::vector<CalibratedLength>& lengths,
-                       const PermissibleError& limit, const std::optional<CalibratedVolume>& volume);
+                       const PermissibleError& limit, const TestVolume& volume);
+
+//! A factor that all errors share, error = scale*length: a wrong square of the board that calibrated makes one.
+struct CommonScale
+{
+    double value, std;                  //!< std: by the test's own errors
+    int ofOneSign, count;
+
+    //! "All errors share one scale, +0.100 +- 0.003 % (24 of 24 have its sign): ..."
+    std::string sentence() const;
+};
+//! None: fewer than three lengths, or the errors do not show it.
+std::optional<CommonScale> commonScale(const std::vector<LengthResult>& lengths);
 
 } // namespace tools
 

@@ -5,6 +5,7 @@
 #include "console/colour.hpp"
 #include "console/json.hpp"
 #include "console/lines.hpp"
+#include "console/rounded.hpp"
 #include "console/table.hpp"
 #include "report/digest.hpp"
 #include <algorithm>
@@ -15,14 +16,16 @@ namespace tools {
 
 namespace {
 
+const size_t MOST_LINES = 18;           // with remarks: a terminal shows them without scrolling
+
 std::string verdictOf(const Acceptance& a)
 {
     const int passed = a.count(Decision::PASS), failed = a.count(Decision::FAIL), undecided = a.count(Decision::UNDECIDED);
     switch (a.decision())
     {
     case Decision::PASS: return format("PASS: all %d lengths are within their limits, U included", passed);
-    case Decision::FAIL: return format("FAIL: of %zu lengths %d are beyond their limits by more than U, %d undecided", a.lengths.size(),
-                                       failed, undecided);
+    case Decision::FAIL: return format("FAIL: of %zu lengths %d are beyond their limits by more than the test's own U, %d undecided",
+                                       a.lengths.size(), failed, undecided);
     default: return format("UNDECIDED: of %zu lengths %d are within their limits, U included; %d are within U of them", a.lengths.size(),
                            passed, undecided);
     }
@@ -30,7 +33,9 @@ std::string verdictOf(const Acceptance& a)
 
 std::string resultOf(const LengthResult& r, const std::string& unit)
 {
-    return format("%+.4f %s, U %.4f, limit %.4f: '", r.error, unit.c_str(), r.U(), r.limit) + r.length.name + "'";
+    const int decimals = decimalsOf(r.U());
+    return rounded(r.error, decimals, true) + " " + unit + ", U " + rounded(r.U(), decimals)
+        + format(", limit %.6g: '", r.limit) + r.length.name + "'";
 }
 
 //! The three largest.
@@ -52,56 +57,67 @@ std::string orBlank(double number) { return std::isnan(number) ? "" : format("%.
 
 void printAcceptance(std::ostream& out, const Acceptance& a, const std::string& certificate)
 {
-    std::string missing;
-    for (const std::string& part : a.missing)
-        missing += (missing.empty() ? "" : "; ") + part;
     std::vector<std::string> facts = {"Nearest to its limit, U included: " + resultOf(a.decisive(), a.unit),
                                       "Largest error: " + resultOf(a.largest(), a.unit)};
     if (a.decisive().length.name == a.largest().length.name)
         facts.erase(facts.begin());
     facts.push_back(format("Errors %.2g %s RMS; U of the first is made of: ", a.rms(), a.unit.c_str()) + madeOf(a.decisive().budget));
-    if (a.outside())
-        facts.push_back(format("Outside of the calibrated volume (marked *): %d of %zu lengths", a.outside(), a.lengths.size()));
-    facts.insert(facts.end(), a.notices.begin(), a.notices.end());
-    if (!missing.empty())
-        facts.push_back("VDI/VDE 2634 part 1 asks for more: " + missing);
-    const std::string more = "More: --verbose, " + (certificate.empty() ? "--certificate=certificate.html" : certificate);
+    const std::vector<std::string> remarks = a.remarks();
+    facts.insert(facts.end(), remarks.begin(), remarks.end());
+    std::string more = "More: --verbose, " + (certificate.empty() ? "--certificate=certificate.html" : certificate);
 
     const Tone tone = a.decision() == Decision::PASS ? Tone::GOOD : a.decision() == Decision::FAIL ? Tone::BAD : Tone::DOUBTFUL;
-    size_t room = DIGEST_LINES - 1;
+    size_t room = MOST_LINES - 1;
     for (const std::string& line : brokenInto(verdictOf(a), DIGEST_COLUMNS, "  ", LongWords::BROKEN))
     {
         out << toned(out, line, tone) << '\n';
         room--;
     }
+    int untold = 0;
     for (const std::string& fact : facts)
     {
-        const std::vector<std::string> lines = firstOf(brokenInto(fact, DIGEST_COLUMNS, "  ", LongWords::BROKEN), room, DIGEST_COLUMNS);
+        const std::vector<std::string> lines = brokenInto(fact, DIGEST_COLUMNS, "  ", LongWords::BROKEN);
+        untold += lines.size() > room;
+        if (lines.size() > room)
+            continue;
         room -= lines.size();
         for (const std::string& line : lines)
             out << line << '\n';
     }
+    if (untold)
+        more = format("%d remark%s ", untold, untold == 1 ? "" : "s") + "more: " + more.substr(more.find(' ') + 1);
     out << firstOf(brokenInto(more, DIGEST_COLUMNS, "  ", LongWords::BROKEN), 1, DIGEST_COLUMNS)[0] << '\n';
 }
 
 void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTable>& budgets)
 {
-    Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "limit", "decision"});
+    Table table({"length" + (a.unit.empty() ? "" : ", " + a.unit), "certified", "measured", "error", "U", "k", "U of test", "limit",
+                 "decision"});
     for (const LengthResult& r : a.lengths)
-        table.add({r.length.name, format("%.4f", r.length.length), format("%.4f", r.measured), format("%+.4f", r.error),
-                   format("%.4f", r.U()), format("%.2f", r.budget.k), format("%.4f", r.limit),
-                   textOf(r.decision) + (r.outside ? " *" : "")});
+    {
+        const int decimals = decimalsOf(r.U());
+        table.add({r.length.name, rounded(r.length.length, decimalsOf(r.length.U)), rounded(r.measured, decimals),
+                   rounded(r.error, decimals, true), rounded(r.U(), decimals), format("%.2f", r.budget.k),
+                   rounded(r.testU(), decimalsOf(r.testU())), format("%.6g", r.limit), textOf(r.decision) + (r.outside ? " *" : "")});
+    }
     out << '\n';
     table.print(out);
+    out << "\nDecision: " << DECISION_RULE << ".\n";
+    for (const std::string& remark : a.remarks())
+        out << "Remark: " << remark << ".\n";
     for (const GumTable& budget : budgets)
     {
-        out << '\n' << budget.quantity << format(": %.5g", budget.value) << "\n\n";
-        Table rows({"source", "standard uncertainty", "sensitivity", "contribution", "share, %", "degrees of freedom"});
+        const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
+        const auto ofU = [&](double value) { return rounded(value, decimalsOf(budget.u) + 1); };
+        out << '\n' << budget.quantity << ": " << rounded(budget.value, decimalsOf(budget.U)) << (a.unit.empty() ? "" : " " + a.unit)
+            << "\n\n";
+        Table rows({"source", "standard uncertainty", "sensitivity" + (a.unit.empty() ? "" : unit + " per its unit"), "contribution" + unit,
+                    "share, %", "degrees of freedom"});
         for (const GumRow& row : budget.rows)
             rows.add({row.source, std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given,
-                      orBlank(row.sensitivity), format("%.5f", row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
-        rows.add({"u; effective degrees of freedom", "", "", format("%.5f", budget.u), "100.0", textOfDof(budget.dof)});
-        rows.add({format("U (k = %.2f, 95.45 %%)", budget.k), "", "", format("%.5f", budget.U), "", ""});
+                      orBlank(row.sensitivity), ofU(row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
+        rows.add({"u; effective degrees of freedom", "", "", ofU(budget.u), "100.0", textOfDof(budget.dof)});
+        rows.add({format("U (k = %.2f, 95.45 %%)", budget.k), "", "", rounded(budget.U, decimalsOf(budget.U)), "", ""});
         rows.print(out);
     }
 }
@@ -112,7 +128,8 @@ std::string certificateJson(const Certificate& c)
     Json lengths = Json::array(), budgets = Json::array(), inputs = Json::array();
     for (const LengthResult& r : a.lengths)
         lengths.append({{"name", r.length.name}, {"length", r.length.length}, {"length_U", r.length.U}, {"measured", r.measured},
-                        {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", r.budget.dof}, {"limit", r.limit},
+                        {"error", r.error}, {"U", r.U()}, {"k", r.budget.k}, {"dof", r.budget.dof}, {"test_U", r.testU()},
+                        {"limit", r.limit},
                         {"decision", textOf(r.decision)}, {"outside_volume", r.outside}});
     for (const GumTable& budget : c.budgets)
     {
@@ -126,7 +143,8 @@ std::string certificateJson(const Certificate& c)
     }
     for (const CertificateInput& input : c.inputs)
         inputs.append({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
-    const Json json = {{"decision", textOf(a.decision())}, {"number", c.number()}, {"date", c.label.date}, {"unit", a.unit},
+    const Json json = {{"decision", textOf(a.decision())}, {"number", c.number()}, {"date", c.label.date}, {"issued", c.label.issued},
+                       {"unit", a.unit}, {"rule", DECISION_RULE}, {"remarks", a.remarks()},
                        {"max_error", a.limit.text()}, {"images_checked", a.imagesChecked}, {"lengths", lengths}, {"budgets", budgets},
                        {"missing", a.missing}, {"notices", a.notices}, {"inputs", inputs}, {"command", c.command},
                        {"version", REFRACT_VERSION}};

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-//! Ten lines of 80 columns: the decision, what it rests on, what is missing. @param certificate its file; empty: none
+//! Some lines of 80 columns: the decision, what it rests on, what is missing. @param certificate its file; empty: none
 void printAcceptance(std::ostream& out, const Acceptance& acceptance, const std::string& certificate);
 
 //! Every length, then the budgets.

@@ -4,13 +4,12 @@
 #include "accept/certificate.hpp"
 #include "accept/certificate_template.hpp"
 #include "accept/error_plot.hpp"
-#include "console/failure.hpp"
+#include "console/rounded.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
 #include "report/page_template.hpp"
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <numeric>
 
@@ -54,12 +53,14 @@ PageList lengthsOf(const Acceptance& a)
         const LengthResult& r = a.lengths[i];
         PageValues row;
         row.set("name", shortened(r.length.name, LONG_NAME));
-        row.set("nominal", format("%.4f", r.length.length));
-        row.set("measured", format("%.4f", r.measured));
-        row.set("error", format("%+.4f", r.error));
-        row.set("U", format("%.4f", r.U()));
+        const int decimals = decimalsOf(r.U());
+        row.set("nominal", rounded(r.length.length, decimalsOf(r.length.U)));
+        row.set("measured", rounded(r.measured, decimals));
+        row.set("error", rounded(r.error, decimals, true));
+        row.set("U", rounded(r.U(), decimals));
         row.set("k", format("%.2f", r.budget.k));
-        row.set("limit", format("%.4f", r.limit));
+        row.set("test_U", rounded(r.testU(), decimalsOf(r.testU())));
+        row.set("limit", format("%.6g", r.limit));
         row.set("decision", textOf(r.decision) + (r.outside ? " *" : ""));
         row.set("class", textOf(r.decision));
         list.push_back(row);
@@ -94,7 +95,7 @@ PageList budgetOf(const GumTable& table)
         entry.set("source", row.source);
         entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given);
         entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
-        entry.set("contribution", format("%.5f", row.contribution));
+        entry.set("contribution", rounded(row.contribution, decimalsOf(table.u) + 1));
         entry.set("share", format("%.1f", 100.*row.share));
         entry.set("dof", std::isnan(row.dof) ? "" : dofText(row.dof));
         rows.push_back(entry);
@@ -104,9 +105,10 @@ PageList budgetOf(const GumTable& table)
 
 void setLabel(PageValues& page, const CertificateLabel& label)
 {
-    page.set("date", label.date);
-    for (const auto& entry : {std::make_pair("serial", label.serial), {"customer", label.customer}, {"laboratory", label.laboratory},
-                              {"person", label.person}, {"standard", label.standard}, {"environment", label.environment}})
+    for (const auto& entry : {std::make_pair("date", label.date), {"issued", label.issued}, {"serial", label.serial},
+                              {"customer", label.customer}, {"laboratory", label.laboratory}, {"address", label.address},
+                              {"person", label.person}, {"approver", label.approver}, {"standard", label.standard},
+                              {"traceability", label.traceability}, {"environment", label.environment}})
         page.set(entry.first, orNotStated(entry.second));
 }
 
@@ -116,7 +118,7 @@ std::string verdictOf(const Acceptance& a)
     switch (a.decision())
     {
     case Decision::PASS: return format("Conforms: all %zu lengths are within the limit, their uncertainty included", a.lengths.size());
-    case Decision::FAIL: return format("Does not conform: %d of %zu lengths are beyond the limit by more than their uncertainty",
+    case Decision::FAIL: return format("Does not conform: %d of %zu lengths are beyond the limit by more than the uncertainty of the test",
                                        a.count(Decision::FAIL), a.lengths.size());
     default: return "Undecided: " + all + " are within the limit, their uncertainty included; of the others the uncertainty is too large "
                     "to decide";
@@ -138,15 +140,6 @@ PageList inputsOf(const Certificate& c)
 }
 
 } // namespace
-
-void requireDate(const std::string& date, const std::string& option)
-{
-    std::tm parts = {};
-    const char* const end = date.size() == 10 ? strptime(date.c_str(), "%Y-%m-%d", &parts) : nullptr;
-    std::tm same = parts;
-    if (!end || *end != 0 || timegm(&same) == -1 || same.tm_mday != parts.tm_mday || date[4] != '-' || date[7] != '-')
-        throw Failure(option + "=" + date + ": give a day as year-month-day, as in " + option + "=2026-11-26");
-}
 
 std::string Certificate::number() const
 {
@@ -173,21 +166,20 @@ std::string certificateHtml(const Certificate& c)
     page.set("has_more_lengths", partly);
     page.set("more_lengths", format("The %zu of %zu lengths that use most of their limit; the others are in the DCC.", LENGTHS_ON_PAGE,
                                     a.lengths.size()));
-    page.set("has_outside", a.outside() > 0);
-    page.set("summary", format("Largest error of indication %+.4f, root mean square %.4f.", a.largest().error, a.rms()));
+    page.set("volume_name", a.volume.name());
+    page.set("volume", a.volume.numbers());
+    const int decimals = decimalsOf(a.largest().U());
+    page.set("summary", "Largest error of indication " + rounded(a.largest().error, decimals, true) + ", root mean square "
+             + rounded(a.rms(), decimals) + ".");
+    page.set("rule", DECISION_RULE);
+    page.set("temperature", orNotStated(c.temperature));
     const GumTable& budget = c.budgets[0];
     page.set("budget", budgetOf(budget));
     page.set("budget_of", budget.quantity);
-    page.set("budget_result", format("u = %.5f, effective degrees of freedom %s, k = %.2f, U = %.5f", budget.u,
-                                     dofText(budget.dof).c_str(), budget.k, budget.U));
-    std::vector<std::string> remarks = a.notices;
-    if (!a.missing.empty())
-    {
-        std::string text = "Not a whole test after VDI/VDE 2634 part 1: ";
-        for (size_t i = 0; i < a.missing.size(); i++)
-            text += (i ? "; " : "") + a.missing[i];
-        remarks.push_back(text);
-    }
+    page.set("budget_result", "u = " + rounded(budget.u, decimalsOf(budget.u)) + ", effective degrees of freedom " + dofText(budget.dof)
+             + format(", k = %.2f, U = ", budget.k) + rounded(budget.U, decimalsOf(budget.U)) + "; U of the test "
+             + rounded(budget.testU, decimalsOf(budget.testU)));
+    const std::vector<std::string> remarks = a.remarks();
     page.set("remarks", pageList(remarks));
     page.set("has_remarks", !remarks.empty());
     page.set("inputs", inputsOf(c));

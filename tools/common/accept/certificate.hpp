@@ -5,21 +5,10 @@
 #define REFRACT_TOOLS_CERTIFICATE_HPP
 
 #include "accept/acceptance.hpp"
+#include "accept/certificate_label.hpp"
 
 /* The certificate of an acceptance test, to print and sign, and for machines. The same input gives the same bytes. */
 namespace tools {
-
-//! Who, what and when: as the caller says; empty where nobody said.
-struct CertificateLabel
-{
-    std::string number;             //!< of the certificate; empty: made of the hashes of the inputs
-    std::string date;               //!< of the test, YYYY-MM-DD
-    std::string serial;             //!< of the cameras and windows
-    std::string customer, laboratory, person;
-    std::string country;            //!< of the laboratory, ISO 3166-1, two letters
-    std::string standard;           //!< of length: kind, serial number, certificate
-    std::string environment;        //!< air, temperature, water
-};
 
 //! A file that the result was made of.
 struct CertificateInput
@@ -32,16 +21,14 @@ struct Certificate
     CertificateLabel label;
     std::vector<CertificateInput> inputs;
     std::string command, calibrationTime, calibrationVerdict;
+    std::string temperature;                //!< of the standard, with its +-; empty: not stated
     std::vector<GumTable> budgets;          //!< of the decisive length, of a point, of a plane
     const Acceptance* acceptance = nullptr;
 
     std::string number() const;             //!< never empty
 };
 
-//! Throws Failure unless it is YYYY-MM-DD, a day that there is.
-void requireDate(const std::string& date, const std::string& option);
-
-//! One page of A4 with a picture.
+//! Two pages of A4: the decision with its lengths and pictures; the budget, remarks and what it was made from.
 std::string certificateHtml(const Certificate& certificate);
 
 //! PTB's digital calibration certificate, XML, version 3.3.0 of its schema; lengths in millimetres.

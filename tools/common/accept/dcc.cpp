@@ -4,6 +4,7 @@
 #include "accept/certificate.hpp"
 #include "accept/dcc_template.hpp"
 #include "calibrate/units.hpp"
+#include "console/rounded.hpp"
 #include "console/table.hpp"
 #include "report/page_template.hpp"
 #include <algorithm>
@@ -62,14 +63,17 @@ std::string listOf(const Acceptance& a, const std::function<std::string(const Le
 void setLengths(PageValues& page, const Acceptance& a)
 {
     const double millimetres = millimetresIn(a.unit);
-    const auto set = [&](const std::string& name, const std::function<double(const LengthResult&)>& number) {
-        page.set(name, listOf(a, [&](const LengthResult& r) { return format("%.9g", millimetres*number(r)); })); };
-    set("certified", [](const LengthResult& r) { return r.length.length; });
-    set("certified_U", [](const LengthResult& r) { return r.length.U; });
-    set("measured", [](const LengthResult& r) { return r.measured; });
-    set("errors", [](const LengthResult& r) { return r.error; });
-    set("U", [](const LengthResult& r) { return r.U(); });
-    set("limits", [](const LengthResult& r) { return r.limit; });
+    using Number = std::function<double(const LengthResult&)>;
+    const auto set = [&](const std::string& name, const Number& number, const Number& uncertainty) {
+        page.set(name, listOf(a, [&](const LengthResult& r) {
+            return rounded(millimetres*number(r), decimalsOf(millimetres*uncertainty(r))); })); };
+    const Number certifiedU = [](const LengthResult& r) { return r.length.U; }, U = [](const LengthResult& r) { return r.U(); };
+    set("certified", [](const LengthResult& r) { return r.length.length; }, certifiedU);
+    set("certified_U", certifiedU, certifiedU);
+    set("measured", [](const LengthResult& r) { return r.measured; }, U);
+    set("errors", [](const LengthResult& r) { return r.error; }, U);
+    set("U", U, U);
+    page.set("limits", listOf(a, [&](const LengthResult& r) { return format("%.9g", millimetres*r.limit); }));
     page.set("k", listOf(a, [](const LengthResult& r) { return format("%.3f", r.budget.k); }));
     page.set("names", listOf(a, [](const LengthResult& r) { return wordOf(r.length.name); }));
     page.set("conformities", listOf(a, [](const LengthResult& r) { return conformityOf(r); }));
@@ -84,7 +88,9 @@ std::string certificateDcc(const Certificate& c)
     for (const auto& entry : {std::make_pair("number", c.number()), {"date", c.label.date}, {"serial", c.label.serial},
                               {"customer", c.label.customer}, {"laboratory", c.label.laboratory}, {"person", c.label.person},
                               {"standard", c.label.standard}, {"environment", c.label.environment}, {"command", c.command},
-                              {"limit", a.limit.text()}, {"unit", a.unit}})
+                              {"address", c.label.address}, {"approver", c.label.approver}, {"issued", c.label.issued},
+                              {"traceability", c.label.traceability}, {"temperature", c.temperature}, {"rule", DECISION_RULE},
+                              {"volume", a.volume.name() + ", " + a.volume.numbers()}, {"limit", a.limit.text()}, {"unit", a.unit}})
         page.set(entry.first, textOf(entry.second));
     page.set("country", c.label.country.empty() ? ANY_COUNTRY : c.label.country);
     page.set("version", REFRACT_VERSION);
@@ -100,9 +106,8 @@ std::string certificateDcc(const Certificate& c)
         entry.set("sha256", input.sha256);
         inputs.push_back(entry);
     }
-    for (const std::vector<std::string>* const sentences : {&a.notices, &a.missing})
-        for (const std::string& sentence : *sentences)
-            remarks.emplace_back("text", (sentences == &a.missing ? "Against VDI/VDE 2634 part 1: " : "") + textOf(sentence));
+    for (const std::string& sentence : a.remarks())
+        remarks.emplace_back("text", textOf(sentence));
     page.set("inputs", inputs);
     page.set("remarks", remarks);
     return renderPage("the DCC", DCC_TEMPLATE, page);

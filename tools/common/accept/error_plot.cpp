@@ -52,9 +52,9 @@ std::string drawErrorsInVolume(const Acceptance& a)
         }
         lengths.push_back({gap, gap, gap});
     }
-    if (a.volume)
+    if (a.volume.box)
     {
-        const cv::Point3d& p = a.volume->least, & q = a.volume->most;
+        const cv::Point3d& p = a.volume.box->least, & q = a.volume.box->most;
         box = {{p.z, p.x}, {q.z, p.x}, {q.z, q.x}, {p.z, q.x}, {p.z, p.x}};
     }
     const std::string unit = a.unit.empty() ? "" : ", " + a.unit;

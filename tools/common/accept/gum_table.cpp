@@ -53,20 +53,26 @@ void add(GumTable& table, const std::string& source, const std::string& given, d
     table.rows.push_back({source, given, std > 0 ? std : NOT_KNOWN, std > 0 ? contribution/std : NOT_KNOWN, contribution, NOT_KNOWN, dof});
 }
 
-//! u, effective degrees of freedom, k and U from the rows.
+double squareOf(const GumRow& row) { return row.contribution*row.contribution; }
+
+//! u, effective degrees of freedom, k and U from the rows. @param dof of the one estimate of the pixels' noise
 void finish(GumTable& table, double total, double dof)
 {
-    double ofResiduals = 0.;            // rows of one estimate of the pixels' noise
+    double ofResiduals = 0., ofTest = 0., ofTestResiduals = 0.;
     for (GumRow& row : table.rows)
     {
-        row.share = row.contribution*row.contribution/total;
-        if (std::isfinite(row.dof))
-            ofResiduals += row.contribution*row.contribution;
+        const double square = squareOf(row), ofResidual = std::isfinite(row.dof) ? square : 0.;
+        row.share = square/total;
+        ofResiduals += ofResidual;
+        ofTest += row.isOfTest ? square : 0.;
+        ofTestResiduals += row.isOfTest ? ofResidual : 0.;
     }
+    const auto effective = [dof](double all, double part) { return dof > 0 ? effectiveDof(all, part, dof) : INFINITE; };
     table.u = std::sqrt(total);
-    table.dof = dof > 0 ? effectiveDof(total, ofResiduals, dof) : INFINITE;
+    table.dof = effective(total, ofResiduals);
     table.k = coverageFactor(table.dof);
     table.U = table.k*table.u;
+    table.testU = coverageFactor(effective(ofTest, ofTestResiduals))*std::sqrt(ofTest);
 }
 
 } // namespace
@@ -130,7 +136,7 @@ LinearQuantity planeDistanceOf(const TestPoints& points, const std::string& imag
 }
 
 PointErrors::PointErrors(const Calibration& calibration, const TestPoints& points, double pixelSigma, const std::optional<Vec4d>& plane)
-    : calibration_(calibration), pixelSigma_(pixelSigma)
+    : calibration_(calibration), pixelSigma_(pixelSigma), havePixels_(points.havePixels)
 {
     const int parameters = columnCount(modelOf(calibration));
     covariance_ = calibration.covariance.empty() ? MatrixXd(MatrixXd::Zero(parameters, parameters)) : toEigen(calibration.covariance);
@@ -168,18 +174,28 @@ double PointErrors::noiseVariance(const TestPoint& point, size_t i)
     const double stated = point.sigma.dot(point.sigma), shape = joint_.noise[i].trace();
     const double ofCalibration = diagonalOfProduct(product(joint_.byCalibration[i], covariance_),
                                                    joint_.byCalibration[i].transpose()).sum();
-    const double expected = pixelSigma_*pixelSigma_;
-    if (!(stated == stated) || std::abs(stated - ofCalibration - expected*shape) < ROUNDING*stated)
+    const double expected = pixelSigma_*pixelSigma_, left = stated - ofCalibration;
+    if (!(stated == stated) || std::abs(left - expected*shape) < ROUNDING*stated)
         return expected;
-    if (stated > (1 - ROUNDING)*ofCalibration)
-        return std::max(0., stated - ofCalibration)/shape;
-    added_ = true;
+    if (havePixels_ && !(left < expected*shape))
+    {
+        stated_.more = true;
+        return left/shape;
+    }
+    if (havePixels_ && expected > 0)
+    {
+        stated_.lessThanPixels = true;
+        return expected;
+    }
+    if (left > -ROUNDING*ofCalibration)
+        return std::max(0., left)/shape;
+    stated_.lessThanCalibration = true;
     return stated/shape;
 }
 
-GumTable PointErrors::table(const LinearQuantity& quantity) const { return table(quantity, "", 0.); }
+GumTable PointErrors::table(const LinearQuantity& quantity) const { return table(quantity, {}); }
 
-GumTable PointErrors::table(const LinearQuantity& quantity, const std::string& source, double U) const
+GumTable PointErrors::table(const LinearQuantity& quantity, const std::vector<CertifiedSource>& certified) const
 {
     GumTable result;
     result.quantity = quantity.name;
@@ -209,10 +225,18 @@ GumTable PointErrors::table(const LinearQuantity& quantity, const std::string& s
     if (!calibration_.covariance.empty())
         add(result, calibration_.provenance.sources.empty() ? "the calibration" : CALIBRATION_NOISE, "", 0., left, dof);
     const double pixel = std::sqrt(meanNoise);
+    const size_t ofRig = result.rows.size();
     add(result, "noise of the points' own pixels", format("%.2g px", pixel), pixel, noise, dof);
-    if (U > 0)
-        add(result, source, "", 0.5*U, 0.25*U*U, INFINITE);
-    finish(result, calibration + noise + 0.25*U*U, calibration_.dof);
+    double total = calibration + noise;
+    for (const CertifiedSource& source : certified)
+    {
+        const double variance = std::pow(source.std*source.sensitivity, 2);
+        add(result, source.name, source.given, source.std, variance, INFINITE);
+        total += variance;
+    }
+    for (size_t i = ofRig; i < result.rows.size(); i++)
+        result.rows[i].isOfTest = true;
+    finish(result, total, calibration_.dof);
     return result;
 }
 

@@ -17,6 +17,7 @@ struct GumRow
     double std, sensitivity;            //!< NaN where the source is of several values that differ
     double contribution, share;         //!< share of u(y)^2
     double dof;                         //!< infinite: not from these images
+    bool isOfTest = false;              //!< of the test's own: what it measures with, not what it tests
 };
 
 struct GumTable
@@ -25,6 +26,14 @@ struct GumTable
     double value = 0.;
     std::vector<GumRow> rows;
     double u = 0., dof = 0., k = 0., U = 0.;        //!< NaN: not known
+    double testU = 0.;                  //!< of the rows that are the test's own
+};
+
+//! One more source of a quantity that is a difference to what is certified.
+struct CertifiedSource
+{
+    std::string name, given;
+    double std, sensitivity;
 };
 
 //! A quantity to first order: y = value + sum of weight*dX over points.
@@ -43,21 +52,27 @@ their standard deviations tell. */
 LinearQuantity planeDistanceOf(const TestPoints& points, const std::string& image);
 
 /** What the points err by, together.
-The noise of a point's own pixels has the shape that its cameras give it, and the size that sx, sy, sz leave after the calibration's
-part; where a file has none, that of pixels with the calibration's residual_sigma. Points without pixels count as seen by all cameras
-whose images they are in. */
+The noise of a point's own pixels has the shape that its cameras give it. Where there are pixels, it has their size, or what sx, sy, sz
+leave after the calibration's part, if that is more. Of points without pixels sx, sy, sz say it, and where there are none the pixel
+noise again; these count as seen by all cameras whose images they are in. */
 class PointErrors
 {
 public:
     //! @param plane on which one camera saw them; a rig needs none. Throws Failure if the points are not of this calibration
     PointErrors(const Calibration& calibration, const TestPoints& points, double pixelSigma, const std::optional<cv::Vec4d>& plane);
 
-    //! Whether sx, sy, sz of some points are too small to contain the calibration's part, which is added then.
-    bool added() const { return added_; }
+    //! What sx, sy, sz of some points say beside what calibration and pixels do.
+    struct Stated
+    {
+        bool more = false;              //!< a larger noise, which is taken
+        bool lessThanPixels = false;    //!< a smaller one, or none: that of the pixels is taken
+        bool lessThanCalibration = false;   //!< of points without pixels, less than the calibration's part, which is added
+    };
+    const Stated& stated() const { return stated_; }
 
     GumTable table(const LinearQuantity& quantity) const;
-    //! With one more source: a certified value, u = U/2, of which the quantity is the difference.
-    GumTable table(const LinearQuantity& quantity, const std::string& source, double U) const;
+    //! Of a difference to what is certified: with its sources.
+    GumTable table(const LinearQuantity& quantity, const std::vector<CertifiedSource>& certified) const;
 
 private:
     void requireSamePoints(const TestPoints& points, const RigPixels& pixels, const std::optional<cv::Vec4d>& plane) const;
@@ -65,10 +80,11 @@ private:
 
     const Calibration& calibration_;
     double pixelSigma_;
+    bool havePixels_;
     MatrixXd covariance_;
     JointError joint_;
     std::vector<double> noise_;         //!< px^2, of each point
-    bool added_ = false;
+    Stated stated_;
 };
 
 } // namespace tools

@@ -15,26 +15,50 @@ namespace {
 
 const char* const HEADING = "name,image1,id1,image2,id2,length,U";
 
+//! Where points are, by their names; thousands of lengths ask.
+class PointIndex
+{
+public:
+    explicit PointIndex(const TestPoints& points) : points_(points), images_(points.images())
+    {
+        for (size_t i = 0; i < points.points.size(); i++)
+            indices_.emplace(std::make_pair(points.points[i].image, points.points[i].id), (int)i);
+    }
+    const TestPoints& points() const { return points_; }
+    const std::vector<std::string>& images() const { return images_; }
+    int find(const std::string& image, const std::string& id) const
+    {
+        const auto found = indices_.find({image, id});
+        return found == indices_.end() ? -1 : found->second;
+    }
+
+private:
+    const TestPoints& points_;
+    const std::vector<std::string> images_;
+    std::map<std::pair<std::string, std::string>, int> indices_;
+};
+
 //! The points of one row: one pair, or one in each image.
 class PairsOfRow
 {
 public:
-    PairsOfRow(const CsvTable& table, const CsvTable::Row& row, const TestPoints& points) : table_(table), row_(row), points_(points) {}
+    PairsOfRow(const CsvTable& table, const CsvTable::Row& row, const PointIndex& index)
+        : table_(table), row_(row), index_(index), points_(index.points()) {}
 
     //! Indices into the points, and the image if it is one of many.
     std::vector<std::pair<std::pair<size_t, size_t>, std::string>> all() const
     {
         const std::string& image1 = table_.textOrNone(row_, "image1"), & image2 = table_.textOrNone(row_, "image2");
         const std::string& id1 = table_.text(row_, "id1"), & id2 = table_.text(row_, "id2");
-        const std::vector<std::string> images = points_.images();
+        const std::vector<std::string>& images = index_.images();
         if (image1.empty() != image2.empty() && images.size() > 1)
             throw Failure(table_.where(row_) + ": give both images, or none for a length of each image");
         if (!image1.empty() || !image2.empty() || (images.size() == 1 && images[0].empty()))
             return {{{answered(image1, id1), answered(image2, id2)}, ""}};
         std::vector<std::pair<std::pair<size_t, size_t>, std::string>> pairs;
         for (const std::string& image : images)
-            if (isAnswered(points_.find(image, id1)) && isAnswered(points_.find(image, id2)))
-                pairs.push_back({{points_.find(image, id1), points_.find(image, id2)}, image});
+            if (isAnswered(index_.find(image, id1)) && isAnswered(index_.find(image, id2)))
+                pairs.push_back({{index_.find(image, id1), index_.find(image, id2)}, image});
         if (pairs.empty())
             throw Failure(table_.where(row_) + ": no image of '" + points_.source + "' shows both '" + id1 + "' and '" + id2
                           + "' with status 0");
@@ -52,7 +76,7 @@ private:
 
     size_t answered(const std::string& image, const std::string& id) const
     {
-        const int i = points_.find(image, id);
+        const int i = index_.find(image, id);
         const std::string point = "the point '" + id + "'" + (image.empty() ? "" : " of the image '" + image + "'");
         if (i < 0)
             throw Failure(table_.where(row_) + ": " + point + " is not in '" + points_.source + "'");
@@ -64,6 +88,7 @@ private:
 
     const CsvTable& table_;
     const CsvTable::Row& row_;
+    const PointIndex& index_;
     const TestPoints& points_;
 };
 
@@ -77,9 +102,27 @@ double positive(const CsvTable& table, const CsvTable::Row& row, const std::stri
 
 } // namespace
 
+std::vector<CertifiedSource> sourcesOf(const CalibratedLength& length)
+{
+    std::vector<CertifiedSource> sources = {{"the length as certified", "", 0.5*length.U, 1.}};
+    sources.insert(sources.end(), length.ofTemperature.begin(), length.ofTemperature.end());
+    return sources;
+}
+
+CalibratedLength StandardTemperature::applied(const CalibratedLength& length) const
+{
+    CalibratedLength result = length;
+    const double warmer = temperature - reference;
+    result.length *= 1. + expansion*warmer;
+    result.ofTemperature = {{"temperature of the standard", cv::format("%.2g K", std), std, length.length*expansion},
+                            {"expansion of the standard", cv::format("%.2g ppm/K", 1e6*expansionStd), expansionStd, length.length*warmer}};
+    return result;
+}
+
 std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points)
 {
     const CsvTable table(path, splitAtCommas(HEADING), "a file of calibrated lengths");
+    const PointIndex index(points);
     std::vector<CalibratedLength> lengths;
     std::map<std::string, int> lineOfName;
     std::map<std::pair<size_t, size_t>, int> lineOfPair;
@@ -93,7 +136,7 @@ std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoi
             throw Failure(table.where(row) + ": U is as large as the length: is it in the unit of the length?");
         if (!lineOfName.emplace(name, row.line).second)
             throw Failure(table.where(row) + ": the name '" + name + cv::format("' stands in line %d already", lineOfName[name]));
-        for (const auto& pair : PairsOfRow(table, row, points).all())
+        for (const auto& pair : PairsOfRow(table, row, index).all())
         {
             const size_t a = pair.first.first, b = pair.first.second;
             if (a == b)

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_LENGTHS_HPP
 #define REFRACT_TOOLS_LENGTHS_HPP
 
-#include "accept/test_points.hpp"
+#include "accept/gum_table.hpp"
 
 /* Calibrated lengths, as their certificate says, and the points between which they are. */
 namespace tools {
@@ -13,7 +13,23 @@ struct CalibratedLength
 {
     std::string name;
     size_t ends[2];                 //!< indices into the points
-    double length, U;               //!< as certified; U expanded, k = 2
+    double length, U;               //!< as certified, at the temperature of the test; U expanded, k = 2
+    std::vector<CertifiedSource> ofTemperature = {};
+};
+
+//! What the length is uncertain by: its certificate, then its temperature.
+std::vector<CertifiedSource> sourcesOf(const CalibratedLength& length);
+
+/** The standard at the test: it has grown since its certificate by length*expansion*(temperature - reference). NaN: not stated. Its
+certificate is then taken to be valid at the temperature of the test. */
+struct StandardTemperature
+{
+    double temperature, std;            //!< degrees Celsius, K
+    double expansion, expansionStd;     //!< 1/K
+    double reference;                   //!< of the certificate, degrees Celsius
+
+    bool isStated() const { return temperature == temperature; }
+    CalibratedLength applied(const CalibratedLength& length) const;
 };
 
 /** lengths.csv: name,image1,id1,image2,id2,length,U. Where both images are empty and the points have some, the length is one of each

@@ -82,11 +82,11 @@ std::vector<std::string> missingOf(const Acceptance& a)
     if (whole < LINES)
         missing.push_back(format("%zu of %zu measuring lines have %zu lengths or more (of %zu lines)", whole, LINES, LENGTHS_A_LINE,
                                  lines.size()));
-    if (!a.volume)
+    if (!a.volume.box)
         missing.push_back("the volume is not known, of whose diagonal the longest length must be two thirds (--volume)");
-    else if (longest < OF_DIAGONAL*a.volume->diagonal())
-        missing.push_back(format("the longest length is %.2g of the volume's diagonal of %.4g, not two thirds",
-                                 longest/a.volume->diagonal(), a.volume->diagonal()));
+    else if (longest < OF_DIAGONAL*a.volume.box->diagonal())
+        missing.push_back(format("the longest length is %.2g of the diagonal of %s, %.4g, not two thirds",
+                                 longest/a.volume.box->diagonal(), a.volume.name().c_str(), a.volume.box->diagonal()));
     return missing;
 }
 

@@ -16,17 +16,12 @@ namespace tools {
 
 static const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 
-int TestPoints::find(const std::string& image, const std::string& id) const
-{
-    const auto found = std::find_if(points.begin(), points.end(), [&](const TestPoint& p) { return p.image == image && p.id == id; });
-    return found == points.end() ? -1 : (int)(found - points.begin());
-}
-
 std::vector<std::string> TestPoints::images() const
 {
     std::vector<std::string> names;
+    std::set<std::string> there;
     for (const TestPoint& point : points)
-        if (std::find(names.begin(), names.end(), point.image) == names.end())
+        if (there.insert(point.image).second)
             names.push_back(point.image);
     return names;
 }
@@ -78,6 +73,16 @@ TestPoints readTestPoints(const std::string& path, size_t cameras)
     return result;
 }
 
+std::vector<std::string> namesThatCalibrated(const std::vector<std::string>& images, const Calibration& calibration)
+{
+    std::vector<std::string> names;
+    for (const std::string& image : images)
+        if (std::any_of(calibration.provenance.images.begin(), calibration.provenance.images.end(),
+                        [&](const CalibrationImage& used) { return !image.empty() && used.name == image; }))
+            names.push_back(image);
+    return names;
+}
+
 bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration)
 {
     if (calibration.provenance.images.empty() || !points.havePixels)
@@ -87,15 +92,15 @@ bool requireOtherImages(const TestPoints& points, const std::vector<std::string>
     {
         const RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
         for (size_t c = 0; c < pixels.size(); c++)
-            if (findImage(calibration.provenance.images, (int)c, pixels[c]))
+            if (findImage(calibration.provenance.images, (int)c, pixels[c], sameImageTolerance(pixelSigmaOf(calibration))))
             {
                 used.push_back(image);
                 break;
             }
     }
     if (!used.empty())
-        throw Failure("these images calibrated, so that they prove nothing: " + listed(used) + ". Take others, with the length standard "
-                      "where nothing was calibrated");
+        throw Failure("these images calibrated, stored anew perhaps, or their targets were not moved since, so that they prove nothing: "
+                      + listed(used) + ". Take others, with the length standard where nothing was calibrated");
     return true;
 }
 

@@ -26,7 +26,6 @@ struct TestPoints
     std::vector<TestPoint> points;
     bool havePixels = false, haveSigma = false;
 
-    int find(const std::string& image, const std::string& id) const;        //!< index; -1: there is none
     std::vector<std::string> images() const;                                //!< in order
     RigPixels pixelsOf(const std::string& image, size_t cameras) const;     //!< of each camera
 };
@@ -38,6 +37,9 @@ TestPoints readTestPoints(const std::string& path, size_t cameras);
 /** Throws Failure that names the images of points whose pixels are those of images that calibrated.
 @return whether it can be told */
 bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration);
+
+//! Those that have the name of an image that calibrated: all that can be told of points without pixels.
+std::vector<std::string> namesThatCalibrated(const std::vector<std::string>& images, const Calibration& calibration);
 
 } // namespace tools
 

@@ -3,14 +3,51 @@
 
 #include "calibrate/calibration_images.hpp"
 #include "console/sha256.hpp"
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 namespace tools {
 
-//! Two images of a board that was held anew, even if it was not moved, differ by more: a hundredth of a pixel and on, of noise.
-static const double SAME_PIXEL = 1e-4;
+namespace {
+
+//! Of older files, by the mean of the pixels: two images of a board, even if it was not moved, differ by more.
+const double SAME_MEAN = 1e-4;
+
+const size_t FEWEST = 2;                // pixels; one may be near to another by chance
+
+//! How many of the pixels are where one of the others is. @param others in the order of x
+size_t countSame(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
+{
+    const auto left = [](const cv::Point2d& a, const cv::Point2d& b) { return a.x < b.x; };
+    size_t count = 0;
+    for (const cv::Point2d& pixel : pixels)
+        for (auto other = std::lower_bound(others.begin(), others.end(), pixel - cv::Point2d(tolerance, 0.), left);
+             other != others.end() && other->x < pixel.x + tolerance; ++other)
+            if (cv::norm(*other - pixel) < tolerance)
+            {
+                count++;
+                break;
+            }
+    return count;
+}
+
+std::vector<cv::Point2d> seenOf(const std::vector<cv::Point2d>& pixels)
+{
+    std::vector<cv::Point2d> some;
+    std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(some), [](const cv::Point2d& p) { return seen(p); });
+    return some;
+}
+
+} // namespace
+
+double sameImageTolerance(double pixelSigma)
+{
+    const double MOST = 0.5, SIGMAS = 3.;
+    return pixelSigma > 0 ? std::min(MOST, std::max(USUAL_TOLERANCE, SIGMAS*pixelSigma)) : USUAL_TOLERANCE;
+}
 
 std::vector<UsedImage> usedImages(const RigImages& sets)
 {
@@ -20,7 +57,7 @@ std::vector<UsedImage> usedImages(const RigImages& sets)
         {
             const bool isFile = !(set->files.size() == 1 && isPointFile(set->files[0]));
             for (const DetectedImage& image : set->images)
-                used.push_back({isFile ? image.path : "", {image.stem, c, "", meanOfSeen(image.points)}});
+                used.push_back({isFile ? image.path : "", {image.stem, c, "", meanOfSeen(image.points), seenOf(image.points)}});
         }
     return used;
 }
@@ -61,12 +98,21 @@ const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, c
     return nullptr;
 }
 
-const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels)
+const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
+                                  double tolerance)
 {
     const cv::Point2d mean = meanOfSeen(pixels);
+    std::vector<cv::Point2d> sorted = seenOf(pixels);
+    std::sort(sorted.begin(), sorted.end(), [](const cv::Point2d& a, const cv::Point2d& b) { return a.x < b.x; });
     for (const CalibrationImage& image : images)
-        if (image.camera == camera && cv::norm(image.mean - mean) < SAME_PIXEL)     // false for NaN
+    {
+        if (image.camera != camera)
+            continue;
+        const size_t half = std::min(image.pixels.size(), sorted.size())/2;
+        if (image.pixels.empty() ? cv::norm(image.mean - mean) < SAME_MEAN      // false for NaN
+                                 : countSame(image.pixels, sorted, tolerance) >= std::max(FEWEST, half + 1))
             return &image;
+    }
     return nullptr;
 }
 

@@ -7,8 +7,9 @@
 #include "calibrate/provenance.hpp"
 #include "calibrate/rig_data.hpp"
 
-/* Images that calibrated, so that they are known again: they must not test the calibration. A file is known by its bytes, an image
-of which only the target's pixels came by these. */
+/* Images that calibrated, so that they are known again: they must not test the calibration. A file is known by its bytes; an image that
+was stored anew, made a little noisier, or of which points were left out, by where it shows the target: a board that was held anew, even
+next to where it was, is farther off. */
 namespace tools {
 
 //! One that calibrates.
@@ -20,6 +21,13 @@ struct UsedImage
 
 std::vector<UsedImage> usedImages(const RigImages& sets);
 
+/* Storing an image as a JPEG of quality 50, or two grey levels of noise, move a corner by 0.03 px where 0.014 px is its noise. A board that
+moves by a tenth of a millimetre, 600 mm away, moves by 0.2 px. */
+const double USUAL_TOLERANCE = 0.1;
+
+//! For images of this noise of a pixel coordinate, or of an unknown one (NaN).
+double sameImageTolerance(double pixelSigma);
+
 //! As they go into the file: with the hashes of those that are files.
 std::vector<CalibrationImage> withHashes(const std::vector<UsedImage>& used);
 
@@ -29,8 +37,10 @@ cv::Point2d meanOfSeen(const std::vector<cv::Point2d>& pixels);
 //! The image with these bytes; null: none.
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, const std::string& sha256);
 
-//! The image of a camera that shows the target where these pixels do; null: none.
-const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels);
+/** The image of a camera that shows the target where these pixels do, whatever their names and numbers are; null: none.
+@param tolerance px, by which more than half of them may be off */
+const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
+                                  double tolerance);
 
 } // namespace tools
 

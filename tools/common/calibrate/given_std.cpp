@@ -69,6 +69,8 @@ void GivenStdOptions::addTo(OptionParser& parser, bool target)
     if (target)
     {
         add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
+        add("--scale-std", SCALE, "the same of the scale of targets that come in points.csv, in percent of their lengths (default: 0, "
+            "exact)");
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");
     }
@@ -115,7 +117,9 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     if (isSaid(DISTANCE) && !v.distance)
         throw Failure("--distance-std is of a distance that is given: add --distance");
     if (isSaid(SQUARE) && !(v.square > 0.))
-        throw Failure("--square-std is of the square of a board: add --square");
+        throw Failure("--square-std is of the square of a board: add --square; of points (points.csv) give --scale-std, in percent");
+    if (isSaid(SCALE) && v.square > 0.)
+        throw Failure("--scale-std is of targets in points.csv; how well the square of a board is known is --square-std");
     const auto choose = [&](int which, double factor, const Std& usual, bool hasDefault) {
         if (!std::isnan(said_[which]))
             return Std(factor*said_[which]);
@@ -140,7 +144,8 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     std.bow = choose(BOW, 1., Std(), false);
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
-    std.scale = choose(SQUARE, v.square > 0. ? 1./v.square : 0., Std(USUAL_SQUARE_STD, DEFAULT), v.square > 0.);
+    const double PERCENT = 0.01;
+    std.scale = v.square > 0. ? choose(SQUARE, 1./v.square, Std(USUAL_SQUARE_STD, DEFAULT), true) : choose(SCALE, PERCENT, Std(), false);
     std.placement = choose(PLACEMENT, 1., Std(USUAL_PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;
 }

@@ -74,7 +74,7 @@ public:
     GivenStd of(const GivenValues& values) const;
 
 private:
-    enum { THICKNESS, INDEX, OUTER_INDEX, DISTANCE, WEDGE, RADIUS, CENTER, BOW, SQUARE, PLACEMENT, COUNT };
+    enum { THICKNESS, INDEX, OUTER_INDEX, DISTANCE, WEDGE, RADIUS, CENTER, BOW, SQUARE, SCALE, PLACEMENT, COUNT };
     void requireShape(const GivenValues& values) const;
     bool isMoreThanZero(int which) const { return said_[which] > 0.; }
     double said_[COUNT];                //!< NaN: not

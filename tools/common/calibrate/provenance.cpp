@@ -12,6 +12,8 @@ namespace tools {
 
 namespace {
 
+const double HUNDREDTHS = 100.;         // of pixels
+
 [[noreturn]] void refuse(const std::string& filename, const std::string& key)
 {
     throw Failure("'" + filename + "': " + key + " is not as refract_calib writes it: was the file edited? Calibrate again");
@@ -43,6 +45,9 @@ CalibrationImage readImage(const FileNode& node, const std::string& filename)
         image.sha256 = (std::string)node["sha256"];
     const std::vector<double> mean = numbersOf(node["mean"], 2, filename, "calibration_images");
     image.mean = {mean[0], mean[1]};
+    const std::vector<double> hundredths = numbersOf(node["pixels"], 2*(node["pixels"].size()/2), filename, "calibration_images");
+    for (size_t i = 0; i < hundredths.size(); i += 2)
+        image.pixels.push_back(cv::Point2d(hundredths[i], hundredths[i + 1])/HUNDREDTHS);
     return image;
 }
 
@@ -60,6 +65,15 @@ UncertaintySource readSource(const FileNode& node, const std::string& filename)
     if (source.factor.type() != CV_64F || !cv::checkRange(source.factor) || !(source.std >= 0))
         refuse(filename, "uncertainty_sources");
     return source;
+}
+
+//! In whole hundredths: short in the file.
+std::vector<int> hundredthsOf(const std::vector<cv::Point2d>& pixels)
+{
+    std::vector<int> numbers;
+    for (const cv::Point2d& p : pixels)
+        numbers.insert(numbers.end(), {cvRound(HUNDREDTHS*p.x), cvRound(HUNDREDTHS*p.y)});
+    return numbers;
 }
 
 std::vector<double> listOf(const cv::Point3d& p) { return {p.x, p.y, p.z}; }
@@ -104,6 +118,13 @@ void writeProvenance(FileStorage& fs, const Provenance& provenance)
             fs << "{" << "name" << image.name << "camera" << image.camera + 1 << "mean" << "[:" << image.mean.x << image.mean.y << "]";
             if (!image.sha256.empty())
                 fs << "sha256" << image.sha256;
+            if (!image.pixels.empty())
+            {
+                fs << "pixels" << "[:";
+                for (int number : hundredthsOf(image.pixels))
+                    fs << number;
+                fs << "]";
+            }
             fs << "}";
         }
         fs << "]";

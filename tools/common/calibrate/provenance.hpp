@@ -19,7 +19,8 @@ struct CalibrationImage
     std::string name;               //!< of its view: the file's stem
     int camera = 0;
     std::string sha256;             //!< of the file; empty where many images came in one file of points
-    cv::Point2d mean;               //!< of the target's pixels: with the target, it tells an image from all others
+    cv::Point2d mean;               //!< of the target's pixels; of older files all that is known of them
+    std::vector<cv::Point2d> pixels;    //!< of the target's points that are seen, to a hundredth; empty: an older file
 };
 
 //! A box that holds the points seen through the windows, in the frame of camera 1.

@@ -4,6 +4,7 @@
 #include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "console/utf8.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +70,8 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
         if (!names_.empty())
         {
             rows_.push_back({number, cellsOf(line, separator)});
+            if (!isUtf8(line))
+                throw Failure(where(rows_.back()) + ": a letter is not UTF-8: save the file in that encoding (often it is Latin-1)");
             if (rows_.back().cells.size() != names_.size())
                 throw Failure(where(rows_.back()) + ": " + std::to_string(names_.size()) + " cells expected, as the heading has "
                               "names; is the file cut short?");

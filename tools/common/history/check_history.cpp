@@ -7,12 +7,8 @@
 #include "console/json.hpp"
 #include "console/sha256.hpp"
 #include "math/dense.hpp"
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 
 using namespace cv::refract;
 using cv::format;
@@ -22,6 +18,7 @@ namespace tools {
 namespace {
 
 const char* const KIND = "refract_check history";
+const double HUNDREDTHS = 100.;         // of pixels
 
 Json jsonOf(const MatrixXd& matrix)
 {
@@ -72,15 +69,79 @@ Json valuesOf(const CheckHistory& history, const CheckRecord& check)
     return values;
 }
 
-Json jsonOf(const CheckHistory& history, const CheckRecord& check)
+Json jsonOf(const CalibrationImage& image)
 {
-    Json images = Json::array();
+    std::vector<int> hundredths;
+    for (const cv::Point2d& p : image.pixels)
+        hundredths.insert(hundredths.end(), {cvRound(HUNDREDTHS*p.x), cvRound(HUNDREDTHS*p.y)});
+    return {{"name", image.name}, {"camera", image.camera + 1}, {"hundredths_px", hundredths}};
+}
+
+CalibrationImage shownOf(const Json& json)
+{
+    CalibrationImage image;
+    image.name = json.at("name").asText();
+    image.camera = (int)json.at("camera").asNumber() - 1;
+    const std::vector<int> hundredths = json.at("hundredths_px").asWholes();
+    for (size_t i = 0; i + 1 < hundredths.size(); i += 2)
+        image.pixels.push_back(cv::Point2d(hundredths[i], hundredths[i + 1])/HUNDREDTHS);
+    image.mean = meanOfSeen(image.pixels);
+    return image;
+}
+
+//! All that is kept of a check.
+Json keptOf(const CheckRecord& check)
+{
+    Json images = Json::array(), shown = Json::array();
     for (const CheckedImage& image : check.images)
         images.append({{"name", image.name}, {"sha256", image.sha256}});
-    return {{"time", check.time}, {"verdict", check.verdict}, {"images", images}, {"sigma_px", check.sigma}, {"dof", check.dof},
-            {"values", valuesOf(history, check)}, {"changes", check.changes},
-            {"score", std::vector<double>(check.score.begin(), check.score.end())}, {"information", jsonOf(check.information)},
-            {"by_parameters", jsonOf(check.byParameters)}};
+    for (const CalibrationImage& image : check.shown)
+        shown.append(jsonOf(image));
+    return {{"time", check.time}, {"verdict", check.verdict}, {"images", images}, {"shown", shown}, {"sigma_px", check.sigma},
+            {"dof", check.dof}, {"changes", check.changes}, {"score", std::vector<double>(check.score.begin(), check.score.end())},
+            {"information", jsonOf(check.information)}, {"by_parameters", jsonOf(check.byParameters)}, {"previous", check.previous}};
+}
+
+std::string hashOf(const CheckRecord& check) { return sha256Of(keptOf(check).text(-1)); }
+
+//! For readers also the values, which are no more than what is kept says.
+Json jsonOf(const CheckHistory& history, const CheckRecord& check)
+{
+    Json json = keptOf(check);
+    json.set("values", valuesOf(history, check));
+    json.set("sha256", check.sha256);
+    return json;
+}
+
+//! Empty in the file of an older tool.
+std::string textOrNone(const Json& json, const std::string& name)
+{
+    try
+    {
+        return json.at(name).asText();
+    }
+    catch (const Json::Error&)
+    {
+        return "";
+    }
+}
+
+//! Where records are not as they were written. @param last SHA-256 of the last one, as the file has it
+std::vector<std::string> brokenLinks(const std::vector<CheckRecord>& checks, const std::string& last)
+{
+    std::vector<std::string> broken;
+    std::string before;
+    for (const CheckRecord& check : checks)
+    {
+        if (!check.sha256.empty() && check.sha256 != hashOf(check))
+            broken.push_back("the check of " + check.time + " was edited");
+        if (!check.sha256.empty() && check.previous != before)
+            broken.push_back("what was before the check of " + check.time + " was deleted, or put elsewhere");
+        before = check.sha256;
+    }
+    if (last != before)
+        broken.push_back("the last check was deleted");
+    return broken;
 }
 
 CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
@@ -90,6 +151,11 @@ CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
     check.verdict = json.at("verdict").asText();
     for (const Json& image : json.at("images").items())
         check.images.push_back({image.at("name").asText(), image.at("sha256").asText()});
+    check.previous = textOrNone(json, "previous");
+    check.sha256 = textOrNone(json, "sha256");
+    if (!check.sha256.empty())
+        for (const Json& image : json.at("shown").items())
+            check.shown.push_back(shownOf(image));
     check.sigma = json.at("sigma_px").asNumber();
     check.dof = json.at("dof").asNumber();
     check.changes = json.at("changes").asWholes();
@@ -122,6 +188,7 @@ CheckHistory historyOf(const Json& json)
         if (n > 1 && history.checks[n - 1].time < history.checks[n - 2].time)
             throw Failure("its checks are not in the order of their times");
     }
+    history.broken = brokenLinks(history.checks, textOrNone(json, "last"));
     return history;
 }
 
@@ -136,56 +203,6 @@ int indexOf(std::vector<ChartedChange>& changes, const Change& change)
 }
 
 } // namespace
-
-double secondsOf(const std::string& time)
-{
-    std::tm parts = {};
-    std::istringstream in(time);
-    in.imbue(std::locale::classic());
-    in >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
-    return (double)timegm(&parts);
-}
-
-std::string timeAt(double seconds)
-{
-    const std::time_t time = (std::time_t)seconds;
-    std::tm parts = {};
-    gmtime_r(&time, &parts);
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out << std::put_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
-    return out.str();
-}
-
-std::string timeOfNow()
-{
-    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-    return timeAt(epoch && *epoch ? (double)std::strtoll(epoch, nullptr, 10) : (double)std::time(nullptr));
-}
-
-std::string parseTime(const std::string& text, const std::string& option)
-{
-    int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, zoneHour = 0, zoneMinute = 0, end = 0, at = 0;
-    char sign[2] = "+";
-    bool isGood = std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) == 3;
-    if (isGood && text[end] == 'T')
-    {
-        isGood = std::sscanf(text.c_str() + end, "T%2d:%2d%n", &hour, &minute, &at) == 2;
-        end += at;
-        if (isGood && std::sscanf(text.c_str() + end, ":%2d%n", &second, &at) == 1)
-            end += at;
-        if (isGood && text[end] == 'Z')
-            end++;
-        else if (isGood && std::sscanf(text.c_str() + end, "%1[+-]%2d:%2d%n", sign, &zoneHour, &zoneMinute, &at) == 3)
-            end += at;
-    }
-    const std::string written = format("%04d-%02d-%02dT%02d:%02d:%02dZ", year, month, day, hour, minute, second);
-    // A day that there is comes back as it was.
-    if (!isGood || (size_t)end != text.size() || timeAt(secondsOf(written)) != written || zoneHour > 14 || zoneMinute > 59)
-        throw Failure(option + "=" + text + ": give a time as 2026-11-26, 2026-11-26T08:30:00Z or 2026-11-26T09:30+01:00");
-    const double east = 60.*(60.*zoneHour + zoneMinute);
-    return timeAt(secondsOf(written) - (sign[0] == '-' ? -east : east));
-}
 
 CheckHistory readHistory(const std::string& filename)
 {
@@ -218,17 +235,29 @@ void writeHistory(const std::string& filename, const CheckHistory& history)
     Json charts = Json::array(), checks = Json::array();
     for (const ChartedChange& change : history.changes)
         charts.append({{"name", change.name}, {"unit", change.unit}, {"axes", change.axes}, {"factor", change.factor}});
-    for (const CheckRecord& check : history.checks)
+    std::string last;
+    for (CheckRecord check : history.checks)
+    {
+        if (check.sha256.empty())           // a new one; what is there keeps what it says of itself, right or wrong
+        {
+            check.previous = last;
+            check.sha256 = hashOf(check);
+        }
         checks.append(jsonOf(history, check));
+        last = check.sha256;
+    }
     const Json json = {{"file", KIND}, {"calibration_sha256", history.calibration}, {"window_serial", history.serial}, {"charts", charts},
-                       {"checks", checks}};
+                       {"checks", checks}, {"last", last}};
     writeText(filename, json.text(1) + '\n');
 }
 
-CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history)
+CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history,
+                     const std::vector<CalibrationImage>& shown)
 {
     CheckRecord check;
     check.time = time;
+    for (const CalibrationImage& image : shown)
+        check.shown.push_back(shownOf(jsonOf(image)));      // as it comes back
     for (const std::string& file : files)
         check.images.push_back({std::filesystem::path(file).filename().string(), sha256OfFile(file)});
     for (const Change& change : score.changes)
@@ -257,7 +286,19 @@ void requireSameRig(CheckHistory& history, const std::string& filename, const Ca
                       "give the calibration that its checks were made with, or begin a new history, in a new file");
 }
 
-void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check)
+void requireNotCalibrated(const CheckRecord& check, const Calibration& calibration, double tolerance)
+{
+    const std::vector<CalibrationImage>& used = calibration.provenance.images;
+    const std::string why = " calibrated, stored anew perhaps, or its target was not moved since: a check needs images of its own";
+    for (const CheckedImage& image : check.images)
+        if (findImage(used, image.sha256))
+            throw Failure("'" + image.name + "'" + why);
+    for (const CalibrationImage& image : check.shown)
+        if (findImage(used, image.camera, image.pixels, tolerance))
+            throw Failure("'" + image.name + cv::format("' of camera %d", image.camera + 1) + why);
+}
+
+void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check, double tolerance)
 {
     if (history.checks.empty())
         return;
@@ -265,6 +306,12 @@ void requireNew(const CheckHistory& history, const std::string& filename, const 
     if (check.time < last)
         throw Failure("the last check of '" + filename + "' is of " + last + ", this one of " + check.time + ": time does not run "
                       "backwards; is the clock right? Give the time at which the images were taken (--time)");
+    for (const CheckRecord& before : history.checks)
+        for (const CalibrationImage& image : check.shown)
+            if (const CalibrationImage* const old = findImage(before.shown, image.camera, image.pixels, tolerance))
+                throw Failure("'" + image.name + cv::format("' of camera %d is in '", image.camera + 1) + filename + "' already, as '"
+                              + old->name + "' of the check of " + before.time + ", stored anew perhaps: each check needs images of its "
+                              "own. If the target stands where it stood then, say --fixed-target");
     for (const CheckRecord& before : history.checks)
         for (const CheckedImage& old : before.images)
             for (const CheckedImage& image : check.images)

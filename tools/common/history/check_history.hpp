@@ -5,10 +5,14 @@
 #define REFRACT_TOOLS_CHECK_HISTORY_HPP
 
 #include "assess/rig_check.hpp"
+#include "calibrate/calibration_images.hpp"
+#include "console/times.hpp"
 #include <string>
 #include <vector>
 
-/* All checks of one calibration, as refract_check --history keeps them: a JSON file, a record a check, in the order of their times. */
+/* All checks of one calibration, as refract_check --history keeps them: a JSON file, a record a check, in the order of their times. Each
+has the SHA-256 of itself and of the one before, and the file that of the last one: an edited or deleted record is told, as is one that
+was left out on purpose. Whoever computes them all anew is not found out; that takes a signature. */
 namespace tools {
 
 //! Parameters that are charted together: the two of a window's tilt, the focal length.
@@ -31,11 +35,13 @@ struct CheckRecord
 {
     std::string time;                   //!< ISO 8601, UTC
     std::vector<CheckedImage> images;   //!< or files of points
+    std::vector<CalibrationImage> shown;    //!< where they show the target, by which an image is known if it was stored anew
     std::string verdict;
     double sigma = 0., dof = 0.;        //!< of a pixel coordinate, and how well the calibration knows it
     std::vector<int> changes;           //!< which of CheckHistory::changes its images tell, in their order
     VectorXd score;
     MatrixXd information, byParameters;
+    std::string previous, sha256;       //!< as in the file, of the record before and of this one; empty: new, or of an older tool
 };
 
 struct CheckHistory
@@ -44,29 +50,26 @@ struct CheckHistory
     std::string serial;                 //!< of the window; may be empty
     std::vector<ChartedChange> changes;
     std::vector<CheckRecord> checks;
+    std::vector<std::string> broken;    //!< where the chain is, a sentence each
 };
-
-//! 2026-11-26, 2026-11-26T08:30, 2026-11-26T08:30:00Z or ...+01:00 -> UTC as CheckRecord::time. Throws Failure for anything else.
-std::string parseTime(const std::string& text, const std::string& option);
-//! That of now, or of SOURCE_DATE_EPOCH if it is set.
-std::string timeOfNow();
-//! Seconds since 1970. @param time as CheckRecord::time
-double secondsOf(const std::string& time);
-std::string timeAt(double seconds);
 
 //! No file: an empty history. Throws Failure if the file is not one.
 CheckHistory readHistory(const std::string& filename);
 //! The complete file or none.
 void writeHistory(const std::string& filename, const CheckHistory& history);
 
-//! What a check adds. @param files that it read, which are known by their bytes
-CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history);
+//! What a check adds. @param files that it read, which are known by their bytes @param shown of its images
+CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history,
+                     const std::vector<CalibrationImage>& shown = {});
 
 /** Throws Failure unless the history is that of this calibration, and the check is a new and later one. An empty history becomes that of
 the calibration. */
 void requireSameRig(CheckHistory& history, const std::string& filename, const Calibration& calibration,
                     const std::string& calibrationFile);
-void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check);
+//! @param tolerance of pixels, within which two images are the same
+void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check, double tolerance = USUAL_TOLERANCE);
+//! Throws Failure if one of its images calibrated.
+void requireNotCalibrated(const CheckRecord& check, const Calibration& calibration, double tolerance);
 
 } // namespace tools
 

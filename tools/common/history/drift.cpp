@@ -15,98 +15,8 @@ namespace tools {
 namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
-const double SIGNIFICANT = 2.;          // standard deviations of a slope
-const double LAST_YEAR = 4102444800.*2.;    // of a forecast, seconds since 1970
 const double VERY_STRONG = 10.;         // difference of two chi^2
 const double ALMOST_SURE = 1.645;       // 95 %
-
-//! Where a change's parameters are in a check; -1: its images do not tell.
-int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change)
-{
-    int row = 0;
-    for (int c : check.changes)
-    {
-        if (c == change)
-            return row;
-        row += changes[c].size();
-    }
-    return -1;
-}
-
-//! A change's own estimate: to multiply the rows of its score with.
-MatrixXd inverseOf(const CheckRecord& check, int row, int size)
-{
-    return inverse(check.information.block(row, row, size, size));
-}
-
-//! One parameter, of all checks that tell of it.
-struct Series
-{
-    std::vector<double> months;         //!< since the first check of the history
-    VectorXd value;
-    MatrixXd covariance;
-};
-
-Series seriesOf(const CheckHistory& history, const MatrixXd& C, int change, int axis)
-{
-    Series series;
-    const int size = history.changes[change].size();
-    const double factor = history.changes[change].factor, start = secondsOf(history.checks[0].time);
-    std::vector<double> values, variances;
-    std::vector<VectorXd> byParameters;
-    for (const CheckRecord& check : history.checks)
-    {
-        const int row = rowOf(check, history.changes, change);
-        if (row < 0)
-            continue;
-        const Eigen::RowVectorXd of = factor*inverseOf(check, row, size).row(axis);
-        const VectorXd d = transposeTimesVector(check.byParameters.middleRows(row, size), of.transpose());
-        series.months.push_back((secondsOf(check.time) - start)/MONTH);
-        values.push_back(of.dot(check.score.segment(row, size)));
-        variances.push_back(of*check.information.block(row, row, size, size)*of.transpose());
-        byParameters.push_back(d);
-    }
-    const Eigen::Index n = (Eigen::Index)values.size();
-    series.value = Eigen::Map<VectorXd>(values.data(), n);
-    series.covariance.resize(n, n);
-    for (Eigen::Index i = 0; i < n; i++)
-        for (Eigen::Index j = 0; j < n; j++)
-            series.covariance(i, j) = i == j ? variances[i] : byParameters[i].dot(timesVector(C, byParameters[j]));
-    return series;
-}
-
-//! Generalised least squares; the line's height at the first check is free.
-Trend lineThrough(const Series& series)
-{
-    Trend trend{NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN};
-    const size_t FEWEST = 3;
-    std::vector<double> times = series.months;
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    if (times.size() < FEWEST)
-        return trend;
-    MatrixXd J(series.value.size(), 2);
-    for (Eigen::Index i = 0; i < J.rows(); i++)
-        J.row(i) << 1., series.months[i];
-    const LDLT S(series.covariance);
-    const MatrixXd C = inverse(transposeTimes(J, S.solve(J)));
-    const VectorXd line = timesVector(C, transposeTimesVector(J, S.solve(series.value)));
-    trend.perMonth = line[1];
-    trend.std = std::sqrt(C(1, 1));
-    return trend;
-}
-
-void forecast(Trend& trend, double start)
-{
-    const double slope = std::abs(trend.perMonth);
-    if (!trend.isSignificant())
-        return;
-    const auto timeAtSlope = [&](double s) { return start + trend.limit/s*MONTH; };
-    if (timeAtSlope(slope) > LAST_YEAR)
-        return;
-    trend.reached = timeAtSlope(slope);
-    trend.earliest = timeAtSlope(slope + trend.std);
-    trend.latest = timeAtSlope(slope - trend.std);
-}
 
 //! A step or a ramp, as a share of what it is at the last check.
 double profileAt(const CheckHistory& history, size_t check, size_t since, bool steady)
@@ -281,24 +191,21 @@ private:
 
 } // namespace
 
-bool Trend::isSignificant() const { return std::abs(perMonth) > SIGNIFICANT*std; }
-
-std::vector<Trend> trendsOf(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartPoint>& points)
+int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change)
 {
-    std::vector<Trend> trends;
-    const double lambda = EWMA_WEIGHT;
-    for (int c = 0; c < (int)history.changes.size(); c++)
-        for (int axis = 0; axis < history.changes[c].size(); axis++)
-        {
-            const Series series = seriesOf(history, covariance, c, axis);
-            Trend trend = lineThrough(series);
-            if (!points.empty())
-                trend.limit = points.back().limit*std::sqrt(lambda/(2. - lambda))*std::abs(history.changes[c].factor)
-                              * points.back().std[(Eigen::Index)trends.size()];
-            forecast(trend, secondsOf(history.checks[0].time));
-            trends.push_back(trend);
-        }
-    return trends;
+    int row = 0;
+    for (int c : check.changes)
+    {
+        if (c == change)
+            return row;
+        row += changes[c].size();
+    }
+    return -1;
+}
+
+MatrixXd inverseOf(const CheckRecord& check, int row, int size)
+{
+    return inverse(check.information.block(row, row, size, size));
 }
 
 Estimates estimatesOf(const CheckHistory& history, const CheckRecord& check, const MatrixXd& covariance)

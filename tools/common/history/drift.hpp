@@ -12,18 +12,30 @@ namespace tools {
 
 const double MONTH = 30.4375*86400.;        // seconds
 
-//! A straight line through the estimates of one parameter; all checks share the calibration's error.
+/** What the estimates of one parameter do: stay, grow steadily from the first check or from some time on, or change at once. All checks
+share the calibration's error. */
 struct Trend
 {
     double perMonth, std;               //!< in the chart's unit; NaN: fewer than three times
+    double since, sinceStd;             //!< where it began, in seconds (since 1970); NaN: before the first check
+    double step;                        //!< after which check it changed at once, and did not grow; NaN: it did not
+    int checksSince;                    //!< that: one does not tell a jump from a drift
     double limit;                       //!< the lasting change that brings the EWMA to its limit, in the chart's unit
-    /** When the line, which begins at 0 with the first check, gets there: the expected time, and one standard deviation of the slope to
-    either side; NaN: the slope is not larger than twice that, or it is after the 22nd century. Seconds since 1970. */
+    /** When it gets there: the expected time, and one standard deviation of slope and beginning to either side; NaN: the slope is not
+    larger than twice its own, or it is after the 22nd century. Seconds since 1970. */
     double reached, earliest, latest;
 
     bool isSignificant() const;
 };
+
+//! Estimates of one parameter, each at its time. @param start seconds since 1970, of the first check
+Trend trendThrough(const std::vector<double>& months, const VectorXd& value, const MatrixXd& covariance, double limit, double start);
 std::vector<Trend> trendsOf(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartPoint>& points);
+
+//! Where a change's parameters are in a check; -1: its images do not tell.
+int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change);
+//! A change's own estimate: to multiply the rows of its score with.
+MatrixXd inverseOf(const CheckRecord& check, int row, int size);
 
 //! The estimate of each parameter by one check, as if nothing else had changed; in the chart's unit. NaN: it does not tell.
 struct Estimates

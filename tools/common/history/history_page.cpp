@@ -20,7 +20,12 @@ void setTimes(Plot& plot, const CheckHistory& history)
 {
     const double first = secondsOf(history.checks.front().time), last = secondsOf(history.checks.back().time);
     const double room = std::max(DAY, 0.04*(last - first));
-    plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -20 autofreq\n"
+    // A label is at a date, within the picture, and there are as many as have room.
+    const size_t LABELS = 6, every = (history.checks.size() + LABELS - 1)/LABELS;
+    plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -25 left offset -2,0 (";
+    for (size_t t = 0; t < history.checks.size(); t += every)
+        plot << (t ? ", " : "") << cv::format("%.0f", secondsOf(history.checks[history.checks.size() - 1 - t].time));
+    plot << ")\n"
          << "set xrange [" << cv::format("%.0f", first - room) << ':' << cv::format("%.0f", last + room) << "]\n";
 }
 
@@ -52,15 +57,17 @@ std::string changeFigure(const CheckHistory& history, const HistoryResult& resul
         plot.data(name, rows);
         ewma += ", $" + name + " using 1:2 with linespoints pointtype 7 pointsize 0.5" + style
             + (change.axes[axis].empty() ? " notitle" : " title " + Plot::quoted(change.axes[axis]));
-        values += (axis ? ", $" : "$") + name + " using 1:3:4 with yerrorbars pointtype 7 pointsize 0.4" + style + " notitle";
+        values += (axis ? ", $" : "$") + name + " using 1:3:4 with yerrorbars pointtype 7 pointsize 0.25 linewidth 1.5" + style
+            + " notitle";
         if (beyond.empty())
             continue;
         plot.data(name + "beyond", beyond);
         ewma += ", $" + name + "beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb '#dc2626' notitle";
     }
     setTimes(plot, history);
-    plot << "set multiplot layout 2,1\nset lmargin 10\nset rmargin 6\nset xzeroaxis linecolor rgb '#94a3b8'\nset format x ''\n"
-         << "set ylabel 'EWMA / sigma'\nset key top left horizontal\n"
+    plot << "set multiplot layout 2,1\nset lmargin 12\nset rmargin 8\nset bmargin 3\nset xzeroaxis linecolor rgb '#94a3b8'\n"
+         << "set format x ''\n"
+         << "set ylabel 'EWMA / sigma'\nset key above horizontal\n"
          << "plot $limits using 1:2 with lines linecolor rgb '#dc2626' dashtype 2 title 'limit', $limits using 1:(-$2) with lines "
             "linecolor rgb '#dc2626' dashtype 2 notitle" << ewma << "\n"
          << "set format x '%Y-%m-%d' timedate\nset ylabel " << Plot::quoted(change.unit.empty() ? "estimate" : change.unit)
@@ -83,7 +90,7 @@ std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
     plot.data("all", rows);
     plot.data("beyond", beyond);
     setTimes(plot, history);
-    plot << "set yrange [0:*]\nset ylabel 'T^2 / limit'\nset lmargin 10\nset rmargin 6\nset bmargin 3\nunset key\n"
+    plot << "set yrange [0:*]\nset ylabel 'T^2 / limit'\nset lmargin 12\nset rmargin 8\nset bmargin 4\nunset key\n"
          << "plot 1 with lines linecolor rgb '#dc2626' dashtype 2, $all using 1:2 with linespoints pointtype 7 pointsize 0.5 "
          << "linecolor rgb '" << COLOURS[0] << "'";
     if (!beyond.empty())
@@ -167,6 +174,7 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("count", std::to_string(history.checks.size()));
     page.set("false_alarms", cv::format("%.0f", 1./facts.falseAlarm));
     page.set("weight", cv::format("%g", EWMA_WEIGHT));
+    page.set("broken", pageList(history.broken));
     page.set("has_causes", !result.causes.empty());
     page.set("causes", causesIn(result, history));
     PageList found;

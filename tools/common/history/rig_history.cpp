@@ -9,6 +9,9 @@ namespace tools {
 
 namespace {
 
+const double DAY = 86400.;
+
+std::string dayAt(double seconds) { return timeAt(seconds).substr(0, 10); }
 std::string monthAt(double seconds) { return timeAt(seconds).substr(0, 7); }
 
 } // namespace
@@ -94,13 +97,19 @@ std::string trendText(const Trend& trend, const CheckHistory& history, const std
 {
     if (std::isnan(trend.perMonth))
         return "three checks at different times show one";
-    const std::string value = plusMinus(trend.perMonth, trend.std) + (unit.empty() ? "" : " " + unit) + " a month";
+    if (trend.step == trend.step)
+        return "changed after " + dayAt(trend.step) + (trend.checksSince > 1 ? ", at once: no trend"
+                                                                             : "; at once or steadily, the next check tells");
+    const std::string since = std::isnan(trend.since) ? "" : " since " + dayAt(trend.since)
+        + cv::format(" +- %.0f days", std::max(1., trend.sinceStd/DAY));
+    const std::string value = plusMinus(trend.perMonth, trend.std) + (unit.empty() ? "" : " " + unit) + " a month" + since;
     if (!trend.isSignificant())
         return value + ": none";
     if (std::isnan(trend.reached))
         return value;
     if (trend.latest < secondsOf(history.checks.back().time))
-        return value + ", beyond the limit of " + cv::format("%.2g", trend.limit) + " since " + monthAt(trend.reached);
+        return value + ", beyond the limit of " + cv::format("%.2g", trend.limit) + " since " + monthAt(trend.reached) + " ("
+            + monthAt(trend.earliest) + " to " + monthAt(trend.latest) + ")";
     return value + ", at the limit of " + cv::format("%.2g", trend.limit) + " in " + monthAt(trend.reached) + " (" + monthAt(trend.earliest)
         + " to " + monthAt(trend.latest) + ")";
 }

@@ -158,6 +158,36 @@ void forget(Measurement& m, size_t i)
 
 } // namespace
 
+ShownNoise::ShownNoise(const Calibration& calibration, const Measurement& m)
+{
+    const ConsistencyResiduals residualOf(calibration, m, 0.);
+    for (size_t i = 0; i < m.points.size(); i++)
+    {
+        const ConsistencyResidual residual = residualOf(i);
+        if (!(residual.pixels == residual.pixels))
+            continue;
+        parts_.push_back({residual.dof, std::pow(residual.pixels, 2), std::pow(residual.expected, 2)});
+        dof_ += residual.dof;
+    }
+}
+
+double ShownNoise::sigma() const
+{
+    double sum = 0.;
+    for (const Part& part : parts_)
+        sum += part.dof*(part.square - part.ofCalibration);
+    return dof_ ? std::sqrt(std::max(0., sum)/dof_) : NOT_KNOWN;
+}
+
+bool ShownNoise::isMoreThan(double pixelSigma) const
+{
+    const double CERTAIN = 4.;              // standard deviations
+    double sum = 0.;
+    for (const Part& part : parts_)
+        sum += part.dof*part.square/(pixelSigma*pixelSigma + USUAL*USUAL*part.ofCalibration);
+    return dof_ && std::sqrt(sum/dof_) > rmsAt(CERTAIN, dof_);
+}
+
 void checkConsistency(const Calibration& calibration, double pixelSigma, Measurement& m)
 {
     const bool known = pixelSigma > 0;

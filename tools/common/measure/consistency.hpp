@@ -18,6 +18,29 @@ void checkConsistency(const Calibration& calibration, double pixelSigma, Measure
 //! The same of a target's pose: one that leaves large residuals makes all its points INCONSISTENT and their sigma NaN.
 void checkPose(double pixelSigma, Measurement& measurement);
 
+/** What points that are seen by more cameras than it takes tell of the noise of a pixel, whatever the pixels are said to be worth: where
+their rays miss each other. */
+class ShownNoise
+{
+public:
+    //! @param m of a rig; points that are NaN tell nothing
+    ShownNoise(const Calibration& calibration, const Measurement& m);
+
+    double sigma() const;                           //!< px, without the calibration's part; NaN: nothing tells
+    int dof() const { return dof_; }
+    //! Beyond chance, even if the calibration errs by three standard deviations, which is one error for all points.
+    bool isMoreThan(double pixelSigma) const;
+
+private:
+    struct Part
+    {
+        int dof;
+        double square, ofCalibration;               //!< per degree of freedom, px^2
+    };
+    std::vector<Part> parts_;
+    int dof_ = 0;
+};
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_CONSISTENCY_HPP

@@ -29,19 +29,30 @@ double withinStudentT(double x, double dof)
     return odd ? 2./CV_PI*(theta + std::sin(theta)*sum) : std::sin(theta)*sum;
 }
 
+//! Of |t|, half.
+static double density(double x, double dof)
+{
+    if (!(dof < MANY))
+        return std::exp(-0.5*x*x)/std::sqrt(2.*CV_PI);
+    const double v = std::floor(dof);
+    return std::exp(std::lgamma(0.5*(v + 1.)) - std::lgamma(0.5*v) - 0.5*(v + 1.)*std::log1p(x*x/v))/std::sqrt(v*CV_PI);
+}
+
 double coverageFactor(double dof, double coverage)
 {
     if (!(dof >= 1.))
         return std::numeric_limits<double>::infinity();
-    double least = 0., most = 1.;
-    while (withinStudentT(most, dof) < coverage)
-        most *= 2.;
-    for (int i = 0; i < 60; i++)        // to the last digit
+    // Newton's steps from 0 never pass the solution, as the density falls.
+    const int MOST_STEPS = 200;
+    double k = 0.;
+    for (int i = 0; i < MOST_STEPS; i++)
     {
-        const double middle = 0.5*(least + most);
-        (withinStudentT(middle, dof) < coverage ? least : most) = middle;
+        const double step = (coverage - withinStudentT(k, dof))/(2.*density(k, dof));
+        k += step;
+        if (!(step > 1e-14*k))
+            break;
     }
-    return most;
+    return k;
 }
 
 double effectiveDof(double total, double part, double dof)

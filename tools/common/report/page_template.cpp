@@ -3,6 +3,7 @@
 
 #include "report/page_template.hpp"
 #include "console/failure.hpp"
+#include "console/utf8.hpp"
 
 #include <kainjow/mustache.hpp>
 
@@ -18,7 +19,7 @@ public:
     {
         data object;
         for (const auto& [name, value] : page.values_)
-            object.set(name, value.kind == PageValues::Value::TEXT ? data(value.text)
+            object.set(name, value.kind == PageValues::Value::TEXT ? data(toUtf8(value.text))
                        : value.kind == PageValues::Value::FLAG ? data(value.flag) : listOf(value.list));
         return object;
     }

@@ -1,0 +1,91 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "console/times.hpp"
+#include "console/failure.hpp"
+#include <opencv2/core.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <iomanip>
+#include <sstream>
+
+using cv::format;
+
+namespace tools {
+
+double secondsOf(const std::string& time)
+{
+    std::tm parts = {};
+    std::istringstream in(time);
+    in.imbue(std::locale::classic());
+    in >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
+    return (double)timegm(&parts);
+}
+
+std::string timeAt(double seconds)
+{
+    const std::time_t time = (std::time_t)seconds;
+    std::tm parts = {};
+    gmtime_r(&time, &parts);
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::put_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
+    return out.str();
+}
+
+std::string timeOfNow()
+{
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    return timeAt(epoch && *epoch ? (double)std::strtoll(epoch, nullptr, 10) : (double)std::time(nullptr));
+}
+
+std::string parseTime(const std::string& text, const std::string& option)
+{
+    int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, zoneHour = 0, zoneMinute = 0, end = 0, at = 0;
+    char sign[2] = "+";
+    bool isGood = std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) == 3;
+    if (isGood && text[end] == 'T')
+    {
+        isGood = std::sscanf(text.c_str() + end, "T%2d:%2d%n", &hour, &minute, &at) == 2;
+        end += at;
+        if (isGood && std::sscanf(text.c_str() + end, ":%2d%n", &second, &at) == 1)
+            end += at;
+        if (isGood && text[end] == 'Z')
+            end++;
+        else if (isGood && std::sscanf(text.c_str() + end, "%1[+-]%2d:%2d%n", sign, &zoneHour, &zoneMinute, &at) == 3)
+            end += at;
+    }
+    const std::string written = format("%04d-%02d-%02dT%02d:%02d:%02dZ", year, month, day, hour, minute, second);
+    // A day that there is comes back as it was.
+    if (!isGood || (size_t)end != text.size() || timeAt(secondsOf(written)) != written || zoneHour > 14 || zoneMinute > 59)
+        throw Failure(option + "=" + text + ": give a time as 2026-11-26, 2026-11-26T08:30:00Z or 2026-11-26T09:30+01:00");
+    const double east = 60.*(60.*zoneHour + zoneMinute);
+    return timeAt(secondsOf(written) - (sign[0] == '-' ? -east : east));
+}
+
+void requireDate(const std::string& date, const std::string& option)
+{
+    const size_t DAY = 10;                  // YYYY-MM-DD
+    try
+    {
+        parseTime(date, option);
+    }
+    catch (const Failure&)
+    {
+        throw Failure(option + "=" + date + ": give a day as year-month-day, as in " + option + "=2026-11-26");
+    }
+    if (date.size() != DAY)
+        throw Failure(option + "=" + date + ": give a day as year-month-day, as in " + option + "=2026-11-26");
+}
+
+void requirePast(const std::string& text, const std::string& option)
+{
+    const size_t DAY = 10;
+    const double AHEAD = 14.*3600., CLOCKS = 300.;      // of the earliest day on earth; by which clocks differ
+    const double later = secondsOf(parseTime(text, option)) - secondsOf(timeOfNow());
+    if (later > (text.size() == DAY ? AHEAD : CLOCKS))
+        throw Failure(option + "=" + text + ": that is in the future, now is " + timeOfNow() + "; is the clock right?");
+}
+
+} // namespace tools

@@ -1,0 +1,27 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_TIMES_HPP
+#define REFRACT_TOOLS_TIMES_HPP
+
+#include <string>
+
+/* Times in files and on command lines, as ISO 8601 writes them in UTC: 2026-11-26T08:30:00Z. */
+namespace tools {
+
+//! 2026-11-26, 2026-11-26T08:30, 2026-11-26T08:30:00Z or ...+01:00 -> UTC. Throws Failure for anything else.
+std::string parseTime(const std::string& text, const std::string& option);
+//! Throws Failure unless it is YYYY-MM-DD, a day that there is.
+void requireDate(const std::string& date, const std::string& option);
+//! Throws Failure for a time that is still to come; a day alone may be that of any place on earth. @param text as it was given
+void requirePast(const std::string& text, const std::string& option);
+
+//! That of now, or of SOURCE_DATE_EPOCH if it is set.
+std::string timeOfNow();
+//! Seconds since 1970. @param time in UTC
+double secondsOf(const std::string& time);
+std::string timeAt(double seconds);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_TIMES_HPP
