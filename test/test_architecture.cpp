@@ -282,5 +282,5 @@ TEST_CASE("Other libraries of the tools are included where the page says, and no
             CHECK(included == named);
             count++;
         }
-    CHECK(count == 6);
+    CHECK(count == 7);
 }

@@ -13,7 +13,7 @@
 set -eu
 
 libraries="libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
-  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libcairo2-dev libmbedtls-dev"
+  libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev libcairo2-dev libmbedtls-dev zlib1g-dev"
 test_libraries="catch2 libgtest-dev libmrcal-dev"
 test_programs="file libxml2-utils locales poppler-utils lintian"      # cpack makes the packages with file, lintian checks them;
                                                       # tests make a locale, see PDFs, validate XML

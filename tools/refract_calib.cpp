@@ -11,8 +11,9 @@ Direct images show the target without the window, glass images through it. Where
 and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
 or more direct images in all: these serve the lens, unless --camera gives it, in one fit with the window, so that the lens's
 uncertainty is in every +-. With --direct2 and --glass2 (to --direct16 and --glass16, and --camera2 to --camera16) the same name
-means the same moment in all cameras. Each camera looks through its own window, unless --shared-window (all through one) or
---window-of-camera=1,1,2,2 (cameras 1 and 2 through one, 3 and 4 through another) says otherwise.
+means the same moment in all cameras, with or without what all names of one camera begin or end with (left01, right01).
+Each camera looks through its own window, unless --shared-window (all through one) or --window-of-camera=1,1,2,2 (cameras 1 and 2
+through one, 3 and 4 through another) says otherwise.
 
 Where an image glob stands, an mrcal corners.vnl or a points.csv may stand instead (then --image-size is needed). points.csv,
 for any target, flat or not, each view its own: view,x,y,z,u,v, one row an observed point, `view` in place of the file's stem;
@@ -141,7 +142,8 @@ Options parseOptions(Command& command)
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
         Option camera = parser.add("--camera" + cameraSuffix(c), o.camera[c], c ? "lens of camera " + cameraSuffix(c)
-            : "lens: OpenCV YAML, XML, JSON or mrcal .cameramodel; default: from --direct");
+            : "lens: OpenCV's YAML, XML, JSON, a file of ROS, Kalibr, COLMAP, MATLAB, NumPy, mrcal, ... (doc/formats.md); default: from "
+              "--direct");
         if (c)
             camera.needs(parser.get("--glass" + cameraSuffix(c)));
         if (c > 1)

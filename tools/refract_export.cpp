@@ -13,12 +13,13 @@
 #include <iostream>
 #include <map>
 
-static const char MANUAL[] = R"(Tells programs that know no windows of cameras behind them, as well as that can be done.
+static const char MANUAL[] = R"(Tells other programs of cameras behind windows: those that know none as well as that can be done.
 
   refract_export calib.yml --to=opencv --range=400,1200 --out=central.yml
   refract_export calib.yml --to=mrcal --range=400,1200 --out-dir=DIR       camera1.cameramodel ...
   refract_export calib.yml --to=ros --range=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
   refract_export calib.yml --to=colmap --range=400,1200 [--points=points.csv] --out-dir=DIR
+  refract_export calib.yml --to=calibmar --out-dir=DIR                     camera1.yaml ..., with the windows: exact
 
 No camera without a window sees what one behind a window sees, but for one depth. What is written is the central camera (place,
 direction, lens) that comes nearest for scenes between the two depths z of --range, in the frame of each camera and the unit of
@@ -26,7 +27,9 @@ calib.yml. How far off it is stands in the files and in the table: in pixels, an
 camera's largest error is above --max-error pixels: give a smaller range, or measure with refract_measure, which is exact.
 
 --points, what refract_measure wrote: COLMAP's model gets the points, each with the pixels where the central cameras would have
-seen it. These are exact, whatever the table says.)";
+seen it. These are exact, whatever the table says. --image-extension=.png makes the names of its images those of files.
+
+Calibmar knows flat windows and domes of one layer without a wedge, and gets them as they are; others are refused.)";
 
 namespace {
 
@@ -35,7 +38,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, target, range, out, folder, points;
+    std::string calibration, target, range, out, folder, points, extension;
     int coefficients = -1;
     double maxError = 0;        // px; 0: none
 };
@@ -44,16 +47,21 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras").required();
     parser.add("--to", options.target, "whom to tell").required()
-        .check(isMember({"opencv", "mrcal", "colmap", "ros"}));
-    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera").required();
+        .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar"}));
+    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for --to=calibmar)");
     parser.add("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
     parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
     parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap)");
+    parser.add("--image-extension", options.extension, "what the names of COLMAP's images end in, such as .png (default: nothing, as "
+               "points.csv does not say)").needs(parser.get("--points"));
     parser.add("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
                "model (default: 8 if they help, else 5 or 4; 0 for fisheye lenses; --to=mrcal leaves the lens of a camera without a "
                "window as it is)");
     parser.add("--max-error", options.maxError, "px: exit code 2 if a camera is further off").check(moreThanZero());
 }
+
+//! Whether the other program knows windows.
+bool isExact(const Options& options) { return options.target == "calibmar"; }
 
 void checkCombination(const Options& options, const std::string& settings)
 {
@@ -63,6 +71,11 @@ void checkCombination(const Options& options, const std::string& settings)
                                                          : " writes several files: give --out-dir=DIR, and no --out"));
     if (!options.points.empty() && options.target != "colmap")
         throw Failure("--points: only COLMAP's model has points; give --to=colmap, or leave it out");
+    if (options.range.empty() != isExact(options))
+        throw Failure("--to=" + options.target + (isExact(options) ? " is exact at all depths: leave --range out"
+                                                                   : " is good for a range of depths: give --range=NEAR,FAR"));
+    if (isExact(options) && (options.coefficients >= 0 || options.maxError > 0))
+        throw Failure("--to=" + options.target + " is exact: leave --coefficients and --max-error out");
     if (isFile)
         checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}}, {options.calibration, settings});
 }
@@ -97,22 +110,44 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
     return plain.error.rms <= NEARLY*rational.error.rms ? plain : rational;
 }
 
-CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Command& command)
+//! With the size of each image.
+Calibration readComplete(const Options& options, const Command& command)
 {
     const Calibration calibration = readCalibration(options.calibration);
     warnOfContradictions(calibration, options.calibration, command);
-    CentralRig rig = {{}, fs::path(options.calibration).filename().string(), range, calibration.unit};
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        if (calibration.cameras[c].camera->imageSize().empty())
+            throw Failure(format("'%s' does not say image_width and image_height of camera%zu: add them",
+                                 options.calibration.c_str(), c + 1));
+    return calibration;
+}
+
+std::string sourceOf(const Options& options) { return fs::path(options.calibration).filename().string(); }
+
+CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Command& command)
+{
+    const Calibration calibration = readComplete(options, command);
+    CentralRig rig = {{}, sourceOf(options), range, calibration.unit};
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
         const RigidTransform& pose = calibration.extrinsics[c];
         const std::string name = format("camera%d", (int)c + 1);
-        if (camera->imageSize().empty())
-            throw Failure("'" + options.calibration + "' does not say image_width and image_height of " + name + ": add them");
         const CentralCamera central = bestCentralCamera(options, camera, range, name);
         rig.cameras.push_back({name, camera, pose, central, central.pose*pose});
     }
     return rig;
+}
+
+void writeFolder(const Options& options, const std::string& settings, const std::vector<ExportFile>& files)
+{
+    std::vector<Output> outputs;
+    for (const ExportFile& file : files)
+        outputs.push_back({"--out-dir", options.folder + "/" + file.name, OUTPUT_IN_FOLDER});
+    checkOutputs(outputs, {options.calibration, options.points, settings});
+    makeFolder(options.folder);
+    for (const ExportFile& file : files)
+        writeText(options.folder + "/" + file.name, file.text);
 }
 
 void write(const Options& options, const std::string& settings, const CentralRig& rig)
@@ -121,15 +156,8 @@ void write(const Options& options, const std::string& settings, const CentralRig
         return writeOpenCV(options.out, rig);
     const std::vector<MeasuredPoint> points = options.points.empty() ? std::vector<MeasuredPoint>()
                                                                      : readMeasuredPoints(options.points, (int)rig.cameras.size());
-    const std::vector<ExportFile> files = options.target == "mrcal" ? mrcalFiles(rig)
-                                        : options.target == "ros" ? rosFiles(rig) : colmapFiles(rig, points);
-    std::vector<Output> outputs;
-    for (const ExportFile& file : files)
-        outputs.push_back({"--out-dir", options.folder + "/" + file.name, OUTPUT_IN_FOLDER});
-    checkOutputs(outputs, {options.calibration, options.points, settings});
-    makeFolder(options.folder);
-    for (const ExportFile& file : files)
-        writeText(options.folder + "/" + file.name, file.text);
+    writeFolder(options, settings, options.target == "mrcal" ? mrcalFiles(rig) : options.target == "ros" ? rosFiles(rig)
+                                   : colmapFiles(rig, points, options.extension));
 }
 
 void printTable(const CentralRig& rig)
@@ -150,8 +178,13 @@ int refract_export_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
-        const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");
         checkCombination(options, command.settings());
+        if (isExact(options))
+        {
+            writeFolder(options, command.settings(), calibmarFiles(readComplete(options, command), sourceOf(options)));
+            return DONE;
+        }
+        const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");
         const CentralRig rig = centralRigOf(options, range, command);
         write(options, command.settings(), rig);
         if (!command.quiet())

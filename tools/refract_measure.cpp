@@ -14,6 +14,7 @@
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
+#include "formats/point_table.hpp"
 #include "target/detected_images.hpp"
 
 #include <cmath>
@@ -22,6 +23,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <sstream>
 
 static const char MANUAL[] = R"(Measures the points of a target, in the frame of camera 1, from images through the window.
@@ -36,7 +38,8 @@ images of different cameras belong together when their file stems are equal; '' 
 without target or without partner are skipped, and named on stderr.
 
 --points: a table with the heading id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a
-camera did not see it. With --plane the u1,v1 will do. Each id may stand once.
+camera did not see it. With --plane the u1,v1 will do. Each id may stand once, or once in each image of a column image: then it is called
+IMAGE/id. OpenLPT's frame,cam_id,pt_idx,x,y is such a table, too.
 
 points.csv: image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status, one row a point (rigs of more cameras go on with u3,v3,... after v2);
 image is the file's stem (of camera 1), id counts within the target or is that of --points; s* is one standard deviation, from
@@ -154,10 +157,19 @@ std::vector<MeasuredView> readImages(const Options& options, const Calibration& 
     return measured;
 }
 
+//! Whether each id stands once, be it in several images.
+bool isPointPerId(const CsvTable& table)
+{
+    std::set<std::string> ids;
+    for (const CsvTable::Row& row : table.rows())
+        ids.insert(table.text(row, "id"));
+    return ids.size() == table.rows().size();
+}
+
 //! Points that are no target.
 std::vector<MeasuredView> readPoints(const Options& options, const Calibration& calibration)
 {
-    const CsvTable table(options.points, {"id", "u1", "v1"}, "a file of image points");
+    const CsvTable table = readPointTable(options.points, {"id", "u1", "v1"}, "a file of image points");
     MeasuredView view;
     view.stem = stemOf(options.points);
     const int cameras = (int)calibration.cameras.size();
@@ -165,9 +177,10 @@ std::vector<MeasuredView> readPoints(const Options& options, const Calibration& 
         throw Failure(format("'%s' has pixels of camera %d, the calibration '%s' has %d camera%s", options.points.c_str(),
                              cameras + 1, options.calibration.c_str(), cameras, cameras == 1 ? "" : "s"));
     std::map<std::string, int> lineOf;
+    const bool isOfMoments = table.find("image") >= 0 && !isPointPerId(table);
     for (const CsvTable::Row& row : table.rows())
     {
-        view.ids.push_back(table.text(row, "id"));
+        view.ids.push_back((isOfMoments ? table.text(row, "image") + "/" : "") + table.text(row, "id"));
         const auto first = lineOf.emplace(view.ids.back(), row.line);
         if (!first.second)
             throw Failure(table.where(row) + format(": the id '%s' stands in line %d already: give each point an id of its own, in one "

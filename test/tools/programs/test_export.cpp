@@ -194,9 +194,10 @@ TEST_CASE("refract_export writes COLMAP's model, whose points and pixels belong 
     csv << "a,99,10,10,,,nan,nan,nan,nan,nan,nan,7\n";      // without a place
     csv.close();
     const ToolResult result = runTool("refract_export " + CALIB + " --to=colmap" + RANGE + " --coefficients=8 --points="
-                                      + (folder / "points.csv") + " --out-dir=" + (folder / "m"));
+                                      + (folder / "points.csv") + " --image-extension=.png --out-dir=" + (folder / "m"));
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
+    CHECK_THAT(readFile(folder / "m/images.txt"), Catch::Contains(" camera1/a.png\n") && Catch::Contains(" camera2/b.png\n"));
     const std::vector<std::string> cameras = linesOf(folder / "m/cameras.txt"), images = linesOf(folder / "m/images.txt"),
                                    points = linesOf(folder / "m/points3D.txt");
     REQUIRE(cameras.size() == 2);
@@ -273,4 +274,41 @@ TEST_CASE("refract_export says what it cannot do, and leaves nothing behind", "[
     refused(" --to=nobody" + RANGE + out, "--to");
     CHECK(runTool(call + " --to=opencv --max-error=1e-6" + RANGE + out).code == 2);
     CHECK(folder.count() == 1);
+}
+
+TEST_CASE("refract_export tells Calibmar of lenses and windows exactly, and refuses what it has none like", "[tools][export]")
+{
+    const TemporaryFolder folder;
+    const Matx33d K(900, 0, 640, 0, 910, 480, 0, 0, 1);
+    GlassWindow flat(Vec3d(0.1, -0.05, 1), 12, 1.52, 30, 1.333), surface(Vec3d(0, 0.1, 1), 0, 1, 40, 1.333);
+    surface.thickness.clear();
+    surface.index.clear();
+    const std::vector<Ptr<RefractiveCamera>> cameras = {
+        RefractiveCamera::create(K, std::vector<double>{-0.1, 0.05, 0.001, -0.002, 0.01}, flat),
+        RefractiveCamera::createFisheye(K, std::vector<double>{0.02, -0.01, 0.003, 0.001},
+                                        GlassWindow::dome({1, -2, 3}, 50, 7, 1.49, 1.333)),
+        RefractiveCamera::create(K, std::vector<double>{-0.1, 0.05, 0.001, -0.002}, surface), RefractiveCamera::create(K, noArray())};
+    for (const Ptr<RefractiveCamera>& camera : cameras)
+    {
+        camera->setImageSize(Size(1280, 960));
+        camera->save(folder / "calib.yml");
+        const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + " --to=calibmar --out-dir=" + (folder / "m"));
+        CAPTURE(result.err);
+        REQUIRE(result.code == 0);
+        // Read again by the reader whose tests have Calibmar's own formula.
+        const ToolResult again = runTool("refract_export " + (folder / "m/camera1.yaml") + " --to=calibmar --out-dir=" + (folder / "n"));
+        REQUIRE(again.code == 0);
+        std::string first = readFile(folder / "m/camera1.yaml"), second = readFile(folder / "n/camera1.yaml");
+        CHECK(first.substr(first.find('\n')) == second.substr(second.find('\n')));
+        CHECK_THAT(first, Catch::Contains("640.5, 480.5"));
+    }
+    GlassWindow wedged = flat;
+    wedged.wedge = {Vec2d(1e-4, 0)};
+    cameras[0]->setWindow(wedged);
+    cameras[0]->save(folder / "calib.yml");
+    const ToolResult refused = runTool("refract_export " + (folder / "calib.yml") + " --to=calibmar --out-dir=" + (folder / "m"));
+    CHECK(refused.code == 1);
+    CHECK(mentions(refused.err, "camera1 looks through a window with a wedge"));
+    CHECK(runTool("refract_export " + CALIB + " --to=calibmar --out-dir=" + (folder / "x") + RANGE).code == 1);
+    CHECK(runTool("refract_export " + CALIB + " --to=ros --out-dir=" + (folder / "x")).code == 1);
 }

@@ -5,6 +5,7 @@
 #include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "formats/point_table.hpp"
 
 #include <cmath>
 #include <map>
@@ -31,7 +32,8 @@ CsvTable openMatches(const std::string& path, int cameras, const std::string& st
     std::vector<std::string> required = {"id"};
     for (int c = 0; c < cameras; c++)
         required.insert(required.end(), {pixelColumn("u", c), pixelColumn("v", c)});
-    const CsvTable table(path, required, format("a table of the pixels of the %d cameras of '%s'", cameras, startPath.c_str()));
+    const CsvTable table = readPointTable(path, required, format("a table of the pixels of the %d cameras of '%s'", cameras,
+                                                                 startPath.c_str()));
     if (table.find(pixelColumn("u", cameras)) >= 0)
         throw Failure(format("'%s' has pixels of camera %d, but '%s' has %d cameras", path.c_str(), cameras + 1, startPath.c_str(),
                              cameras));

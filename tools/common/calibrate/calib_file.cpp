@@ -6,6 +6,7 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/keys.hpp"
+#include "formats/foreign_rig.hpp"
 
 #include <sys/stat.h>
 #include <algorithm>
@@ -83,6 +84,11 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
         fs << "rms" << calibration.rms;
 }
 
+bool refracts(const cv::refract::GlassWindow& window)
+{
+    return !window.thickness.empty() || window.innerIndex != window.outerIndex;
+}
+
 bool isCameraModel(const std::string& filename)
 {
     return std::filesystem::path(filename).extension() == ".cameramodel";
@@ -152,11 +158,43 @@ struct Rig
     std::vector<cv::Mat> Rs, Ts;
     std::vector<int> windows;
     cv::Mat covariance;
+    bool isForeign = false;             //!< of another program, which the module does not read
 };
+
+void requireFew(const Rig& rig, const std::string& filename)
+{
+    if (rig.cameras.size() > MAX_CAMERAS)
+        throw Failure(format("'%s' has %zu cameras; the tools are for up to %d", filename.c_str(), rig.cameras.size(), MAX_CAMERAS));
+}
+
+//! Of another program; no cameras: it is not.
+Rig readForeign(const std::string& filename)
+{
+    Rig rig;
+    const auto foreign = isCameraModel(filename) ? std::optional<ForeignRig>() : readForeignRig(filename);
+    if (!foreign)
+        return rig;
+    rig.isForeign = true;
+    rig.cameras = foreign->cameras;
+    rig.Rs = foreign->Rs;
+    rig.Ts = foreign->Ts;
+    requireFew(rig, filename);
+    return rig;
+}
 
 Rig readRig(const std::string& filename)
 {
-    Rig rig;
+    Rig rig = readForeign(filename);
+    if (rig.isForeign && rig.cameras.size() > 1 && rig.Rs.empty())
+        throw Failure(format("'%s' has %zu cameras, and does not say where they are from each other (R, T): calibrate them together "
+                             "with refract_calib, with --camera and --camera2 for their lenses", filename.c_str(), rig.cameras.size()));
+    if (rig.isForeign && rig.Rs.empty())
+    {
+        rig.Rs.push_back(cv::Mat::eye(3, 3, CV_64F));
+        rig.Ts.push_back(cv::Mat::zeros(3, 1, CV_64F));
+    }
+    if (rig.isForeign)
+        return rig;
     if (!std::filesystem::is_regular_file(filename) && !isCameraModel(filename))
         throw Failure("there is no calibration file '" + filename + "'");
     try
@@ -167,8 +205,7 @@ Rig readRig(const std::string& filename)
     {
         throw Failure(e.err + ". If it is what refract_calib wrote, was it edited or cut short? Calibrate again");
     }
-    if (rig.cameras.size() > MAX_CAMERAS)
-        throw Failure(format("'%s' has %zu cameras; the tools are for up to %d", filename.c_str(), rig.cameras.size(), MAX_CAMERAS));
+    requireFew(rig, filename);
     return rig;
 }
 
@@ -248,18 +285,26 @@ std::pair<std::string, std::string> parseNote(const std::string& text)
 
 bool isOfRig(const std::string& filename)
 {
-    return !isCameraModel(filename) && !FileStorage(filename, FileStorage::READ)[cameraName(0)].empty();
+    if (isCameraModel(filename))
+        return false;
+    const Rig foreign = readForeign(filename);
+    return foreign.isForeign ? foreign.cameras.size() > 1 : !FileStorage(filename, FileStorage::READ)[cameraName(0)].empty();
 }
 
 KnownLens readLens(const std::string& filename, const std::string& name)
 {
+    size_t which = 0;
+    while (!name.empty() && cameraName(which) != name)
+        which++;
+    const Rig foreign = readForeign(filename);
+    if (foreign.isForeign && which >= foreign.cameras.size())
+        throw Failure(format("'%s' has %zu cameras, and no %s", filename.c_str(), foreign.cameras.size(), name.c_str()));
+    if (foreign.isForeign)
+        return {foreign.cameras[which], cv::Mat()};
     KnownLens lens{RefractiveCamera::read(filename, name), cv::Mat()};
     if (isCameraModel(filename))
         return lens;
     const FileStorage fs(filename, FileStorage::READ);
-    size_t which = 0;
-    while (!name.empty() && cameraName(which) != name)
-        which++;
     requireDistortion(cameraNode(fs, which), filename);
     if (fs["covariance"].empty())
         return lens;
@@ -275,11 +320,16 @@ Calibration readCalibration(const std::string& filename)
     Calibration calibration;
     calibration.windows = rig.windows;
     calibration.covariance = rig.covariance;
-    // Of a .cameramodel, nothing else is known.
-    const FileStorage fs = isCameraModel(filename) ? FileStorage() : FileStorage(filename, FileStorage::READ);
+    // Of a .cameramodel and of other programs' files, nothing else is known.
+    const bool isOwn = !isCameraModel(filename) && !rig.isForeign;
+    const FileStorage fs = isOwn ? FileStorage(filename, FileStorage::READ) : FileStorage();
     requireKnownKeys(fs, rig.cameras.size(), filename);
     for (size_t c = 0; c < rig.cameras.size(); c++)
+    {
         calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), {rig.Rs[c], rig.Ts[c]});
+        if (rig.isForeign)
+            calibration.cameras[c].windowGiven = refracts(rig.cameras[c]->window());
+    }
     calibration.rms = readNumber(fs["rms"], -1.);
     calibration.sigma = readNotNegative(fs, "residual_sigma", -1., filename);
     calibration.dof = readNotNegative(fs, "degrees_of_freedom", 0., filename);

@@ -5,6 +5,7 @@
 #include "console/failure.hpp"
 #include "console/options.hpp"
 #include "console/table.hpp"
+#include "console/view_names.hpp"
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -150,6 +151,31 @@ void requireOwnImages(const RigImages& sets)
             }
 }
 
+//! Images of one moment get one name, where each camera has its own in its names.
+void nameViews(RigImages& sets)
+{
+    std::vector<std::vector<std::string>> names;
+    std::vector<std::vector<DetectedImage*>> images;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+    {
+        std::vector<DetectedImage*> ofCamera;
+        for (DetectedImages* set : {&sets.direct[c], &sets.glass[c]})
+            for (DetectedImage& image : set->images)
+                if (image.objectPoints.empty())     // of points.csv, views are called what they are called
+                    ofCamera.push_back(&image);
+        if (ofCamera.empty())
+            continue;
+        names.emplace_back();
+        for (const DetectedImage* image : ofCamera)
+            names.back().push_back(image->stem);
+        images.push_back(ofCamera);
+    }
+    takeOffCameras(names);
+    for (size_t c = 0; c < images.size(); c++)
+        for (size_t i = 0; i < images[c].size(); i++)
+            images[c][i]->stem = names[c][i];
+}
+
 } // namespace
 
 RigImages readRigImages(const RigSources& sources, const Target* target, const PerCamera<Size>& imageSize, bool quiet)
@@ -169,6 +195,7 @@ RigImages readRigImages(const RigSources& sources, const Target* target, const P
     const std::vector<DetectedImages> found = readDetectedImages(given, target, quiet, sources.channel);
     for (size_t i = 0; i < found.size(); i++)
         *places[i] = found[i];
+    nameViews(sets);
     requireOwnImages(sets);
     return sets;
 }

@@ -50,7 +50,24 @@ std::string joined(const std::vector<std::string>& names)
     return text;
 }
 
+bool isNothing(const std::string& line) { return trimmed(line).empty() || trimmed(line)[0] == '#'; }
+
+char separatorOf(const std::string& heading)
+{
+    return heading.find(',') == std::string::npos && heading.find(';') != std::string::npos ? ';' : ',';
+}
+
 } // namespace
+
+std::vector<std::string> headingOf(const std::string& path)
+{
+    std::ifstream in(path);
+    std::string line;
+    while (std::getline(in, line) && isNothing(line)) {}
+    if (line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+        line.erase(0, 3);
+    return cellsOf(line, separatorOf(line));
+}
 
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what) : path_(path)
 {
@@ -65,7 +82,7 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
     {
         if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
             line.erase(0, 3);
-        if (trimmed(line).empty() || trimmed(line)[0] == '#')
+        if (isNothing(line))
             continue;
         if (!names_.empty())
         {
@@ -77,7 +94,7 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
                               "names; is the file cut short?");
             continue;
         }
-        separator = line.find(',') == std::string::npos && line.find(';') != std::string::npos ? ';' : ',';
+        separator = separatorOf(line);
         names_ = cellsOf(line, separator);
         for (const std::string& name : required)
             if (find(name) < 0)

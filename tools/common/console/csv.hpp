@@ -25,6 +25,10 @@ public:
     /** @param required columns; @param what the file is, for the text where one is missing */
     CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what);
 
+    //! Of what was read from a file in another form.
+    CsvTable(const std::string& path, const std::vector<std::string>& names, const std::vector<Row>& rows)
+        : path_(path), names_(names), rows_(rows) {}
+
     const std::vector<Row>& rows() const { return rows_; }
     const std::vector<std::string>& names() const { return names_; }
     int find(const std::string& name) const;            //!< column; -1: there is none
@@ -44,6 +48,9 @@ private:
     std::vector<std::string> names_;
     std::vector<Row> rows_;
 };
+
+//! The column names that a file begins with; an empty one: there is nothing to read.
+std::vector<std::string> headingOf(const std::string& path);
 
 //! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
 std::string cellOf(const std::string& text);

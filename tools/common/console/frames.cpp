@@ -4,6 +4,7 @@
 #include "console/frames.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
+#include "console/view_names.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
@@ -73,12 +74,23 @@ bool findNumbered(const std::string& source, std::vector<std::string>& files, st
     return true;
 }
 
-std::map<std::string, int> indexByStem(const Frames& frames)
+//! What images of one moment are found by: of a video or of numbered images their number.
+std::vector<std::string> namesOf(const Frames& frames)
+{
+    if (!frames.numbered())
+        return viewNames(frames.files());
+    std::vector<std::string> names;
+    for (int i = 0; i < frames.size(); i++)
+        names.push_back(frames.stem(i));
+    return names;
+}
+
+std::map<std::string, int> indexOf(const std::vector<std::string>& names, const Frames& frames)
 {
     std::map<std::string, int> index;
     for (int i = 0; i < frames.size(); i++)
-        if (!index.insert({frames.stem(i), i}).second)
-            throw Failure("two images of '" + frames.source() + "' are called '" + frames.stem(i) + "': give each a name of its "
+        if (!index.insert({names[i], i}).second)
+            throw Failure("two images of '" + frames.source() + "' are called '" + names[i] + "': give each a name of its "
                           "own, as images of one moment are found by equal names");
     return index;
 }
@@ -175,8 +187,10 @@ FramePairs pairsOf(const Frames& first, const Frames& second)
         result.pairs = {{first.stem(0), 0, 0}};
     else
     {
-        const std::map<std::string, int> partners = indexByStem(second);
-        for (const auto& image : indexByStem(first))
+        std::vector<std::vector<std::string>> names = {namesOf(first), namesOf(second)};
+        takeOffCameras(names);
+        const std::map<std::string, int> partners = indexOf(names[1], second);
+        for (const auto& image : indexOf(names[0], first))
             if (partners.count(image.first))
                 result.pairs.push_back({image.first, image.second, partners.at(image.first)});
             else

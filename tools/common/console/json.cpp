@@ -150,6 +150,8 @@ const Json& Json::at(const std::string& name) const
     return items_[i];
 }
 
+bool Json::has(const std::string& name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
+
 const Json& Json::at(size_t index) const
 {
     if (kind_ != LIST || index >= items_.size())

@@ -58,6 +58,12 @@ public:
     static Json read(std::istream& in);
     const Json& at(const std::string& name) const;
     const Json& at(size_t index) const;
+    bool has(const std::string& name) const;                    //!< of an object, else false
+    const std::vector<std::string>& names() const { return names_; }        //!< of an object's members, in their order
+    bool isObject() const { return kind_ == OBJECT; }
+    bool isList() const { return kind_ == LIST; }
+    bool isNumber() const { return kind_ == NUMBER || kind_ == WHOLE; }
+    bool isText() const { return kind_ == TEXT; }
     const std::vector<Json>& items() const;                     //!< of a list
     const std::string& asText() const;
     double asNumber() const;

@@ -63,7 +63,7 @@ struct CorrectedPixel
 class Model
 {
 public:
-    explicit Model(const CentralRig& rig) : rig_(rig) {}
+    Model(const CentralRig& rig, const std::string& extension) : rig_(rig), extension_(extension) {}
 
     void add(const MeasuredPoint& point)
     {
@@ -120,11 +120,12 @@ private:
         if (known != index_.end())
             return known->second;
         const std::string& name = rig_.cameras[camera].name;
-        images_.push_back({camera, view.empty() ? name : name + "/" + view, {}});
+        images_.push_back({camera, view.empty() ? name : name + "/" + view + extension_, {}});
         return index_[key] = (int)images_.size() - 1;
     }
 
     const CentralRig& rig_;
+    const std::string extension_;
     std::vector<Image> images_;
     std::map<std::pair<int, std::string>, int> index_;
     std::string points_;
@@ -133,13 +134,13 @@ private:
 
 } // namespace
 
-std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points)
+std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points, const std::string& extension)
 {
     const std::string head = "# " + headText(rig) + "\n";
     std::string cameras = head + "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
     for (size_t c = 0; c < rig.cameras.size(); c++)
         cameras += "# " + errorText(rig, rig.cameras[c]) + "\n" + cameraLine(rig.cameras[c], (int)c + 1);
-    Model model(rig);
+    Model model(rig, extension);
     for (const MeasuredPoint& point : points)
         model.add(point);
     if (points.empty())

@@ -4,10 +4,11 @@
 #ifndef REFRACT_TOOLS_EXPORT_FILES_HPP
 #define REFRACT_TOOLS_EXPORT_FILES_HPP
 
+#include "calibrate/calib_file.hpp"
 #include "export/central_rig.hpp"
 #include "export/measured_points.hpp"
 
-/* Files for programs that have no model of a window. Each states its error. */
+/* Files for programs that have no model of a window, each states its error, and for one that has. */
 namespace tools {
 
 //! A file of a folder, and its text.
@@ -27,8 +28,14 @@ std::vector<ExportFile> mrcalFiles(const CentralRig& rig);
 std::vector<ExportFile> rosFiles(const CentralRig& rig);
 
 /** COLMAP's text model: cameras.txt, images.txt, points3D.txt; the world is the frame of camera 1 of the calibration.
-@param points measured ones, with the pixels where the central cameras would have seen them; may be empty */
-std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points);
+@param points measured ones, with the pixels where the central cameras would have seen them; may be empty
+@param extension what the names of images end in; may be empty */
+std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points, const std::string& extension);
+
+/** Calibmar: NAME.yaml of each camera, lens and window, exactly; where the cameras are has no place there. Throws Failure for a lens or a
+window that it has none like.
+@param source the calibration's file */
+std::vector<ExportFile> calibmarFiles(const Calibration& calibration, const std::string& source);
 
 } // namespace tools
 

@@ -21,7 +21,7 @@ using cv::Size2d;
 namespace {
 
 // Millimetres. What printers leave free, and what the detectors want of light round a board.
-const double MARGIN = 10., FOOTER = 22., TEXT = 3., POINT = 25.4/72;
+const double MARGIN = 8., FOOTER = 18., TEXT = 3., POINT = 25.4/72;
 
 struct Paper
 {
@@ -207,9 +207,9 @@ void BoardPage::write(const std::string& path, const std::vector<std::string>& l
     cairo_scale(cairo, 1/POINT, 1/POINT);       // from here on in millimetres
     drawBoard(cairo);
     const double bottom = paper_.height - MARGIN;
-    drawRuler(cairo, Point2d(MARGIN + 1, bottom - 12));
+    drawRuler(cairo, Point2d(MARGIN + 1, bottom - 8));
     for (size_t i = 0; i < lines.size(); i++)
-        drawText(cairo, lines[i], Point2d(MARGIN + 1, bottom - 8 + 4*(double)i), paper_.width - 2*MARGIN - 2);
+        drawText(cairo, lines[i], Point2d(MARGIN + 1, bottom - 4 + 4*(double)i), paper_.width - 2*MARGIN - 2);
     cairo_show_page(cairo);
     cairo_surface_finish(surface.get());
     for (const cairo_status_t status : {cairo_surface_status(surface.get()), cairo_status(cairo)})

@@ -6,8 +6,12 @@
 #include "target/refine_corners.hpp"
 
 #include <opencv2/core/version.hpp>
+#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #define REFRACT_OPENCV_AT_LEAST_4_7 (CV_VERSION_MAJOR*100 + CV_VERSION_MINOR >= 407)
 #if REFRACT_OPENCV_AT_LEAST_4_7
@@ -43,12 +47,95 @@ cv::Size squaresOf(cv::Size innerCorners)
     return cv::Size(innerCorners.width + 1, innerCorners.height + 1);
 }
 
+//! The squares with markers, in the order of their numbers. Only with an even number of rows are the layouts different.
+std::vector<cv::Point> markerSquares(cv::Size squares, bool legacy)
+{
+    const int first = legacy && squares.height % 2 == 0 ? 0 : 1;        // column of the first marker of the first row
+    std::vector<cv::Point> places;
+    for (int y = 0; y < squares.height; y++)
+        for (int x = (first + y) % 2; x < squares.width; x += 2)
+            places.push_back({x, y});
+    return places;
+}
+
+typedef std::vector<std::vector<cv::Point2f>> MarkerCorners;
+
+//! How far the markers are, at the least, from where a flat board of this layout has them, in squares; 0 if there are too few to tell.
+double misfit(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares, bool legacy)
+{
+    const std::vector<cv::Point> places = markerSquares(squares, legacy);
+    const int LEAST = 6, ROWS = 3;      // markers of one row are all one square further in the other layout
+    std::vector<cv::Point2f> pixels, board;
+    std::set<int> rows;
+    for (size_t i = 0; i < ids.size(); i++)
+        if (ids[i] >= 0 && ids[i] < (int)places.size())
+        {
+            const std::vector<cv::Point2f>& c = corners[i];
+            pixels.push_back((c[0] + c[1] + c[2] + c[3])*0.25f);
+            board.push_back(places[ids[i]]);
+            rows.insert(places[ids[i]].y);
+        }
+    const cv::Mat H = (int)board.size() < LEAST || (int)rows.size() < ROWS ? cv::Mat() : cv::findHomography(pixels, board);
+    if (H.empty())
+        return 0.;
+    std::vector<cv::Point2f> seen;
+    cv::perspectiveTransform(pixels, seen, H);
+    return cv::norm(seen, board, cv::NORM_L2)/std::sqrt((double)board.size());
+}
+
+void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares, bool legacy)
+{
+    const double WRONG = 0.15, RIGHT = 0.05;            // what a lens bends is far less than a square
+    if (squares.height % 2 == 0 && misfit(corners, ids, squares, legacy) > WRONG && misfit(corners, ids, squares, !legacy) < RIGHT)
+        throw Failure(legacy ? "the markers of this ChArUco board are where OpenCV puts them since 4.6: leave --legacy out"
+                             : "the markers of this ChArUco board are where OpenCV put them before 4.6 (a marker in the first corner, of a "
+                               "board with an even number of rows): say --legacy");
+}
+
 #if !REFRACT_OPENCV_AT_LEAST_4_7
-cv::Ptr<cv::aruco::CharucoBoard> boardOf(cv::Size innerCorners, double square, double marker, int dictionary)
+using CharucoBoard = cv::aruco::CharucoBoard;
+
+//! The markers next to an inner corner, and which of their corners is nearest to it.
+void findNearest(CharucoBoard& board, double square)
+{
+    for (size_t i = 0; i < board.chessboardCorners.size(); i++)
+    {
+        const cv::Point3f corner = board.chessboardCorners[i];
+        board.nearestMarkerIdx[i].clear();
+        board.nearestMarkerCorners[i].clear();
+        for (size_t j = 0; j < board.objPoints.size(); j++)
+        {
+            const std::vector<cv::Point3f>& marker = board.objPoints[j];
+            const cv::Point3f middle = (marker[0] + marker[2])*0.5f;
+            if (std::abs(middle.x - corner.x) > square || std::abs(middle.y - corner.y) > square)
+                continue;
+            const auto nearer = [&](const cv::Point3f& a, const cv::Point3f& b) { return cv::norm(a - corner) < cv::norm(b - corner); };
+            board.nearestMarkerIdx[i].push_back((int)j);
+            board.nearestMarkerCorners[i].push_back((int)(std::min_element(marker.begin(), marker.end(), nearer) - marker.begin()));
+        }
+    }
+}
+
+cv::Ptr<CharucoBoard> boardOf(cv::Size innerCorners, double square, double marker, int dictionary, bool legacy = false)
 {
     const cv::Size squares = squaresOf(innerCorners);
-    return cv::aruco::CharucoBoard::create(squares.width, squares.height, (float)square, (float)marker,
-                                           cv::aruco::getPredefinedDictionary(dictionary));
+    const cv::Ptr<CharucoBoard> board = CharucoBoard::create(squares.width, squares.height, (float)square, (float)marker,
+                                                             cv::aruco::getPredefinedDictionary(dictionary));
+    if (!legacy || squares.height % 2 == 1)
+        return board;
+    const std::vector<cv::Point> places = markerSquares(squares, true);
+    const cv::Point other = markerSquares(squares, false)[0];
+    const std::vector<cv::Point3f> first = board->objPoints[0];
+    board->objPoints.assign(places.size(), first);
+    board->ids.resize(places.size());
+    for (size_t j = 0; j < places.size(); j++)
+    {
+        board->ids[j] = (int)j;
+        for (cv::Point3f& corner : board->objPoints[j])
+            corner += cv::Point3f((float)((places[j].x - other.x)*square), (float)((places[j].y - other.y)*square), 0);
+    }
+    findNearest(*board, square);
+    return board;
 }
 #endif
 
@@ -98,23 +185,24 @@ cv::Mat charucoModules(cv::Size innerCorners, int dictionary)
 }
 
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
-                                       int dictionary)
+                                       int dictionary, bool legacy)
 {
     std::vector<cv::Point2f> corners;
-    std::vector<int> ids;
+    std::vector<int> ids, markerIds;
+    MarkerCorners markerCorners;
 #if REFRACT_OPENCV_AT_LEAST_4_7
-    const cv::aruco::CharucoBoard board(squaresOf(innerCorners), (float)square, (float)marker,
-                                        cv::aruco::getPredefinedDictionary(dictionary));
-    cv::aruco::CharucoDetector(board).detectBoard(grey, corners, ids);
+    cv::aruco::CharucoBoard board(squaresOf(innerCorners), (float)square, (float)marker,
+                                  cv::aruco::getPredefinedDictionary(dictionary));
+    board.setLegacyPattern(legacy);
+    cv::aruco::CharucoDetector(board).detectBoard(grey, corners, ids, markerCorners, markerIds);
 #else
     const auto markers = cv::aruco::getPredefinedDictionary(dictionary);
-    const auto board = boardOf(innerCorners, square, marker, dictionary);
-    std::vector<std::vector<cv::Point2f>> markerCorners;
-    std::vector<int> markerIds;
+    const auto board = boardOf(innerCorners, square, marker, dictionary, legacy);
     cv::aruco::detectMarkers(grey, markers, markerCorners, markerIds);
     if (!markerIds.empty())
         cv::aruco::interpolateCornersCharuco(markerCorners, markerIds, grey, board, corners, ids);
 #endif
+    requireLayout(markerCorners, markerIds, squaresOf(innerCorners), legacy);
     if (ids.size() < 4)
         return {};
     // OpenCV's own refinement ends up to half a pixel off. The nearest other edge is the marker's.

@@ -24,9 +24,11 @@ cv::Mat drawCharuco(cv::Size innerCorners, double square, double marker, int dic
 square has two modules more than a marker. */
 cv::Mat charucoModules(cv::Size innerCorners, int dictionary);
 
-//! Pixels of all inner corners, NaN where not seen; empty if fewer than four were.
+/** Pixels of all inner corners, NaN where not seen; empty if fewer than four were.
+@param legacy the layout of OpenCV before 4.6: boards with an even number of rows of squares have a marker, and not a dark square, in the
+first corner. Throws Failure if the markers are where the other layout has them. */
 std::vector<cv::Point2d> detectCharuco(const cv::Mat& grey, cv::Size innerCorners, double square, double marker,
-                                       int dictionary);
+                                       int dictionary, bool legacy = false);
 
 } // namespace tools
 

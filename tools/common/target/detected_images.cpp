@@ -5,6 +5,7 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
+#include "console/view_names.hpp"
 #include "target/corners_vnl.hpp"
 #include "target/points_csv.hpp"
 #include "target/target_search.hpp"
@@ -29,12 +30,12 @@ const DetectedImage* DetectedImages::find(const std::string& stem) const
 
 namespace {
 
-void addImage(DetectedImages& set, const std::string& path, const std::vector<cv::Point2d>& points)
+void addImage(DetectedImages& set, const std::string& name, const std::string& path, const std::vector<cv::Point2d>& points)
 {
     if (points.empty())
         set.withoutTarget.push_back(path);
     else
-        set.images.push_back({stemOf(path), path, points, {}});
+        set.images.push_back({name, path, points, {}});
 }
 
 DetectedImages imagesWith(const std::vector<std::vector<cv::Point2d>>& points, const std::vector<std::string>& paths, cv::Size size)
@@ -42,8 +43,9 @@ DetectedImages imagesWith(const std::vector<std::vector<cv::Point2d>>& points, c
     DetectedImages set;
     set.files = paths;
     set.imageSize = size;
+    const std::vector<std::string> names = viewNames(paths);
     for (size_t i = 0; i < paths.size(); i++)
-        addImage(set, paths[i], points[i]);
+        addImage(set, names[i], paths[i], points[i]);
     return set;
 }
 
@@ -72,7 +74,7 @@ DetectedImages imagesOfPointFile(const std::string& path, const Target* target, 
         set.images = readPointsCsv(path);
     else
         for (const auto& image : readCornersVnl(path, target->count()))
-            addImage(set, image.first, image.second);
+            addImage(set, stemOf(image.first), image.first, image.second);
     for (const DetectedImage& image : set.images)
         requireInside(path, extensionOf(path) == ".csv" ? image.stem : image.path, image.points, imageSize);
     return set;

@@ -12,7 +12,7 @@ namespace tools {
 //! One image in which the target was found.
 struct DetectedImage
 {
-    std::string stem;                   //!< file name without folder and extension: images of one view have the same
+    std::string stem;                   //!< its view's name (view_names.hpp), mostly the file's stem: images of one view have the same
     std::string path;
     std::vector<cv::Point2d> points;    //!< a pixel of each point of the target, NaN where it was not seen
     std::vector<cv::Point3d> objectPoints = {};     //!< of points.csv; empty: those of the Target

@@ -52,11 +52,13 @@ void TargetOptions::addTo(OptionParser& parser, bool required)
         .check(moreThanZero());
     parser.add("--dictionary", dictionary, "charuco: OpenCV's name of the marker dictionary")
         .captureDefault();
+    parser.addFlag("--legacy", legacy, "charuco: made by OpenCV before 4.6, with a marker in the first corner (an even number of rows of "
+                   "squares)");
 }
 
 Target::Target(const TargetOptions& options)
     : pattern_(CHESSBOARD), size_(parseSize(options.size, "--size")), square_(options.square),
-      marker_(options.marker), dictionary_(0), partial_(options.partial)
+      marker_(options.marker), dictionary_(0), partial_(options.partial), legacy_(options.legacy)
 {
     const auto found = PATTERNS.find(options.pattern);
     if (found == PATTERNS.end())
@@ -70,6 +72,8 @@ Target::Target(const TargetOptions& options)
     if (std::min(size_.width, size_.height) < least || (int64_t)size_.width*size_.height > 100000)
         throw Failure("--size=" + options.size + ": a target of at least " + std::to_string(least) + "x"
                       + std::to_string(least) + " points is needed, and no more than 100000 in all");
+    if (pattern_ != CHARUCO && legacy_)
+        throw Failure("--legacy is for --pattern=charuco: leave it out");
     if (pattern_ != CHARUCO && (marker_ > 0 || options.dictionary != TargetOptions().dictionary))
         throw Failure("--marker and --dictionary are for --pattern=charuco: leave them out");
     if (pattern_ == CHARUCO)
@@ -84,13 +88,22 @@ Target::Target(const TargetOptions& options)
         objectPoints_.emplace_back(square_*place[0], square_*place[1], 0);
 }
 
+//! OpenCV draws no others.
+static void requireNewLayout(bool legacy)
+{
+    if (legacy)
+        throw Failure("--legacy: boards are drawn as OpenCV has them since 4.6: leave it out");
+}
+
 cv::Mat Target::drawing(int pixelsPerSquare) const
 {
+    requireNewLayout(legacy_);
     return pattern_ == CHARUCO ? drawCharuco(size_, square_, marker_, dictionary_, pixelsPerSquare) : Mat();
 }
 
 cv::Mat Target::modules() const
 {
+    requireNewLayout(legacy_);
     return pattern_ == CHARUCO ? charucoModules(size_, dictionary_) : Mat();
 }
 
@@ -116,7 +129,7 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort)
     const int secondsOfChessboard = effort == HURRIED ? std::min(hurried, 5) : 5;
     const int secondsOfDots = effort == HURRIED ? std::min(hurried, 20) : 20;
     if (pattern_ == CHARUCO)
-        return detectCharuco(grey, size_, square_, marker_, dictionary_);
+        return detectCharuco(grey, size_, square_, marker_, dictionary_, legacy_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
     const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize, secondsOfChessboard)

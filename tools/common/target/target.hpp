@@ -21,6 +21,7 @@ struct TargetOptions
     double square = 0.;
     double marker = 0.;                         //!< ChArUco: side of a marker; 0 = 3/4 of a square
     std::string dictionary = "DICT_4X4_250";    //!< ChArUco
+    bool legacy = false;                        //!< ChArUco: of the layout before OpenCV 4.6
     bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
 
     bool given() const { return !size.empty(); }
@@ -83,7 +84,7 @@ private:
     cv::Size size_;
     double square_, marker_;
     int dictionary_;
-    bool partial_;
+    bool partial_, legacy_;
     std::vector<cv::Point3d> objectPoints_;
 };
 

@@ -1,0 +1,24 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_VIEW_NAMES_HPP
+#define REFRACT_TOOLS_VIEW_NAMES_HPP
+
+#include <string>
+#include <vector>
+
+/* What images of one moment are found by, for all tools: equal names. */
+namespace tools {
+
+//! The stems of files; where two are equal, their folders too, as far as these differ: 0001/left, 0002/left.
+std::vector<std::string> viewNames(const std::vector<std::string>& paths);
+
+/** Where no two cameras have a name in common, what is left of each when the camera's own part is taken off: the text that all names of
+the camera begin or end with, but for digits that count moments. left01, right01; 201_02, 202_02; 0001/left, 0001/right. The names
+stay as they are where some are equal already, or none would be.
+@param names of the images of each camera, which are changed */
+void takeOffCameras(std::vector<std::vector<std::string>>& names);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_VIEW_NAMES_HPP

@@ -1,0 +1,106 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "console/failure.hpp"
+#include "formats/bytes.hpp"
+#include "formats/foreign_file.hpp"
+#include "formats/lens_maker.hpp"
+
+#include <cstdint>
+#include <sstream>
+
+/* COLMAP: CAMERA_ID MODEL WIDTH HEIGHT PARAMS[], one camera a line. */
+
+namespace tools {
+
+namespace {
+
+const int LARGEST = 1 << 20;        // of an image, px
+
+//! The second word of a line.
+std::string modelIn(const std::string& line)
+{
+    std::istringstream words(line);
+    std::string id, model;
+    words >> id >> model;
+    return model;
+}
+
+struct FirstRecord
+{
+    uint64_t count;
+    int32_t id, model;
+    uint64_t width, height;
+};
+
+} // namespace
+
+bool isColmapText(const ForeignFile& file)
+{
+    return isColmapModel(modelIn(file.firstLine())) && leadingNumbers(file.firstLine()).size() == 1;
+}
+
+ForeignRig readColmapText(const ForeignFile& file)
+{
+    ForeignRig rig;
+    std::istringstream in(file.bytes);
+    for (std::string line; std::getline(in, line); )
+    {
+        if (line.find_first_not_of(" \t\r") == std::string::npos || line[line.find_first_not_of(" \t\r")] == '#')
+            continue;
+        const std::string model = modelIn(line);
+        const std::string rest = model.empty() ? "" : line.substr(line.find(model) + model.size());
+        const std::vector<double> numbers = leadingNumbers(rest);
+        if (numbers.size() < 2)
+            throw Failure("a line has no image size: 'CAMERA_ID MODEL WIDTH HEIGHT PARAMS' is needed, and here is '" + line.substr(0, 60)
+                          + "'");
+        const auto camera = makeColmapCamera(model, {numbers.begin() + 2, numbers.end()}, imageSizeOf(numbers[0], numbers[1]));
+        const size_t port = rest.find("PORT");
+        const size_t word = port == std::string::npos ? port : rest.rfind(' ', port);
+        if (word != std::string::npos)
+            camera->setWindow(makePort(rest.substr(word + 1, port + 4 - word - 1), leadingNumbers(rest.substr(port + 4))));
+        rig.add(camera);
+    }
+    return rig;
+}
+
+bool isColmapBinary(const ForeignFile& file)
+{
+    const size_t FIRST = 32;
+    size_t parameters = 0;
+    if (file.bytes.size() < FIRST)
+        return false;
+    ByteReader in(file.bytes);
+    FirstRecord r;
+    r.count = in.number<uint64_t>();
+    r.id = in.number<int32_t>();
+    r.model = in.number<int32_t>();
+    r.width = in.number<uint64_t>();
+    r.height = in.number<uint64_t>();
+    return r.count >= 1 && r.count < 1000000 && r.id >= 0 && !colmapModelName(r.model, parameters).empty() && r.width >= 1
+        && r.width <= LARGEST && r.height >= 1 && r.height <= LARGEST;
+}
+
+ForeignRig readColmapBinary(const ForeignFile& file)
+{
+    ForeignRig rig;
+    ByteReader in(file.bytes);
+    const uint64_t cameras = in.number<uint64_t>();
+    for (uint64_t c = 0; c < cameras; c++)
+    {
+        in.skip(sizeof(int32_t));
+        size_t parameters = 0;
+        const int id = in.number<int32_t>();
+        const std::string model = colmapModelName(id, parameters);
+        if (model.empty())
+            throw Failure("its camera model " + std::to_string(id) + " is none of COLMAP's that are known here");
+        const double width = (double)in.number<uint64_t>(), height = (double)in.number<uint64_t>();
+        std::vector<double> p;
+        for (size_t i = 0; i < parameters; i++)
+            p.push_back(in.number<double>());
+        rig.add(makeColmapCamera(model, p, imageSizeOf(width, height)));
+    }
+    return rig;
+}
+
+} // namespace tools

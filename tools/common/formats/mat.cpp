@@ -1,0 +1,147 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/mat.hpp"
+#include "formats/bytes.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tools {
+
+namespace {
+
+const int DEEPEST = 20;
+
+//! A piece of the file: what it is, and its bytes.
+struct Element
+{
+    uint32_t type;
+    std::string data;
+};
+
+//! Short ones have type and size in four bytes; others are filled up to eight.
+Element nextElement(ByteReader& in)
+{
+    const uint32_t tag = in.number<uint32_t>();
+    if (tag >> 16)
+    {
+        const std::string data = in.take(4);
+        return {tag & 0xffff, data.substr(0, std::min<size_t>(tag >> 16, 4))};
+    }
+    const uint32_t size = in.number<uint32_t>();
+    Element element{tag, in.take(size)};
+    const uint32_t COMPRESSED = 15;
+    if (tag != COMPRESSED)
+        in.skip(std::min<size_t>((8 - size % 8) % 8, in.left()));
+    return element;
+}
+
+std::vector<double> numbersOf(const Element& element)
+{
+    ByteReader in(element.data);
+    std::vector<double> numbers;
+    while (in.left() > 0)
+        switch (element.type)
+        {
+        case 1: numbers.push_back(in.number<int8_t>()); break;
+        case 2: numbers.push_back(in.number<uint8_t>()); break;
+        case 3: numbers.push_back(in.number<int16_t>()); break;
+        case 4: numbers.push_back(in.number<uint16_t>()); break;
+        case 5: numbers.push_back(in.number<int32_t>()); break;
+        case 6: numbers.push_back(in.number<uint32_t>()); break;
+        case 7: numbers.push_back(in.number<float>()); break;
+        case 9: numbers.push_back(in.number<double>()); break;
+        case 12: numbers.push_back((double)in.number<int64_t>()); break;
+        case 13: numbers.push_back((double)in.number<uint64_t>()); break;
+        default: return {};
+        }
+    return numbers;
+}
+
+Json matrixOf(const std::vector<double>& numbers, size_t rows, size_t columns)
+{
+    if (numbers.size() < rows*columns)
+        throw Failure("a matrix has too few numbers: is it cut short?");
+    Json json = Json::array();
+    for (size_t row = 0; row < rows; row++)
+    {
+        Json line = Json::array();
+        for (size_t column = 0; column < columns; column++)
+            line.append(numbers[column*rows + row]);
+        json.append(line);
+    }
+    return json;
+}
+
+Json readVariable(const std::string& bytes, std::string& name, int depth);
+
+//! Of one element: its members.
+Json structOf(ByteReader& in, int depth)
+{
+    const std::vector<double> width = numbersOf(nextElement(in));
+    const Element names = nextElement(in);
+    const size_t each = width.empty() || width[0] < 1 ? names.data.size() + 1 : (size_t)width[0];
+    Json json = Json::object();
+    for (size_t at = 0; at + each <= names.data.size(); at += each)
+    {
+        const std::string member = names.data.substr(at, std::min(each, names.data.find('\0', at) - at));
+        std::string unused;
+        json.set(member, readVariable(nextElement(in).data, unused, depth + 1));
+    }
+    return json;
+}
+
+//! A text for an object, null for all else that has no numbers.
+Json readVariable(const std::string& bytes, std::string& name, int depth)
+{
+    if (bytes.empty() || depth > DEEPEST)
+        return nullptr;
+    ByteReader in(bytes);
+    const std::vector<double> flags = numbersOf(nextElement(in));
+    const int kind = flags.empty() ? 0 : (int)flags[0] & 0xff, OBJECT = 17;
+    if (kind == OBJECT)
+    {
+        name = nextElement(in).data;
+        return "object";
+    }
+    const std::vector<double> size = numbersOf(nextElement(in));
+    name = nextElement(in).data;
+    const bool isFlat = size.size() == 2 && size[0] >= 0 && size[1] >= 0;
+    const int STRUCT = 2, FIRST_OF_NUMBERS = 6, LAST_OF_NUMBERS = 15;
+    if (kind == STRUCT && isFlat && size[0] == 1 && size[1] == 1)
+        return structOf(in, depth);
+    if (!isFlat || kind < FIRST_OF_NUMBERS || kind > LAST_OF_NUMBERS)
+        return nullptr;
+    return matrixOf(numbersOf(nextElement(in)), (size_t)size[0], (size_t)size[1]);
+}
+
+} // namespace
+
+Json readMat(const std::string& bytes)
+{
+    const size_t HEADING = 128;
+    const uint32_t MATRIX = 14, COMPRESSED = 15;
+    ByteReader in(bytes);
+    if (in.take(HEADING).substr(HEADING - 2) != "IM")
+        throw Failure("it was written on a machine of the other byte order: save it again with MATLAB's save -v7");
+    Json json = Json::object();
+    while (in.left() >= 8)
+    {
+        Element element = nextElement(in);
+        if (element.type == COMPRESSED)
+        {
+            const std::string inner = inflated(element.data, false);
+            ByteReader unpacked(inner);
+            element = nextElement(unpacked);
+        }
+        std::string name;
+        if (element.type != MATRIX)
+            continue;
+        const Json value = readVariable(element.data, name, 0);
+        json.set(name, value);
+    }
+    return json;
+}
+
+} // namespace tools

@@ -1,0 +1,153 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "console/failure.hpp"
+#include "formats/foreign_file.hpp"
+#include "formats/lens_maker.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+/* OpenPTV's cameras look along -z, their image's y points up, and lengths in the image are millimetres from its middle:
+
+    q = dm^T (X - X0),  x = -c q0/q2 + xh,  y = -c q1/q2 + yh,
+    x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 x^2) + 2 p2 x y,  y' likewise from x' and y,
+    column = (scx x' - sin(she) y')/pix_x + imx/2,  row = imy/2 - cos(she) y'/pix_y,
+
+where pixels count from the corner of the first. Distortion is about the middle of the image, not about (xh, yh): OpenCV's model is the
+same where one of both is 0. The glass is a vector from the origin of the world to the outer face of the window, square to it. */
+
+namespace tools {
+
+using cv::Matx33d;
+using cv::Vec3d;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const double CORNER = 0.5;      // its pixel (0, 0) is a corner, not a centre
+const size_t WITHOUT_GLASS = 18, WITH_GLASS = 21;
+
+bool isRotation(const Matx33d& R)
+{
+    return cv::norm(R*R.t() - Matx33d::eye()) < 1e-3 && cv::determinant(R) > 0;
+}
+
+std::string textOf(const fs::path& path)
+{
+    std::ifstream in(path);
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+}
+
+struct AddedParameters
+{
+    double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0, scx = 1, she = 0;
+};
+
+AddedParameters readAdded(const std::string& ori)
+{
+    const std::string path = ori.size() > 4 && ori.compare(ori.size() - 4, 4, ".ori") == 0 ? ori.substr(0, ori.size() - 4) + ".addpar"
+                                                                                         : ori + ".addpar";
+    if (!fs::is_regular_file(path))
+        throw Failure("its lens is missing: put '" + fs::path(path).filename().string() + "' beside it (k1 k2 k3 p1 p2 scx she)");
+    const std::vector<double> p = leadingNumbers(textOf(path));
+    if (p.size() < 7)
+        throw Failure("'" + fs::path(path).filename().string() + "' must have the numbers k1 k2 k3 p1 p2 scx she");
+    return {p[0], p[1], p[2], p[3], p[4], p[5], p[6]};
+}
+
+//! What all cameras share.
+struct ControlParameters
+{
+    cv::Size image;
+    double pixelX, pixelY, n1, n2, n3, thickness;
+};
+
+//! ptv.par: images of each camera by name, then a number a line; the last are of the sizes and the window.
+ControlParameters readControl(const fs::path& folder)
+{
+    for (const fs::path& path : {folder/"ptv.par", folder/".."/"parameters"/"ptv.par", folder/"parameters"/"ptv.par"})
+    {
+        if (!fs::is_regular_file(path))
+            continue;
+        std::istringstream in(textOf(path));
+        std::vector<std::string> lines;
+        for (std::string line; std::getline(in, line); )
+            lines.push_back(line);
+        const std::vector<double> count = leadingNumbers(lines.empty() ? "" : lines[0]);
+        const size_t names = count.size() == 1 && count[0] >= 1 && count[0] <= 100 ? 2*(size_t)count[0] + 1 : lines.size();
+        std::string rest;
+        for (size_t i = names; i < lines.size(); i++)
+            rest += lines[i] + "\n";
+        // hp_flag allCam_flag tiff_flag imx imy pix_x pix_y chfield mmp_n1 mmp_n2 mmp_n3 mmp_d
+        const std::vector<double> p = leadingNumbers(rest);
+        if (p.size() < 12 || !(p[5] > 0 && p[6] > 0))
+            throw Failure("'" + path.filename().string() + "' must have 12 numbers after the names of the images, imx, imy, pix_x and "
+                          "pix_y among them");
+        if (p[7] != 0)
+            throw Failure("chfield of ptv.par is not 0: the halves of interlaced images are no image here");
+        return {imageSizeOf(p[3], p[4]), p[5], p[6], p[8], p[9], p[10], p[11]};
+    }
+    throw Failure("it is in millimetres: put ptv.par, which has the size of the image and of a pixel, beside it or into ../parameters");
+}
+
+std::vector<double> coefficientsOf(const AddedParameters& a, double c, double xh, double yh)
+{
+    if (a.she != 0)
+        throw Failure("its lens has a shear (she), and OpenCV's has none: set she to 0 and orient again");
+    const bool bends = a.k1 != 0 || a.k2 != 0 || a.k3 != 0 || a.p1 != 0 || a.p2 != 0;
+    if (bends && (xh != 0 || yh != 0))
+        throw Failure("its distortion is about the middle of the image, and its principal point (xh, yh) is elsewhere, which OpenCV's lens "
+                      "cannot be: orient again with one of both at 0");
+    if (a.p1 != 0)
+        throw Failure("its p1 is not as in OpenCV's lens (y is distorted by the distorted x): set it to 0 and orient again");
+    return {a.k1*c*c, a.k2*std::pow(c, 4), -a.p2*c, 0., a.k3*std::pow(c, 6)};
+}
+
+} // namespace
+
+bool isOpenPtv(const ForeignFile& file)
+{
+    bool all;
+    const std::vector<double> p = leadingNumbers(file.bytes.substr(0, 4096), &all);
+    return all && p.size() >= 15 && isRotation(Matx33d(p.data() + 6));
+}
+
+ForeignRig readOpenPtv(const ForeignFile& file)
+{
+    const std::vector<double> p = leadingNumbers(file.bytes);
+    if (p.size() != WITHOUT_GLASS && p.size() != WITH_GLASS)
+        throw Failure(cv::format("it must have 18 numbers, or 21 with the vector of the glass, and has %zu: is it cut short?", p.size()));
+    const fs::path folder = fs::path(file.name).parent_path();
+    const AddedParameters added = readAdded(file.name);
+    const ControlParameters control = readControl(folder.empty() ? "." : folder);
+    const double xh = p[15], yh = p[16], c = p[17];
+    const Vec3d centre(p[0], p[1], p[2]);
+    const Matx33d R = Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1)*Matx33d(p.data() + 6).t();
+    const Matx33d K = cameraMatrixOf(added.scx*c/control.pixelX, c/control.pixelY, control.image.width/2. + added.scx*xh/control.pixelX
+                                     - CORNER, control.image.height/2. - yh/control.pixelY - CORNER);
+    const auto camera = makeCamera("opencv", K, coefficientsOf(added, c, xh, yh), control.image);
+    const Vec3d glass = p.size() == WITH_GLASS ? Vec3d(p[18], p[19], p[20]) : Vec3d();
+    const double toOrigin = cv::norm(glass);
+    if (toOrigin > 0)
+        try
+        {
+            const Vec3d n = glass*(1./toOrigin);
+            cv::refract::GlassWindow window(-(R*n), control.thickness, control.n2, n.dot(centre) - toOrigin - control.thickness,
+                                            control.n3);
+            window.innerIndex = control.n1;
+            camera->setWindow(window);
+        }
+        catch (const cv::Exception& e)
+        {
+            throw Failure("its glass cannot be one: " + e.err);
+        }
+    ForeignRig rig;
+    rig.add(camera, R, -(R*centre));
+    return rig;
+}
+
+} // namespace tools
