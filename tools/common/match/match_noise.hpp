@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_MATCH_NOISE_HPP
 #define REFRACT_TOOLS_MATCH_NOISE_HPP
 
-#include "bundle/bundle_adjustment.hpp"
+#include "match/match_choice.hpp"
 
 /* How well features are placed. A large blob is placed less well than a small one:
 
@@ -20,9 +20,20 @@ struct MatchNoise
     double stdOf(double scale) const;
 };
 
-/** From the matches that a fit used. @param scales per camera, per point, as Matches::pixels
-A match of n cameras tells 2 n - 3 numbers: the rest of its pixels is the point's. */
-MatchNoise noiseOfMatches(const Matches& matches, const std::vector<std::vector<double>>& scales, const BundleAdjustment& fit);
+//! What the residuals of one match tell: of n cameras 2 n - 3 numbers, as the rest of its pixels is the point's.
+struct MatchResidual
+{
+    double squares, scale2;         //!< px^2; mean of the squared scales
+    int count;                      //!< of the numbers; 0: there is no such point
+
+    bool isWithin(const MatchNoise& noise) const;
+};
+
+std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigModel& rig);
+
+/** From the residuals of right matches and of some others, which are left out by the noise that the rest has. A right one is left out
+with a probability of 1e-4. */
+MatchNoise noiseOf(const std::vector<MatchResidual>& residuals);
 
 } // namespace tools
 

@@ -6,6 +6,7 @@
 #include "console/frames.hpp"
 #include "console/progress.hpp"
 #include "match/chains.hpp"
+#include "bundle/bundle_adjustment.hpp"
 #include "match/moved_rig.hpp"
 
 #include <algorithm>
@@ -20,18 +21,6 @@ namespace {
 const int FEWEST = 20;                  // matches, to tell good ones from others
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<CameraPair> pairsOf(const CheckInput& input, const SceneOptions& options)
-{
-    std::vector<CameraPair> pairs;
-    for (int a = 0; a < (int)input.rig.cameras.size(); a++)
-        for (int b = a + 1; b < (int)input.rig.cameras.size(); b++)
-        {
-            const double search = options.search > 0. ? options.search : searchWidth(input, a, b, options.depth, MAY_HAVE_TURNED);
-            pairs.push_back(CameraPair(input.rig, a, b, options.depth, search));
-        }
-    return pairs;
-}
-
 Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera)
 {
     Mat image = frames.read(i), same = image;
@@ -40,7 +29,7 @@ Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera)
     return greyOf(image, calibration.channel);
 }
 
-ScaledMatches matchesOf(const std::string& moment, const std::vector<Features>& features, const std::vector<Chain>& chains)
+ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Features>& features, const std::vector<Chain>& chains)
 {
     ScaledMatches result;
     result.matches.pixels.resize(features.size());
@@ -71,58 +60,12 @@ std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
     return moments;
 }
 
-ScaledMatches findAll(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options,
-                      const std::vector<CameraPair>& pairs, const std::vector<Moment>& moments, bool quiet)
-{
-    Progress progress("matching", (int)moments.size(), quiet);
-    const RigModel rig = modelOf(calibration);
-    ScaledMatches all;
-    for (const Moment& moment : moments)
-    {
-        progress.at(moment.stem);
-        std::vector<Features> features(cameras.size());
-        for (int c = 0; c < (int)cameras.size(); c++)
-            if (moment.frames[c] >= 0)
-                features[c] = featuresOf(greyFrame(cameras[c], moment.frames[c], calibration, c), options.features);
-        std::vector<PairMatches> matches;
-        for (const CameraPair& pair : pairs)
-            matches.push_back({pair.first, pair.second,
-                               partnersNearCurves(rig, pair, features[pair.first], features[pair.second])});
-        all.add(matchesOf(moment.stem, features, chainsOf(features, matches)));
-        progress.step();
-    }
-    return all;
-}
-
 void setStds(const MatchNoise& noise, ScaledMatches& scaled)
 {
     scaled.matches.stds = scaled.scales;
     for (std::vector<double>& ofCamera : scaled.matches.stds)
         for (double& std : ofCamera)
             std = noise.stdOf(std);         // NaN stays
-}
-
-/* The rig may have moved: what is estimated within the covariance of that takes a change for none of the matches' fault. First all
-pixels are alike, then each has the std of its scale. */
-std::vector<int> leaveOutWrong(const CheckInput& input, ScaledMatches& scaled, MatchNoise& noise)
-{
-    const BundleStart start{input.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input, MAY_HAVE_TURNED), {}};
-    scaled.matches.stds.clear();
-    BundleAdjustment fit = adjustBundle(start, scaled.matches, {}, true);
-    setStds(noiseOfMatches(scaled.matches, scaled.scales, fit), scaled);
-    fit = adjustBundle(start, scaled.matches, {}, true);
-    noise = noiseOfMatches(scaled.matches, scaled.scales, fit);
-    setStds(noise, scaled);
-    std::vector<int> good;
-    for (int i = 0; i < scaled.size(); i++)
-    {
-        bool isGood = fit.status[i] == cv::refract::REFRACT_OK;
-        for (int c = 0; c < scaled.matches.cameraCount(); c++)
-            isGood &= !scaled.matches.isSeen(c, i) || fit.used[c][i];
-        if (isGood)
-            good.push_back(i);
-    }
-    return good;
 }
 
 //! Matches by chance are anywhere within the search, right ones within a few standard deviations.
@@ -135,26 +78,91 @@ double wrongOf(const SceneMatches& result)
 
 } // namespace
 
-SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet)
+SceneMatcher::SceneMatcher(const Calibration& calibration, const SceneOptions& options)
+    : input_{modelOf(calibration), calibration.covariance, 0., 0.}, options_(options)
 {
-    const CheckInput input{modelOf(calibration), calibration.covariance, 0., 0.};
-    const std::vector<CameraPair> pairs = pairsOf(input, options);
-    const std::vector<Moment> moments = sharedMoments(cameras);
+    for (int a = 0; a < (int)input_.rig.cameras.size(); a++)
+        for (int b = a + 1; b < (int)input_.rig.cameras.size(); b++)
+        {
+            const double search = options.search > 0. ? options.search : searchWidth(input_, a, b, options.depth, MAY_HAVE_TURNED);
+            pairs_.push_back(CameraPair(input_.rig, a, b, options.depth, search));
+        }
+}
+
+ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vector<Mat>& images) const
+{
+    std::vector<Features> features(images.size());
+    for (size_t c = 0; c < images.size(); c++)
+        if (!images[c].empty())
+            features[c] = featuresOf(images[c], options_.features);
+    std::vector<PairMatches> matches;
+    for (const CameraPair& pair : pairs_)
+        matches.push_back({pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])});
+    return matchesOfChains(moment, features, chainsOf(features, matches));
+}
+
+/* A part of the matches tells the rig as it is now, robustly, and the rig which of all others are right; these tell it again, each with
+the std of its scale. */
+std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const
+{
+    const int ENOUGH = 400;
+    const BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, MAY_HAVE_TURNED), {}};
+    const ScaledMatches some = scaled.only(spreadChoice(scaled, input_.rig, ENOUGH));
+    RigModel rig = adjustBundle(start, some.matches, {}, true).fit.rig;
+    std::vector<int> good;
+    for (const bool isLast : {false, true})
+    {
+        const std::vector<MatchResidual> residuals = residualsOf(scaled, rig);
+        noise = noiseOf(residuals);
+        setStds(noise, scaled);
+        good.clear();
+        for (int i = 0; i < scaled.size(); i++)
+            if (residuals[i].isWithin(noise))
+                good.push_back(i);
+        if (!isLast)
+            rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
+    }
+    return good;
+}
+
+SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
+{
     SceneMatches result;
-    result.moments = (int)moments.size();
-    for (const CameraPair& pair : pairs)
+    for (const CameraPair& pair : pairs_)
         result.search = std::max(result.search, pair.search);
-    const ScaledMatches all = findAll(calibration, cameras, options, pairs, moments, quiet);
     result.found = all.size();
-    ScaledMatches chosen = all.only(spreadChoice(all, input.rig, options.count));
+    ScaledMatches chosen = all.only(spreadChoice(all, input_.rig, options_.count));
     result.chosen = chosen.size();
     if (result.chosen < FEWEST)
-        throw Failure(format("only %d matches were found in %d image%s of each camera, fewer than %d: more texture or light is wanted, or "
-                             "--depth is not that of the scene", result.chosen, result.moments, result.moments == 1 ? "" : "s", FEWEST));
-    const std::vector<int> good = leaveOutWrong(input, chosen, result.noise);
+        throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that of "
+                             "the scene", result.chosen, FEWEST));
+    const std::vector<int> good = leaveOutWrong(chosen, result.noise);
     result.good = chosen.only(good);
     result.leftOut = result.chosen - (int)good.size();
     result.wrongLeft = wrongOf(result);
+    return result;
+}
+
+SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet)
+{
+    const SceneMatcher matcher(calibration, options);
+    const std::vector<Moment> moments = sharedMoments(cameras);
+    ScaledMatches all;
+    {
+        Progress progress("matching", (int)moments.size(), quiet);
+        for (const Moment& moment : moments)
+        {
+            progress.at(moment.stem);
+            std::vector<Mat> images(cameras.size());
+            for (int c = 0; c < (int)cameras.size(); c++)
+                if (moment.frames[c] >= 0)
+                    images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
+            all.add(matcher.matchesOf(moment.stem, images));
+            progress.step();
+        }
+    }
+    SceneMatches result = matcher.goodOf(all);
+    result.moments = (int)moments.size();
     return result;
 }
 

@@ -4,8 +4,10 @@
 #ifndef REFRACT_TOOLS_SCENE_MATCHES_HPP
 #define REFRACT_TOOLS_SCENE_MATCHES_HPP
 
+#include "assess/check_input.hpp"
 #include "match/match_choice.hpp"
 #include "match/match_noise.hpp"
+#include "match/partner_search.hpp"
 
 /* From images of a scene to matches for refract_bundle and refract_check. */
 namespace tools {
@@ -34,7 +36,28 @@ struct SceneMatches
     double wrongLeft = 0.;          //!< expected among the good: as many are near a curve by chance
 };
 
-/** Throws Failure where the images have too few matches to tell the good ones. */
+/** The cameras of a calibration, and what is known of them. */
+class SceneMatcher
+{
+public:
+    SceneMatcher(const Calibration& calibration, const SceneOptions& options);
+
+    //! All matches of one moment. @param images per camera, 8-bit grey; empty: none
+    ScaledMatches matchesOf(const std::string& moment, const std::vector<cv::Mat>& images) const;
+
+    /** The good ones of all moments. The rig may have moved: it is estimated within what is known of it and what may have turned. Throws
+    Failure where there are too few to tell the good ones. */
+    SceneMatches goodOf(const ScaledMatches& all) const;
+
+private:
+    std::vector<int> leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const;
+
+    CheckInput input_;
+    SceneOptions options_;
+    std::vector<CameraPair> pairs_;
+};
+
+//! Of all moments that two cameras have images of.
 SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet);
 
 } // namespace tools
