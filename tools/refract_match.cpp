@@ -1,17 +1,14 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "calibrate/rig_data.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
-#include "console/frames.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "match/depth_range.hpp"
 #include "match/scene_matches.hpp"
 
-#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -78,19 +75,6 @@ std::string csvOf(const Matches& matches)
     return csv.str();
 }
 
-std::vector<Frames> openFrames(const Options& o, const Calibration& calibration)
-{
-    if (calibration.single())
-        throw Failure("'" + o.calibration + "' has one camera: what it sees at one place has no depth, so that there is nothing to match");
-    if (o.images.size() != calibration.cameras.size())
-        throw Failure(format("'%s' has %zu cameras, and images of %zu are given: one image, quoted glob or video of each",
-                             o.calibration.c_str(), calibration.cameras.size(), o.images.size()));
-    std::vector<Frames> frames;
-    for (const std::string& source : o.images)
-        frames.emplace_back(source);
-    return frames;
-}
-
 void print(const SceneMatches& result)
 {
     std::cout << format("%zu matches of %d moment%s, %d of them left out as no point explains them; about %.0f wrong ones are left\n",
@@ -113,7 +97,7 @@ int refract_match_main(int argc, char** argv)
         std::vector<std::string> inputs = options.images;
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
-        std::vector<Frames> frames = openFrames(options, calibration);
+        std::vector<Frames> frames = framesOf(options.images, calibration, options.calibration);
         options.scene.depth = options.depth.empty() ? calibratedDepthRange(calibration, options.calibration)
                                                     : givenDepthRange(options.depth, calibration);
         const SceneMatches result = matchScene(calibration, frames, options.scene, command.quiet());

@@ -118,18 +118,18 @@ private:
         result_.dof = isNoisier ? here.dof : input_.dof;
     }
 
-    /* What all changes of the table together leave: the F test of each has this noise, which none of them is in. */
+    /* What all changes of the table together leave, as far as the images tell of them: the F test of each has this noise, which none of
+    them is in. */
     void takeNoiseOfScene()
     {
         if (information_.G.size() == 0)
             return;
-        const double NOTHING = 1e-9;        // of the largest
         const SymmetricEigen eigen(information_.G);
         const VectorXd along = transposeTimesVector(eigen.vectors, information_.score);
         double gain = 0.;
         int told = 0;
         for (Eigen::Index i = 0; i < along.size(); i++)
-            if (eigen.values[i] > NOTHING*eigen.values.maxCoeff())
+            if (eigen.values[i] > 1./(TOLD*TOLD))
             {
                 gain += along[i]*along[i]/eigen.values[i];
                 told++;

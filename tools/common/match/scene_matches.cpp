@@ -3,7 +3,6 @@
 
 #include "match/scene_matches.hpp"
 #include "console/failure.hpp"
-#include "console/frames.hpp"
 #include "console/progress.hpp"
 #include "match/chains.hpp"
 #include "bundle/bundle_adjustment.hpp"
@@ -77,6 +76,19 @@ double wrongOf(const SceneMatches& result)
 }
 
 } // namespace
+
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename)
+{
+    if (calibration.single())
+        throw Failure("'" + filename + "' has one camera: what it sees at one place has no depth, so that there is nothing to match");
+    if (sources.size() != calibration.cameras.size())
+        throw Failure(format("'%s' has %zu cameras, and images of %zu are given: one image, quoted glob or video of each, in their order",
+                             filename.c_str(), calibration.cameras.size(), sources.size()));
+    std::vector<Frames> frames;
+    for (const std::string& source : sources)
+        frames.emplace_back(source);
+    return frames;
+}
 
 SceneMatcher::SceneMatcher(const Calibration& calibration, const SceneOptions& options)
     : input_{modelOf(calibration), calibration.covariance, 0., 0.}, options_(options)

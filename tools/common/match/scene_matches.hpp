@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_SCENE_MATCHES_HPP
 
 #include "assess/check_input.hpp"
+#include "console/frames.hpp"
 #include "match/match_choice.hpp"
 #include "match/match_noise.hpp"
 #include "match/partner_search.hpp"
@@ -12,7 +13,9 @@
 /* From images of a scene to matches for refract_bundle and refract_check. */
 namespace tools {
 
-class Frames;
+/** What each camera of a calibration took. Throws Failure if there are not as many as cameras, or one alone. @param filename of the
+calibration, for the text */
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename);
 
 struct SceneOptions
 {
