@@ -308,8 +308,14 @@ private:
 
     void name()
     {
+        double largest = 0.;
+        for (const Tested& tested : tested_)
+            largest = std::max(largest, tested.gain);
+        // A scene has thousands of points: what gains far less, to first order, is not fitted.
+        const double FAR_LESS = 0.5;
         for (Tested& tested : tested_)
-            fitOf(tested);
+            if (!isScene_ || tested.gain > FAR_LESS*largest)
+                fitOf(tested);
         for (const Tested& tested : tested_)
             addCandidate(tested);
         addUndone(isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
